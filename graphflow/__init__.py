@@ -1,0 +1,115 @@
+"""ROS 2's concepts and wire protocol in one pip install, native to asyncio."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from graphflow.errors import (
+        CallError,
+        CallTimeout,
+        DeclarationError,
+        DecodeError,
+        EncodeError,
+        GraphflowError,
+        ParameterError,
+        RemoteError,
+        ServerLost,
+        ServiceUnavailable,
+    )
+    from graphflow.qos import Durability, History, Qos, Reliability
+    from graphflow.runtime.context import Context
+    from graphflow.runtime.declare import (
+        Client,
+        Group,
+        Param,
+        Publisher,
+        Subscription,
+        service,
+        subscription,
+        task,
+        timer,
+    )
+    from graphflow.runtime.endpoints import TimerInfo
+    from graphflow.runtime.node import Node
+    from graphflow.runtime.run import graph, run
+    from graphflow.times import Duration, Time
+
+__version__ = "0.1.0"
+
+# Imported when first used: `graphflow --help` must not wait for zenoh and asyncio.
+_HOMES = {
+    "graphflow.errors": (
+        "CallError",
+        "CallTimeout",
+        "DeclarationError",
+        "DecodeError",
+        "EncodeError",
+        "GraphflowError",
+        "ParameterError",
+        "RemoteError",
+        "ServerLost",
+        "ServiceUnavailable",
+    ),
+    "graphflow.qos": ("Durability", "History", "Qos", "Reliability"),
+    "graphflow.runtime.context": ("Context",),
+    "graphflow.runtime.declare": (
+        "Client",
+        "Group",
+        "Param",
+        "Publisher",
+        "Subscription",
+        "service",
+        "subscription",
+        "task",
+        "timer",
+    ),
+    "graphflow.runtime.endpoints": ("TimerInfo",),
+    "graphflow.runtime.node": ("Node",),
+    "graphflow.runtime.run": ("graph", "run"),
+    "graphflow.times": ("Duration", "Time"),
+}
+
+__all__ = [
+    "CallError",
+    "CallTimeout",
+    "Client",
+    "Context",
+    "DeclarationError",
+    "DecodeError",
+    "Durability",
+    "Duration",
+    "EncodeError",
+    "GraphflowError",
+    "Group",
+    "History",
+    "Node",
+    "Param",
+    "ParameterError",
+    "Publisher",
+    "Qos",
+    "Reliability",
+    "RemoteError",
+    "ServerLost",
+    "ServiceUnavailable",
+    "Subscription",
+    "Time",
+    "TimerInfo",
+    "graph",
+    "run",
+    "service",
+    "subscription",
+    "task",
+    "timer",
+]
+
+
+def __getattr__(name: str) -> object:
+    for home, names in _HOMES.items():
+        if name in names:
+            from importlib import import_module
+
+            value: object = getattr(import_module(home), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module 'graphflow' has no attribute {name!r}")

@@ -1,0 +1,26 @@
+"""Which domain a process belongs to: a number that keeps graphs on one network apart, as ROS_DOMAIN_ID does."""
+
+from __future__ import annotations
+
+import os
+
+from graphflow.errors import GraphflowError
+
+DOMAIN_VARIABLES = ("GRAPHFLOW_DOMAIN", "ROS_DOMAIN_ID")
+
+
+def domain_id(given: int | None = None) -> int:
+    """The domain to use: the given one, else GRAPHFLOW_DOMAIN, else ROS_DOMAIN_ID, else 0.
+
+    Raises:
+        GraphflowError: A variable holds something else than a number of 0 or more.
+    """
+    if given is not None:
+        return given
+    for variable in DOMAIN_VARIABLES:
+        text = os.environ.get(variable, "").strip()
+        if text:
+            if not text.isdecimal():
+                raise GraphflowError(f"{variable}={text!r}: a domain is a whole number, 0 or more")
+            return int(text)
+    return 0

@@ -1,0 +1,146 @@
+"""Every error graphflow raises; the type says whose doing it was, the text says what to do next.
+
+GraphflowError
+|-- DeclarationError          a node class is declared wrongly (raised when it is imported)
+|-- InvalidName                a topic, service or node name, or a remap rule, is not a legal one
+|-- InterfaceError            a .msg, .srv or .action definition is missing or wrong
+|   `-- UnknownInterface      nothing is called that; the text names the nearest
+|-- EncodeError               a message holds a value that its type cannot carry
+|-- DecodeError               bytes from the network are not what their type says (the peer did that)
+|-- ParameterError            a parameter is unknown, of another type, out of range or read-only
+|-- GraphFileError            a graph file is wrong; holds every problem with its place
+|-- TransportError            the network refused: port taken, silent rendezvous, another user's
+|-- ClosedError               you closed it and then used it
+|-- SupervisorError           a graph could not be started, or is not running
+`-- CallError                 a call ended without a response
+    |-- ServiceUnavailable    nobody serves that name
+    |-- ServerLost            the server went away during the call
+    |-- CallTimeout           the deadline passed
+    |-- ServerBusy            the server's queue is full
+    |-- RemoteError           the handler raised; carries the remote type and message
+    `-- DeadlockError         the call can never be answered
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class GraphflowError(Exception):
+    """Base of all of graphflow's errors."""
+
+
+class DeclarationError(GraphflowError):
+    """A node class declares something that cannot work; raised while the class is being made."""
+
+
+class InvalidName(GraphflowError, ValueError):
+    """A name or remap rule breaks ROS 2's naming rules."""
+
+
+class InterfaceError(GraphflowError):
+    """An interface definition is missing or malformed."""
+
+
+class UnknownInterface(InterfaceError, LookupError):
+    """No interface of that name is bundled or found in the project."""
+
+
+class EncodeError(GraphflowError, ValueError):
+    """A field holds a value its type cannot carry. The text starts with the field's path."""
+
+
+class DecodeError(GraphflowError, ValueError):
+    """A payload ends early or does not fit its type. The only error decoding raises."""
+
+
+class ParameterError(GraphflowError, ValueError):
+    """A parameter was refused; the old value stands."""
+
+
+class TransportError(GraphflowError):
+    """The network, or something in its place, refused."""
+
+
+class ClosedError(GraphflowError):
+    """The node, session or endpoint was closed before this use."""
+
+
+class SupervisorError(GraphflowError):
+    """A graph could not be started, reached or stopped.
+
+    Attributes:
+        exit_code: What the command line ends with: 1 failed, 2 usage, 3 nothing running, 4 timeout.
+    """
+
+    def __init__(self, message: str, exit_code: int = 1) -> None:
+        super().__init__(message)
+        self.exit_code = exit_code
+
+
+class Place(NamedTuple):
+    """A position in a text file; line and column count from 1, 0 means unknown."""
+
+    file: str
+    line: int = 0
+    column: int = 0
+
+    def __str__(self) -> str:
+        return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)])
+
+
+class Problem(NamedTuple):
+    """One mistake in a graph file or in what it names."""
+
+    place: Place
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.message}"
+
+
+class GraphFileError(GraphflowError):
+    """A graph file has mistakes; all that were found, in the order of the file."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self.problems = tuple(sorted(problems))
+        super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class CallError(GraphflowError):
+    """A service call ended without a response."""
+
+
+class ServiceUnavailable(CallError):
+    """No server offers the service."""
+
+
+class ServerLost(CallError):
+    """The server disappeared while the call was waiting."""
+
+
+class CallTimeout(CallError, TimeoutError):
+    """No response came before the call's deadline."""
+
+
+class ServerBusy(CallError):
+    """The server refused the request because its queue is full."""
+
+
+class RemoteError(CallError):
+    """The service handler raised.
+
+    Attributes:
+        type: The name of the remote exception's class.
+        message: Its text.
+    """
+
+    def __init__(self, type: str, message: str) -> None:  # noqa: A002 - the word on the wire
+        super().__init__(f"{type}: {message}")
+        self.type = type
+        self.message = message
+
+
+class DeadlockError(CallError):
+    """The call waits, directly or through others, for the caller itself."""

@@ -1,0 +1,170 @@
+"""What a node class declares, as frozen data: known without making a node, and readable as JSON.
+
+Checks, plans and listings speak this; nothing here refers to a class or a function object.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+from graphflow.errors import ParameterError, Place
+
+EndpointKind = Literal["publisher", "subscription", "service", "client"]
+ParamType = Literal["bool", "int", "float", "str", "list[bool]", "list[int]", "list[float]", "list[str]", "bytes"]
+
+TYPE_IDS: dict[ParamType, int] = {
+    "bool": 1,
+    "int": 2,
+    "float": 3,
+    "str": 4,
+    "bytes": 5,
+    "list[bool]": 6,
+    "list[int]": 7,
+    "list[float]": 8,
+    "list[str]": 9,
+}
+"""rcl_interfaces/msg/ParameterType."""
+TYPE_NAMES = {0: "not set", 1: "boolean", 2: "integer", 3: "double", 4: "string", 5: "byte array"} | {
+    6: "boolean array",
+    7: "integer array",
+    8: "double array",
+    9: "string array",
+}
+"""ROS 2's words for the types."""
+_INT64 = range(-(2**63), 2**63)
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """A topic or service that the class uses under `name`."""
+
+    kind: EndpointKind
+    name: str
+    type: str
+    attribute: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter with its type, default and limits (inclusive, except that `gt` and `lt` are strict)."""
+
+    name: str
+    type: ParamType
+    default: Any
+    place: Place
+    unit: str = ""
+    doc: str = ""
+    ge: float | None = None
+    le: float | None = None
+    gt: float | None = None
+    lt: float | None = None
+    read_only: bool = False
+
+    def fit(self, value: Any) -> Any:
+        """`value` as the declared type, integers widened to floats.
+
+        Raises:
+            ParameterError: It is of another type or out of range; the text says what is allowed.
+        """
+        if self.type.startswith("list[") and isinstance(value, (list, tuple)):
+            element: ParamType = self.type[5:-1]  # type: ignore[assignment]
+            return [self._scalar(element, item) for item in value]
+        return self._scalar(self.type, value)
+
+    def _scalar(self, type_: ParamType, value: Any) -> Any:
+        if type_ == "float" and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if type_ == "bytes" and isinstance(value, bytearray):
+            value = bytes(value)
+        try:
+            fits = type_of(value) == type_ and (type_ != "int" or value in _INT64)
+        except ParameterError:
+            fits = False
+        if not fits:
+            word = TYPE_NAMES[TYPE_IDS[self.type]]
+            raise ParameterError(f"parameter {self.name!r} is of type {word}, {value!r} is not")
+        if type_ in ("int", "float"):
+            self._check_range(value)
+        return value
+
+    def _check_range(self, number: float) -> None:
+        inside = (
+            (self.ge is None or number >= self.ge)
+            and (self.le is None or number <= self.le)
+            and (self.gt is None or number > self.gt)
+            and (self.lt is None or number < self.lt)
+        )
+        if not inside:
+            unit = f" {self.unit}" if self.unit else ""
+            raise ParameterError(f"parameter {self.name!r} = {number} is out of range: {self.range_text()}{unit}")
+
+    def range_text(self) -> str:
+        """The range in words, empty when there is none: `0 to 255`, `more than 0`."""
+        if self.ge is not None and self.le is not None:
+            return f"{self.ge:g} to {self.le:g}"
+        words = {"ge": "at least", "le": "at most", "gt": "more than", "lt": "less than"}
+        limits = [(word, getattr(self, key)) for key, word in words.items()]
+        return " and ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """Everything one node class declares, its parents' declarations included."""
+
+    class_path: str
+    """`package.module:Class`."""
+    node_name: str
+    """The name a node gets when no other is given."""
+    place: Place
+    doc: str = ""
+    endpoints: tuple[Endpoint, ...] = ()
+    params: tuple[Parameter, ...] = ()
+    handlers: tuple[str, ...] = ()
+    """Method names of timers, subscriptions and services."""
+    groups: dict[str, int | None] = field(default_factory=dict)
+    """Limit by group name, None for no limit."""
+    dynamic_names: bool | tuple[str, ...] = False
+    """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
+
+    def param(self, name: str) -> Parameter | None:
+        return next((p for p in self.params if p.name == name), None)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data that `from_json` reads back."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Interface:
+        dynamic = data["dynamic_names"]
+        return cls(
+            **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc", "groups")},
+            place=Place(*data["place"]),
+            endpoints=tuple(Endpoint(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
+            params=tuple(Parameter(**{**p, "place": Place(*p["place"])}) for p in data["params"]),
+            handlers=tuple(data["handlers"]),
+            dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
+        )
+
+
+def type_of(value: Any) -> ParamType:
+    """The parameter type of a Python value.
+
+    Raises:
+        ParameterError: It has none.
+    """
+    if isinstance(value, bool):
+        return "bool"
+    for cls, name in ((int, "int"), (float, "float"), (str, "str"), (bytes, "bytes")):
+        if isinstance(value, cls):
+            return name  # type: ignore[return-value]
+    if isinstance(value, (list, tuple)):
+        kinds = {type_of(item) for item in value}
+        if kinds == {"int", "float"}:
+            kinds = {"float"}
+        if len(kinds) == 1 and (kind := kinds.pop()) in ("bool", "int", "float", "str"):
+            return f"list[{kind}]"  # type: ignore[return-value]
+    raise ParameterError(
+        f"{value!r} cannot be a parameter: use a bool, int, float, str, bytes, or a list of one of them"
+    )

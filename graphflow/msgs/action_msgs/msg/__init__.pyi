@@ -1,0 +1,35 @@
+# Written by `python -m graphflow.msgs.stubs`; do not edit.
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from graphflow import times
+from graphflow.msgs.base import Message
+from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
+from graphflow.msgs.unique_identifier_msgs import msg as unique_identifier_msgs
+
+class GoalInfo(Message):
+    goal_id: unique_identifier_msgs.UUID
+    stamp: builtin_interfaces.Time
+    def __init__(
+        self,
+        *,
+        goal_id: unique_identifier_msgs.UUID | Mapping[str, object] = ...,
+        stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
+    ) -> None: ...
+
+class GoalStatus(Message):
+    STATUS_UNKNOWN: Final = 0
+    STATUS_ACCEPTED: Final = 1
+    STATUS_EXECUTING: Final = 2
+    STATUS_CANCELING: Final = 3
+    STATUS_SUCCEEDED: Final = 4
+    STATUS_CANCELED: Final = 5
+    STATUS_ABORTED: Final = 6
+    goal_info: GoalInfo
+    status: int
+    def __init__(self, *, goal_info: GoalInfo | Mapping[str, object] = ..., status: int = ...) -> None: ...
+
+class GoalStatusArray(Message):
+    status_list: list[GoalStatus]
+    def __init__(self, *, status_list: Sequence[GoalStatus | Mapping[str, object]] = ...) -> None: ...

@@ -1,0 +1,43 @@
+# Written by `python -m graphflow.msgs.stubs`; do not edit.
+
+from collections.abc import Mapping, Sequence
+from typing import Final, TypeAlias
+
+from graphflow.msgs.action_msgs import msg as action_msgs
+from graphflow.msgs.base import Message, Service
+from graphflow.msgs.service_msgs import msg as service_msgs
+
+class CancelGoal_Request(Message):
+    goal_info: action_msgs.GoalInfo
+    def __init__(self, *, goal_info: action_msgs.GoalInfo | Mapping[str, object] = ...) -> None: ...
+
+class CancelGoal_Response(Message):
+    ERROR_NONE: Final = 0
+    ERROR_REJECTED: Final = 1
+    ERROR_UNKNOWN_GOAL_ID: Final = 2
+    ERROR_GOAL_TERMINATED: Final = 3
+    return_code: int
+    goals_canceling: list[action_msgs.GoalInfo]
+    def __init__(
+        self,
+        *,
+        return_code: int = ...,
+        goals_canceling: Sequence[action_msgs.GoalInfo | Mapping[str, object]] = ...,
+    ) -> None: ...
+
+class CancelGoal_Event(Message):
+    info: service_msgs.ServiceEventInfo
+    request: list[CancelGoal_Request]
+    response: list[CancelGoal_Response]
+    def __init__(
+        self,
+        *,
+        info: service_msgs.ServiceEventInfo | Mapping[str, object] = ...,
+        request: Sequence[CancelGoal_Request | Mapping[str, object]] = ...,
+        response: Sequence[CancelGoal_Response | Mapping[str, object]] = ...,
+    ) -> None: ...
+
+class CancelGoal(Service[CancelGoal_Request, CancelGoal_Response]):
+    Request: TypeAlias = CancelGoal_Request
+    Response: TypeAlias = CancelGoal_Response
+    Event: TypeAlias = CancelGoal_Event

@@ -1,0 +1,118 @@
+"""What all message, service and action classes have in common."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Generic, Self, TypeVar
+
+from graphflow.wire.schema import Message as Schema
+
+
+class Message:
+    """A ROS 2 message. Classes are made from definitions; see `graphflow.msgs`.
+
+    The constructor takes fields by keyword, checks them, and widens: integers for floats, sequences for arrays,
+    mappings or objects with the same fields for nested messages. Assignment does not check; a value that does not
+    fit is reported, by its field's path, when the message is encoded.
+    """
+
+    __slots__ = ()
+    SCHEMA: ClassVar[Schema]
+
+    def to_bytes(self) -> bytes:
+        """The message as CDR with its 4-byte header.
+
+        Raises:
+            EncodeError: A field holds a value its type cannot carry; the text begins with the field's path.
+        """
+        from graphflow.msgs.registry import codec
+
+        return codec(self.SCHEMA.name).encode(self)
+
+    @classmethod
+    def from_bytes(cls, payload: bytes) -> Self:
+        """Read a message from CDR. Its arrays are read-only views of `payload`.
+
+        Raises:
+            DecodeError: `payload` is no message of this type.
+        """
+        from graphflow.msgs.registry import codec
+
+        message: Self = codec(cls.SCHEMA.name).decode(payload)
+        return message
+
+    @classmethod
+    def type_name(cls) -> str:
+        """`package/msg/Name`."""
+        return cls.SCHEMA.name
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Field names and types as ROS 2 prints them."""
+        return {f.name: str(f.type).replace("/msg/", "/") for f in cls.SCHEMA.fields}
+
+    def __eq__(self, other: object) -> bool:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in self.SCHEMA.fields)
+
+    __hash__ = None  # type: ignore[assignment]  # messages can change
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{f.name}={_text(getattr(self, f.name))}" for f in self.SCHEMA.fields)
+        return f"{self.SCHEMA.name.replace('/', '.')}({values})"
+
+    def __copy__(self) -> Self:
+        # Not by the constructor: a received message can break a bound, and is copied as it is.
+        copy = object.__new__(type(self))
+        copy.__setstate__(self.__getstate__())
+        return copy
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {f.name: getattr(self, f.name) for f in self.SCHEMA.fields}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restore, (self.SCHEMA.name, self.__getstate__()))
+
+
+def _restore(name: str, state: dict[str, Any]) -> Message:
+    from graphflow.msgs.registry import interface_class
+
+    message: Message = object.__new__(interface_class(name))
+    message.__setstate__(state)
+    return message
+
+
+def _same(a: Any, b: Any) -> bool:
+    if hasattr(a, "tolist") or hasattr(b, "tolist"):
+        return len(a) == len(b) and bool((a == b).all() if hasattr(a, "tolist") else (b == a).all())
+    return bool(a == b)
+
+
+def _text(value: Any) -> str:
+    if hasattr(value, "tolist"):
+        return f"array({value.tolist()})" if value.size <= 16 else f"array({value[:16].tolist()[:-1]}..., {value.size})"
+    return repr(value)
+
+
+Request = TypeVar("Request", bound=Message)
+Response = TypeVar("Response", bound=Message)
+Goal = TypeVar("Goal", bound=Message)
+Result = TypeVar("Result", bound=Message)
+Feedback = TypeVar("Feedback", bound=Message)
+
+
+class Service(Generic[Request, Response]):
+    """A ROS 2 service type: `Request`, `Response` and `Event` are its message classes."""
+
+    NAME: ClassVar[str]
+    Event: ClassVar[type[Message]]
+
+
+class Action(Generic[Goal, Result, Feedback]):
+    """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes."""
+
+    NAME: ClassVar[str]

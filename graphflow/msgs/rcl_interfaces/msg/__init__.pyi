@@ -1,0 +1,168 @@
+# Written by `python -m graphflow.msgs.stubs`; do not edit.
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from graphflow import times
+from graphflow.msgs.base import Message
+from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
+
+class FloatingPointRange(Message):
+    from_value: float
+    to_value: float
+    step: float
+    def __init__(self, *, from_value: float = ..., to_value: float = ..., step: float = ...) -> None: ...
+
+class IntegerRange(Message):
+    from_value: int
+    to_value: int
+    step: int
+    def __init__(self, *, from_value: int = ..., to_value: int = ..., step: int = ...) -> None: ...
+
+class ListParametersResult(Message):
+    names: list[str]
+    prefixes: list[str]
+    def __init__(self, *, names: Sequence[str] = ..., prefixes: Sequence[str] = ...) -> None: ...
+
+class Log(Message):
+    DEBUG: Final = 10
+    INFO: Final = 20
+    WARN: Final = 30
+    ERROR: Final = 40
+    FATAL: Final = 50
+    stamp: builtin_interfaces.Time
+    level: int
+    name: str
+    msg: str
+    file: str
+    function: str
+    line: int
+    def __init__(
+        self,
+        *,
+        stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
+        level: int = ...,
+        name: str = ...,
+        msg: str = ...,
+        file: str = ...,
+        function: str = ...,
+        line: int = ...,
+    ) -> None: ...
+
+class LoggerLevel(Message):
+    LOG_LEVEL_UNKNOWN: Final = 0
+    LOG_LEVEL_DEBUG: Final = 10
+    LOG_LEVEL_INFO: Final = 20
+    LOG_LEVEL_WARN: Final = 30
+    LOG_LEVEL_ERROR: Final = 40
+    LOG_LEVEL_FATAL: Final = 50
+    name: str
+    level: int
+    def __init__(self, *, name: str = ..., level: int = ...) -> None: ...
+
+class Parameter(Message):
+    name: str
+    value: ParameterValue
+    def __init__(self, *, name: str = ..., value: ParameterValue | Mapping[str, object] = ...) -> None: ...
+
+class ParameterDescriptor(Message):
+    name: str
+    type: int
+    description: str
+    additional_constraints: str
+    read_only: bool
+    dynamic_typing: bool
+    floating_point_range: list[FloatingPointRange]
+    integer_range: list[IntegerRange]
+    def __init__(
+        self,
+        *,
+        name: str = ...,
+        type: int = ...,
+        description: str = ...,
+        additional_constraints: str = ...,
+        read_only: bool = ...,
+        dynamic_typing: bool = ...,
+        floating_point_range: Sequence[FloatingPointRange | Mapping[str, object]] = ...,
+        integer_range: Sequence[IntegerRange | Mapping[str, object]] = ...,
+    ) -> None: ...
+
+class ParameterEvent(Message):
+    stamp: builtin_interfaces.Time
+    node: str
+    new_parameters: list[Parameter]
+    changed_parameters: list[Parameter]
+    deleted_parameters: list[Parameter]
+    def __init__(
+        self,
+        *,
+        stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
+        node: str = ...,
+        new_parameters: Sequence[Parameter | Mapping[str, object]] = ...,
+        changed_parameters: Sequence[Parameter | Mapping[str, object]] = ...,
+        deleted_parameters: Sequence[Parameter | Mapping[str, object]] = ...,
+    ) -> None: ...
+
+class ParameterEventDescriptors(Message):
+    new_parameters: list[ParameterDescriptor]
+    changed_parameters: list[ParameterDescriptor]
+    deleted_parameters: list[ParameterDescriptor]
+    def __init__(
+        self,
+        *,
+        new_parameters: Sequence[ParameterDescriptor | Mapping[str, object]] = ...,
+        changed_parameters: Sequence[ParameterDescriptor | Mapping[str, object]] = ...,
+        deleted_parameters: Sequence[ParameterDescriptor | Mapping[str, object]] = ...,
+    ) -> None: ...
+
+class ParameterType(Message):
+    PARAMETER_NOT_SET: Final = 0
+    PARAMETER_BOOL: Final = 1
+    PARAMETER_INTEGER: Final = 2
+    PARAMETER_DOUBLE: Final = 3
+    PARAMETER_STRING: Final = 4
+    PARAMETER_BYTE_ARRAY: Final = 5
+    PARAMETER_BOOL_ARRAY: Final = 6
+    PARAMETER_INTEGER_ARRAY: Final = 7
+    PARAMETER_DOUBLE_ARRAY: Final = 8
+    PARAMETER_STRING_ARRAY: Final = 9
+    def __init__(self) -> None: ...
+
+class ParameterValue(Message):
+    type: int
+    bool_value: bool
+    integer_value: int
+    double_value: float
+    string_value: str
+    byte_array_value: npt.NDArray[np.uint8]
+    bool_array_value: npt.NDArray[np.bool_]
+    integer_array_value: npt.NDArray[np.int64]
+    double_array_value: npt.NDArray[np.float64]
+    string_array_value: list[str]
+    def __init__(
+        self,
+        *,
+        type: int = ...,
+        bool_value: bool = ...,
+        integer_value: int = ...,
+        double_value: float = ...,
+        string_value: str = ...,
+        byte_array_value: Sequence[int] | npt.NDArray[np.integer] = ...,
+        bool_array_value: Sequence[bool] | npt.NDArray[np.bool_] = ...,
+        integer_array_value: Sequence[int] | npt.NDArray[np.integer] = ...,
+        double_array_value: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
+        string_array_value: Sequence[str] = ...,
+    ) -> None: ...
+
+class SetLoggerLevelsResult(Message):
+    successful: bool
+    reason: str
+    def __init__(self, *, successful: bool = ..., reason: str = ...) -> None: ...
+
+class SetParametersResult(Message):
+    successful: bool
+    reason: str
+    def __init__(self, *, successful: bool = ..., reason: str = ...) -> None: ...

@@ -1,0 +1,220 @@
+"""Finds interface definitions by name and keeps what has been made of them: schemas, hashes, classes, codecs."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import InterfaceError, UnknownInterface
+from graphflow.names import did_you_mean
+from graphflow.wire import idl
+from graphflow.wire.schema import Action, Interface, Message, Service
+from graphflow.wire.typehash import type_hash
+
+if TYPE_CHECKING:
+    from graphflow.wire.cdr import Codec
+
+KINDS = ("msg", "srv", "action")
+BUNDLED = Path(__file__).parent
+_SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
+"""Kilted moved turtlesim's interfaces to a package of their own: other names on the wire, the same text."""
+
+_roots: list[Path] = []
+
+
+def add_root(folder: Path) -> None:
+    """Search `folder`, a project's `interfaces/`, for packages too."""
+    if folder not in _roots:
+        _roots.append(folder)
+
+
+def roots() -> Iterator[Path]:
+    """Folders of packages: the bundled one, those added, and every `interfaces/` where Python looks for modules."""
+    yield BUNDLED
+    yield from _roots
+    for entry in sys.path:
+        folder = Path(entry or ".") / "interfaces"
+        if folder not in _roots and folder.is_dir():
+            yield folder
+
+
+def package_folders(package: str) -> list[Path]:
+    """Where definitions of `package` lie; empty when there is no such package."""
+    name = _SAME_DEFINITIONS.get(package, package)
+    if not name.isidentifier():
+        return []
+    folders = [root / name for root in roots()]
+    return [f for f in folders if any((f / kind).is_dir() for kind in KINDS)]
+
+
+def packages() -> list[str]:
+    """The names of all packages that can be found."""
+    found = {f.name for root in roots() for f in root.iterdir() if f.is_dir() and package_folders(f.name)}
+    found |= {alias for alias, name in _SAME_DEFINITIONS.items() if name in found}
+    return sorted(found)
+
+
+def names_in(package: str, kind: str) -> list[str]:
+    """The names of a package's interfaces of one kind."""
+    return sorted({f.stem for folder in package_folders(package) for f in (folder / kind).glob(f"*.{kind}")})
+
+
+def full_name(text: str) -> str:
+    """`package/kind/Name` for `package/Name`, `package/kind/Name` or Python's `package.kind.Name`.
+
+    Raises:
+        UnknownInterface: There is none, or the short form fits several kinds.
+    """
+    parts = text.replace(".", "/").split("/")
+    if len(parts) == 3:
+        definition_file("/".join(parts))
+        return "/".join(parts)
+    if len(parts) != 2:
+        raise UnknownInterface(
+            f"{text!r} is no interface name; write package/msg/Name, for example std_msgs/msg/String"
+        )
+    package, name = parts
+    found = [kind for kind in KINDS if name in names_in(package, kind)]
+    if not found:
+        raise UnknownInterface(_unknown(package, name, [n for k in KINDS for n in names_in(package, k)]))
+    if len(found) > 1:
+        raise UnknownInterface(f"{text!r} is a {' and a '.join(found)}; write {package}/{found[0]}/{name}")
+    return f"{package}/{found[0]}/{name}"
+
+
+def _unknown(package: str, name: str, known: list[str]) -> str:
+    if not package_folders(package):
+        return f"there is no interface package {package!r}{did_you_mean(package, packages())}"
+    return f"package {package!r} has no interface {name!r}{did_you_mean(name, known)}"
+
+
+def definition_file(name: str) -> Path:
+    """The file that defines `package/kind/Name`.
+
+    Raises:
+        UnknownInterface: There is none; the text names the nearest.
+    """
+    package, kind, base = name.split("/")
+    if kind in KINDS and base.isidentifier():
+        for folder in package_folders(package):
+            path = folder / kind / f"{base}.{kind}"
+            if path.is_file():
+                return path
+    raise UnknownInterface(_unknown(package, base, names_in(package, kind)))
+
+
+@cache
+def interface(name: str) -> Interface:
+    """The schema of `package/kind/Name`.
+
+    Raises:
+        UnknownInterface: There is no such definition.
+        InterfaceError: Its text is wrong.
+    """
+    path = definition_file(name)
+    try:
+        return idl.parse(name, path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InterfaceError(f"{path}: {error}") from None
+    except InterfaceError as error:
+        raise InterfaceError(f"{path}: {error}") from None
+
+
+@cache
+def message_schema(name: str) -> Message:
+    """The schema of a message, also of those derived from services and actions (`.../srv/Spawn_Request`).
+
+    Raises:
+        UnknownInterface, InterfaceError: as `interface`; also when a type it is made of is wrong, or contains itself.
+    """
+    message = _part(name)
+    _refuse_cycle(message, (name,), set())
+    return message
+
+
+def _refuse_cycle(message: Message, chain: tuple[str, ...], seen: set[str]) -> None:
+    for base in (f.type.base for f in message.fields if not f.type.is_primitive):
+        if base in chain:
+            raise InterfaceError(f"a message cannot contain itself: {' in '.join([base, *reversed(chain)])}")
+        if base not in seen:
+            _refuse_cycle(_part(base), (*chain, base), seen)
+            seen.add(base)
+
+
+@cache
+def _part(name: str) -> Message:
+    package, kind, base = name.split("/")
+    if kind == "msg":
+        found = interface(name)
+        assert isinstance(found, Message)
+        return found
+    owner = interface(f"{package}/{kind}/{base.partition('_')[0]}")
+    if isinstance(owner, (Service, Action)):
+        for part in owner.messages:
+            if part.name == name:
+                return part
+    raise UnknownInterface(f"{owner.name} has no part {base!r}")
+
+
+def service_schema(name: str) -> Service:
+    """The schema of a service, also of the two of an action (`.../action/Fibonacci_SendGoal`)."""
+    package, kind, base = name.split("/")
+    owner = interface(f"{package}/{kind}/{base.partition('_')[0]}")
+    if isinstance(owner, Service):
+        return owner
+    if isinstance(owner, Action):
+        for service in owner.services:
+            if service.name == name:
+                return service
+    raise UnknownInterface(f"{name} is no service")
+
+
+@cache
+def hash_of(name: str) -> str:
+    """RIHS01 of a message, or of a service or action as a whole."""
+    base = name.rpartition("/")[2]
+    if "_" in base and not base.endswith(("_SendGoal", "_GetResult")):
+        return type_hash(message_schema(name), message_schema)
+    if "_" in base:
+        return type_hash(service_schema(name).whole, message_schema)
+    found = interface(name)
+    return type_hash(found if isinstance(found, Message) else found.whole, message_schema)
+
+
+@cache
+def interface_class(name: str) -> type:
+    """The Python class of `package/kind/Name`, or of a derived message.
+
+    Raises:
+        UnknownInterface, InterfaceError: as `interface`.
+    """
+    from graphflow.msgs import build
+
+    if "/msg/" in name or "_" in name.rpartition("/")[2]:
+        return build.message_class(message_schema(name))
+    found = interface(name)
+    return build.service_class(found) if isinstance(found, Service) else build.action_class(found)  # type: ignore[arg-type]
+
+
+@cache
+def codec(name: str) -> Codec:
+    """The compiled codec of a message."""
+    from graphflow.msgs.build import checked
+    from graphflow.wire.cdr import compile_codec
+    from graphflow.wire.codegen import Types
+
+    return compile_codec(message_schema(name), Types(message_schema, interface_class, checked))
+
+
+def forget() -> None:
+    """Read every definition anew from here on; classes already made stay as they are. For editors and tests."""
+    for memory in (interface, _part, message_schema, hash_of, interface_class, codec):
+        memory.cache_clear()
+
+
+def example(name: str) -> Any:
+    """A message with every field at its default."""
+    return interface_class(name)()

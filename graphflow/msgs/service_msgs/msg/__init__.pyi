@@ -1,0 +1,29 @@
+# Written by `python -m graphflow.msgs.stubs`; do not edit.
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from graphflow import times
+from graphflow.msgs.base import Message
+from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
+
+class ServiceEventInfo(Message):
+    REQUEST_SENT: Final = 0
+    REQUEST_RECEIVED: Final = 1
+    RESPONSE_SENT: Final = 2
+    RESPONSE_RECEIVED: Final = 3
+    event_type: int
+    stamp: builtin_interfaces.Time
+    client_gid: npt.NDArray[np.uint8]
+    sequence_number: int
+    def __init__(
+        self,
+        *,
+        event_type: int = ...,
+        stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
+        client_gid: Sequence[int] | npt.NDArray[np.integer] = ...,
+        sequence_number: int = ...,
+    ) -> None: ...

@@ -1,0 +1,139 @@
+"""Writes what editors and type checkers see of the bundled interfaces: `python -m graphflow.msgs.stubs`.
+
+The classes are made at run time, so a checker cannot read them. A stub says what an instance holds, and, wider, what
+its constructor takes: `base.Message` has the rules, `build.convert` keeps them.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from graphflow.msgs import registry
+from graphflow.wire.schema import INTEGER_RANGES, NUMERIC, STRINGS, Action, Field, FieldType, Message, Service
+
+_HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n"
+_LINE_LENGTH = 120
+_TIMES = {f"builtin_interfaces/msg/{name}": f"times.{name}" for name in ("Time", "Duration")}
+"""Message types that `graphflow.times` has a counterpart of, with the same fields."""
+_ARRAYS_FOR = {"bool": "np.bool_", "int": "np.integer", "float": "np.floating | np.integer"}
+"""The scalar types of numpy arrays that convert to an array field whose elements are such Python values."""
+
+
+def stub(package: str, kind: str) -> str:
+    """The stub of `graphflow.msgs.<package>.<kind>`; for a bundled package, of its bundled definitions only."""
+    folder = registry.package_folders(package)[0] / kind
+    names = sorted(file.stem for file in folder.glob(f"*.{kind}"))
+    body = "\n\n".join(text for name in names for text in _classes(f"{package}/{kind}/{name}"))
+    return f"{_HEADER}\n{_imports(body)}\n\n{body}\n"
+
+
+def bundled_stubs() -> dict[Path, str]:
+    """The text of every stub of the bundled packages, by file."""
+    files = {}
+    for package in registry.packages():
+        definitions = registry.package_folders(package)[0]
+        if definitions.parent != registry.BUNDLED:
+            continue
+        files[registry.BUNDLED / package / "__init__.pyi"] = _HEADER
+        for kind in registry.KINDS:
+            if (definitions / kind).is_dir():
+                files[registry.BUNDLED / package / kind / "__init__.pyi"] = stub(package, kind)
+    return files
+
+
+def _imports(body: str) -> str:
+    """The imports that `body` needs, in the order the linter wants. Nested types stand behind their package's name."""
+    words = set(re.findall(r"\w+", body))
+    qualifiers = set(re.findall(r"\b(\w+)\.[A-Z]", body)) - {"np", "npt", "times"}
+    ours = [f"from graphflow.msgs.{package} import msg as {package}" for package in qualifiers]
+    ours += _import("graphflow.msgs.base", ("Action", "Message", "Service"), words)
+    ours += ["from graphflow import times"] if "times." in body else []
+    numpy = ["import numpy as np", "import numpy.typing as npt"] if "npt." in body else []
+    standard = _import("collections.abc", ("Mapping", "Sequence"), words)
+    standard += _import("typing", ("Final", "TypeAlias"), words)
+    return "\n\n".join("\n".join(group) for group in (standard, numpy, sorted(ours)) if group)
+
+
+def _import(module: str, names: tuple[str, ...], words: set[str]) -> list[str]:
+    used = [name for name in names if name in words]
+    return [f"from {module} import {', '.join(used)}"] if used else []
+
+
+def _classes(full_name: str) -> list[str]:
+    name = full_name.rpartition("/")[2]
+    match registry.interface(full_name):
+        case Message() as message:
+            return [_message(message)]
+        case Service() as service:
+            return [*_service_messages(service), _holder(name, "Service", ("Request", "Response"), ("Event",))]
+        case Action() as action:
+            parts = (action.goal, action.result, action.feedback, action.feedback_message)
+            carriers = [text for service in action.services for text in _service_messages(service)]
+            return [*map(_message, parts), *carriers, _holder(name, "Action", ("Goal", "Result", "Feedback"))]
+
+
+def _service_messages(service: Service) -> list[str]:
+    return [_message(part) for part in (service.request, service.response, service.event)]
+
+
+def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] = ()) -> str:
+    """A service or action. Without `TypeAlias` a checker takes its parts for variables, and refuses them as types."""
+    aliases = [f"    {part}: TypeAlias = {name}_{part}" for part in (*parts, *more)]
+    return "\n".join([f"class {name}({base}[{', '.join(f'{name}_{part}' for part in parts)}]):", *aliases])
+
+
+def _message(message: Message) -> str:
+    module, _, name = message.name.rpartition("/")
+    constants = (f"{c.name}: Final = {c.value!r}" for c in message.constants)
+    attributes = (f"{f.name}: {_held(f.type, module)}" for f in message.fields)
+    return "\n    ".join([f"class {name}(Message):", *constants, *attributes, _constructor(message.fields, module)])
+
+
+def _constructor(fields: tuple[Field, ...], module: str) -> str:
+    parameters = [f"{field.name}: {_taken(field.type, module)} = ..." for field in fields]
+    line = f"def __init__(self{', *, ' if fields else ''}{', '.join(parameters)}) -> None: ..."
+    if len(line) + 4 <= _LINE_LENGTH:
+        return line
+    return "\n        ".join(["def __init__(", "self,", "*,", *(f"{p}," for p in parameters)]) + "\n    ) -> None: ..."
+
+
+def _held(type_: FieldType, module: str) -> str:
+    """The type of a field's value, written in the stub of `module` (`package/kind`)."""
+    if not type_.array:
+        return _element(type_.base, module)
+    if type_.base in NUMERIC:
+        scalar = {"bool": "bool_", "byte": "uint8", "char": "uint8"}.get(type_.base, type_.base)
+        return f"npt.NDArray[np.{scalar}]"
+    return f"list[{_element(type_.base, module)}]"
+
+
+def _taken(type_: FieldType, module: str) -> str:
+    """The type of the constructor's parameter for a field. `Sequence[int]` covers bytes."""
+    element = _element(type_.base, module)
+    if type_.array and type_.base in NUMERIC:
+        return f"Sequence[{element}] | npt.NDArray[{_ARRAYS_FOR[element]}]"
+    if not type_.is_primitive:
+        element = " | ".join(filter(None, (element, "Mapping[str, object]", _TIMES.get(type_.base))))
+    elif type_.base in ("byte", "char"):
+        element = "int | bytes"
+    return f"Sequence[{element}]" if type_.array else element
+
+
+def _element(base: str, module: str) -> str:
+    if base in NUMERIC:
+        return "bool" if base == "bool" else "int" if base in INTEGER_RANGES else "float"
+    if base in STRINGS:
+        return "str"
+    home, _, name = base.rpartition("/")
+    return name if home == module else f"{home.partition('/')[0]}.{name}"
+
+
+def main() -> None:
+    for file, text in bundled_stubs().items():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

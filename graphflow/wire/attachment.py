@@ -1,0 +1,49 @@
+"""The 33 bytes beside every publication, request and response: sequence number, time, sender.
+
+Layout: int64 sequence number, int64 source time in ns since 1970, the byte 16, then the 16 bytes of the GID;
+little-endian. Jazzy before 0.2.4 wrote 77 bytes with names, which are not read here.
+
+Source: rmw_zenoh attachment_helpers.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple
+
+from graphflow.errors import DecodeError
+
+_LAYOUT = struct.Struct("<qqB16s")
+SIZE = _LAYOUT.size
+
+
+class Attachment(NamedTuple):
+    sequence: int
+    """Counts from 1 per publisher or client."""
+    source_ns: int
+    """When it was sent, nanoseconds since 1970 on the sender's clock."""
+    gid: bytes
+    """16 bytes: who sent it, or, beside a response, who asked."""
+
+
+def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
+    """The attachment's bytes.
+
+    Args:
+        gid: 16 bytes.
+    """
+    return _LAYOUT.pack(sequence, source_ns, 16, gid)
+
+
+def unpack(data: bytes) -> Attachment:
+    """Read an attachment.
+
+    Raises:
+        DecodeError: `data` has another length or layout.
+    """
+    if len(data) != SIZE:
+        raise DecodeError(f"attachment of {len(data)} bytes; rmw_zenoh's has {SIZE}")
+    if data[16] != 16:
+        raise DecodeError(f"attachment with a GID of {data[16]} bytes; rmw_zenoh's has 16")
+    sequence, source_ns, _, gid = _LAYOUT.unpack(data)
+    return Attachment(sequence, source_ns, gid)

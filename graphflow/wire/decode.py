@@ -1,0 +1,169 @@
+"""Writes and compiles the decoder of a message type."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from typing import Any
+
+from graphflow.errors import DecodeError
+from graphflow.wire.codegen import FORMATS, Code, Order, Types, min_size
+from graphflow.wire.schema import Field, FieldType, Message
+
+Decode = Callable[[bytes], Any]
+
+
+class Decoder(Code):
+    def __init__(self, types: Types, order: Order) -> None:
+        super().__init__(types, order)
+        self.names["new"] = object.__new__
+
+    def flush(self) -> None:
+        run = self.take_run("unpack_from")
+        if run is None:
+            return
+        layout, targets, size = run
+        start = "p" if self.position is None else str(self.position - (size or 0))
+        unpack = f"({', '.join(targets)},) = " if targets else ""
+        if size is None:
+            self.line(f"s = {layout}")
+            self.line(f"{unpack}s.unpack_from(buf, p)")
+            self.line("p += s.size")
+        else:
+            self.line(f"{unpack}{layout}(buf, {start})")
+            if self.position is None:
+                self.line(f"p += {size}")
+
+    def go_dynamic(self) -> None:
+        self.flush()
+        if self.position is not None:
+            self.line(f"p = {self.position}")
+            self.position = None
+
+    def message(self, message: Message, local: str, target: str = "") -> None:
+        cls = self.constant("C", self.types.message_class(message.name))
+        self.line(f"{local} = {f'{target} = ' if target else ''}new({cls})")
+        if not message.fields:
+            self.number("x", "")
+        for field in message.fields:
+            self.field(field, f"{local}.{field.name}")
+
+    def field(self, field: Field, target: str) -> None:
+        type_ = field.type
+        if not type_.array:
+            self.single(type_, target)
+        elif type_.base in FORMATS:
+            self.numeric_array(type_, target)
+        else:
+            self.object_array(type_, target)
+
+    def single(self, type_: FieldType, target: str) -> None:
+        if type_.base in FORMATS:
+            self.number(FORMATS[type_.base], target)
+        elif type_.base in ("string", "wstring"):
+            self.string(type_, target)
+        else:
+            local = self.fresh("o")
+            self.message(self.types.schema(type_.base), local, target)
+
+    def string(self, type_: FieldType, target: str) -> None:
+        n = self.fresh("n")
+        self.number("I", n)
+        self.go_dynamic()
+        wide = type_.base == "wstring"
+        self.line(f"e = p + {n}{' * 4' if wide else ''}")
+        self.line("if e > size: raise ValueError('a string ends after the payload')")
+        if wide:
+            self.names["narrow"] = _narrow
+            self.line(f"{target} = narrow(buf[p:e], {self.order!r})")
+        else:
+            self.line(f"{target} = buf[p:e - 1].decode() if {n} else ''")
+        self.line("p = e")
+
+    def numeric_array(self, type_: FieldType, target: str) -> None:
+        from graphflow.wire import arrays
+
+        size = struct.calcsize(FORMATS[type_.base])
+        dtype = arrays.DTYPES[type_.base].newbyteorder("<" if self.order == "<" else ">")
+        d = self.constant("D", dtype)
+        self.names["array_view"] = arrays.view
+        n = str(type_.size)
+        if type_.array != "fixed":
+            n = self.fresh("n")
+            self.number("I", n)
+        self.go_dynamic()
+        if size > 1:
+            align = f"p += (4 - p) & {size - 1}"
+            self.line(align if type_.array == "fixed" else f"if {n}: {align}")
+        self.line(f"e = p + {n} * {size}")
+        self.line("if e > size: raise ValueError('an array ends after the payload')")
+        self.line(f"{target} = array_view(buf, {d}, {n}, p)")
+        self.line("p = e")
+
+    def object_array(self, type_: FieldType, target: str) -> None:
+        n, items = str(type_.size), self.fresh("l")
+        if type_.array != "fixed":
+            n = self.fresh("n")
+            self.number("I", n)
+        self.go_dynamic()
+        least = min_size(type_._replace(array=""), self.types.schema)
+        self.line(f"if {n} * {least} > size - p: raise ValueError('a sequence claims more than the payload holds')")
+        self.line(f"{items} = []")
+        self.line(f"for _ in range({n}):")
+        self.depth += 1
+        item = self.fresh("i")
+        if type_.is_primitive:
+            self.single(type_._replace(array=""), item)
+        else:
+            decode = self.constant("decode", compile_decode_part(self.types.schema(type_.base), self.types, self.order))
+            self.line(f"{item}, p = {decode}(buf, p, size)")
+        self.line(f"{items}.append({item})")
+        self.depth -= 1
+        self.line(f"{target} = {items}")
+
+
+def _narrow(utf32: bytes, order: Order) -> str:
+    """Code units of UTF-16, each sent as a uint32, as text."""
+    count = len(utf32) // 4
+    units = struct.unpack(f"{order}{count}I", utf32)
+    if max(units, default=0) > 0xFFFF:
+        raise ValueError("a wstring has a code unit above 0xffff")
+    return struct.pack(f"<{count}H", *units).decode("utf-16-le", "surrogatepass")
+
+
+def compile_decode_part(message: Message, types: Types, order: Order) -> Any:
+    """`decode(buf, p, size) -> (message, p)`: read from position p."""
+    code = Decoder(types, order)
+    code.position = None
+    code.message(message, "o")
+    code.flush()
+    code.line("return o, p")
+    return code.compile("decode", "def decode(buf, p, size):", message.name)
+
+
+def compile_decode(message: Message, types: Types, order: Order, otherwise: Decode | None) -> Decode:
+    code = Decoder(types, order)
+    code.names["otherwise"], code.names["failed"] = otherwise, _failed
+    code.names["name"] = message.name
+    if otherwise is not None:
+        code.line("if buf[:2] != b'\\0\\1': return otherwise(buf)")
+    code.line("try:")
+    code.depth += 1
+    before = len(code.lines)
+    code.message(message, "o")
+    code.flush()
+    if code.position is None:
+        code.lines.insert(before, "        size = len(buf)")
+    code.line("return o")
+    code.depth -= 1
+    code.names["Errors"] = (struct.error, ValueError, OverflowError)
+    code.line("except Errors as error:")
+    code.line("    failed(name, buf, error)")
+    result: Decode = code.compile("decode", "def decode(buf):", message.name)
+    return result
+
+
+def _failed(name: str, buf: bytes, error: Exception) -> None:
+    if isinstance(error, struct.error):
+        raise DecodeError(f"{name}: the payload of {len(buf)} bytes ends early") from None
+    raise DecodeError(f"{name}: {error} ({len(buf)} bytes)") from None

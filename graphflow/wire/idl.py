@@ -1,0 +1,253 @@
+"""The text of .msg, .srv and .action files read into schemas.
+
+Every rule broken is an `InterfaceError` with the line and the rule, since students write these files by hand.
+
+Source: ROS 2 interface definition article, "Field names", "Constants", "Default values".
+"""
+
+from __future__ import annotations
+
+import re
+from keyword import iskeyword
+
+from graphflow.errors import InterfaceError
+from graphflow.names import did_you_mean
+from graphflow.wire.schema import (
+    INTEGER_RANGES,
+    PRIMITIVES,
+    STRINGS,
+    Action,
+    Constant,
+    Field,
+    FieldType,
+    Interface,
+    Message,
+    Service,
+    Value,
+    string_length,
+)
+
+_TYPE = re.compile(r"(?P<base>[A-Za-z0-9_/]+)(?:<=(?P<bound>\d+))?(?:\[(?P<array><=\d+|\d*)\])?\Z")
+_FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
+_CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9])*\Z")
+_TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+_PACKAGE_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*\Z")
+_STRING = re.compile(r"""(?P<q>["'])(?P<body>(?:\\.|(?!(?P=q))[^\\])*)(?P=q)\Z""")
+_ALIASES = {"Header": "std_msgs/msg/Header"}
+
+
+def check_interface_name(package: str, name: str) -> None:
+    """Refuse a package or type name that ROS 2 would refuse.
+
+    Raises:
+        InterfaceError: with the rule.
+    """
+    if not _PACKAGE_NAME.match(package):
+        raise InterfaceError(f"package {package!r}: lower-case letters, digits and single _, beginning with a letter")
+    if not _TYPE_NAME.match(name):
+        raise InterfaceError(f"type name {name!r}: letters and digits only, beginning with a capital (CamelCase)")
+
+
+def parse(full_name: str, text: str) -> Interface:
+    """Read the definition of `package/msg/Name`, `package/srv/Name` or `package/action/Name`.
+
+    Raises:
+        InterfaceError: the first fault, with its line in `text`.
+    """
+    package, kind, name = full_name.split("/")
+    check_interface_name(package, name)
+    sections = _sections(full_name, text, {"msg": 1, "srv": 2, "action": 3}[kind])
+    if kind == "msg":
+        return _message(full_name, package, sections[0])
+    if kind == "srv":
+        request, response = sections
+        return Service(
+            full_name,
+            _message(f"{full_name}_Request", package, request),
+            _message(f"{full_name}_Response", package, response),
+        )
+    goal, result, feedback = sections
+    return Action(
+        full_name,
+        _message(f"{full_name}_Goal", package, goal),
+        _message(f"{full_name}_Result", package, result),
+        _message(f"{full_name}_Feedback", package, feedback),
+    )
+
+
+_Line = tuple[int, str]
+
+
+def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
+    sections: list[list[_Line]] = [[]]
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip() == "---":
+            sections.append([])
+        else:
+            bare = _without_comment(line).strip()
+            if bare:
+                sections[-1].append((number, bare))
+    if len(sections) != expected:
+        raise InterfaceError(
+            f"{full_name}: expected {expected - 1} line(s) of '---' "
+            f"between its {expected} section(s), found {len(sections) - 1}"
+        )
+    return sections
+
+
+def _without_comment(line: str) -> str:
+    quote, escaped = "", False
+    for i, c in enumerate(line):
+        if escaped:
+            escaped = False
+        elif quote:
+            escaped = c == "\\"
+            if c == quote:
+                quote = ""
+        elif c in "\"'":
+            quote = c
+        elif c == "#":
+            return line[:i]
+    return line
+
+
+def _message(name: str, package: str, lines: list[_Line]) -> Message:
+    fields: list[Field] = []
+    constants: list[Constant] = []
+    seen: set[str] = set()
+    for number, line in lines:
+        try:
+            member = _member(package, line)
+            if member.name in seen:
+                raise InterfaceError(f"{member.name!r} is defined twice")
+        except InterfaceError as error:
+            raise InterfaceError(f"{name} line {number}: {error}") from None
+        seen.add(member.name)
+        if isinstance(member, Field):
+            fields.append(member)
+        else:
+            constants.append(member)
+    return Message(name, tuple(fields), tuple(constants))
+
+
+def _member(package: str, line: str) -> Field | Constant:
+    type_text, *more = line.split(None, 1)
+    if not more:
+        raise InterfaceError(f"{line!r}: write TYPE NAME, perhaps with a default")
+    rest = more[0]
+    type_ = parse_type(type_text, package)
+    constant = re.match(r"(\w+)\s*=(?!=)\s*(.*)\Z", rest)
+    if constant:
+        return _constant(type_, constant.group(1), constant.group(2))
+    name, *more = rest.split(None, 1)
+    if not _FIELD_NAME.match(name):
+        raise InterfaceError(
+            f"field name {name!r}: lower-case letters, digits and single _, beginning with a letter, not ending with _"
+        )
+    if iskeyword(name):
+        raise InterfaceError(f"field name {name!r}: it is a word of Python's, so no attribute can be called that")
+    return Field(name, type_, _literal(type_, more[0]) if more else None)
+
+
+def parse_type(text: str, package: str) -> FieldType:
+    """`float64[3]`, `string<=8`, `Point`, `geometry_msgs/Point[]` as a type; bare names are of `package`.
+
+    Raises:
+        InterfaceError: it is none of these.
+    """
+    m = _TYPE.match(text)
+    if not m:
+        raise InterfaceError(f"{text!r} is no type; write for example float64, string<=8, Point or float64[<=3]")
+    base, bound = m["base"], m["bound"]
+    if base not in PRIMITIVES:
+        base = _type_name(base, package)
+    if bound is not None and base not in STRINGS:
+        raise InterfaceError(f"{text!r}: only string and wstring take <=N; an array's bound goes inside its brackets")
+    if bound is not None and int(bound) == 0:
+        raise InterfaceError(f"{text!r}: a string of at most 0 characters cannot be")
+    array = m["array"]
+    if array is None:
+        return FieldType(base, int(bound or 0))
+    if array == "":
+        return FieldType(base, int(bound or 0), "unbounded")
+    if array.startswith("<="):
+        return FieldType(base, int(bound or 0), "bounded", _size(array[2:], text))
+    return FieldType(base, int(bound or 0), "fixed", _size(array, text))
+
+
+def _size(digits: str, text: str) -> int:
+    size = int(digits)
+    if size == 0:
+        raise InterfaceError(f"{text!r}: an array of 0 elements cannot be")
+    return size
+
+
+def _type_name(text: str, package: str) -> str:
+    parts = text.split("/")
+    if len(parts) == 1:
+        if text in _ALIASES:
+            return _ALIASES[text]
+        if not _TYPE_NAME.match(text):
+            raise InterfaceError(f"{text!r} is no type{did_you_mean(text, PRIMITIVES)}")
+        return f"{package}/msg/{text}"
+    if len(parts) == 2 or (len(parts) == 3 and parts[1] == "msg"):
+        check_interface_name(parts[0], parts[-1])
+        return f"{parts[0]}/msg/{parts[-1]}"
+    raise InterfaceError(f"{text!r} is no type; write package/Name")
+
+
+def _constant(type_: FieldType, name: str, text: str) -> Constant:
+    if type_.array or not type_.is_primitive or type_.base == "wstring":
+        raise InterfaceError(f"constant {name!r}: only numbers, bool and string can be constants, not {type_}")
+    if not _CONSTANT_NAME.match(name):
+        raise InterfaceError(f"constant name {name!r}: capitals, digits and single _ only")
+    if type_.base == "string" and not _STRING.match(text):
+        return Constant(name, "string", text.strip())
+    value = _literal(type_, text)
+    assert not isinstance(value, list)
+    return Constant(name, type_.base, value)
+
+
+def _literal(type_: FieldType, text: str) -> Value:
+    if not type_.is_primitive:
+        raise InterfaceError(f"{text!r}: only primitive types have defaults, not {type_}")
+    if not type_.array:
+        return _scalar(type_, text)
+    if not (text.startswith("[") and text.endswith("]")):
+        raise InterfaceError(f"default {text!r}: an array's default is written [a, b, c]")
+    items: list[Value] = [_scalar(type_, item) for item in _split_items(text[1:-1])]
+    if type_.array == "fixed" and len(items) != type_.size:
+        raise InterfaceError(f"default {text!r}: {type_} takes {type_.size} values, these are {len(items)}")
+    if type_.array == "bounded" and len(items) > type_.size:
+        raise InterfaceError(f"default {text!r}: {type_} takes at most {type_.size} values, these are {len(items)}")
+    return items
+
+
+def _split_items(text: str) -> list[str]:
+    return [
+        item.strip() for item in re.findall(r"""(?:"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,])+""", text) if item.strip()
+    ]
+
+
+def _scalar(type_: FieldType, text: str) -> Value:
+    base = type_.base
+    if base in STRINGS:
+        m = _STRING.match(text)
+        value = re.sub(r"\\(.)", r"\1", m["body"]) if m else text
+        if type_.string_bound and string_length(base, value) > type_.string_bound:
+            raise InterfaceError(f"{text!r} is longer than {type_}")
+        return value
+    try:
+        if base == "bool":
+            return {"true": True, "1": True, "false": False, "0": False}[text.lower()]
+        if base in INTEGER_RANGES:
+            low, high = INTEGER_RANGES[base]
+            number = int(text, 0)
+            if not low <= number <= high:
+                raise InterfaceError(f"{text} does not fit {base}: {low} to {high}")
+            return number
+        return float(text)
+    except (KeyError, ValueError) as error:
+        if isinstance(error, InterfaceError):
+            raise
+        raise InterfaceError(f"{text!r} is no value of {base}") from None

@@ -1,0 +1,166 @@
+"""Liveliness tokens: how nodes and endpoints announce themselves, and their QoS in a few characters.
+
+    @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
+    @ros2_lv/<domain>/<zid>/<nid>/<eid>/MP|MS|SS|SC/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
+
+Every `/` inside a chunk is written `%`. Parsing is lenient, as peers of other versions add chunks and values.
+
+Source: rmw_zenoh design document, "Graph cache"; rmw_zenoh liveliness_utils.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from functools import cached_property
+from typing import NamedTuple
+
+from graphflow.names import join
+from graphflow.qos import DEFAULT_DEPTH, INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
+from graphflow.wire import keyexpr
+from graphflow.wire.gid import gid
+
+ADMIN_SPACE = "@ros2_lv"
+
+
+class Kind(StrEnum):
+    NODE = "NN"
+    PUBLISHER = "MP"
+    SUBSCRIPTION = "MS"
+    SERVICE = "SS"
+    CLIENT = "SC"
+
+
+def _mangle(name: str) -> str:
+    return name.replace("/", "%")
+
+
+def _demangle(name: str) -> str:
+    return name.replace("%", "/")
+
+
+class _Entity(NamedTuple):
+    domain: int
+    zid: str
+    nid: int
+    eid: int
+    kind: Kind
+    namespace: str
+    node: str
+    name: str = ""
+    type: str = ""
+    hash: str = ""
+    qos: Qos = Qos(depth=DEFAULT_DEPTH)
+    enclave: str = "/"
+
+
+class Entity(_Entity):
+    """A node (then `name`, `type` and `hash` are empty) or one of its endpoints."""
+
+    @property
+    def node_name(self) -> str:
+        """The node's full name."""
+        return join(self.namespace, self.node)
+
+    @cached_property
+    def token(self) -> str:
+        """The token; of a parsed entity, to the letter as it was received, as its GID is the hash of that."""
+        parts = [
+            ADMIN_SPACE,
+            str(self.domain),
+            self.zid,
+            str(self.nid),
+            str(self.eid),
+            self.kind.value,
+            _mangle(self.enclave),
+            _mangle(self.namespace),
+            self.node,
+        ]
+        if self.kind is not Kind.NODE:
+            parts += [_mangle(self.name), keyexpr.dds_type(self.type), self.hash, qos_chunk(self.qos)]
+        return "/".join(parts)
+
+    @cached_property
+    def gid(self) -> bytes:
+        return gid(self.token)
+
+    @property
+    def data_key(self) -> str:
+        return str(keyexpr.DataKey(self.domain, self.name, self.type, self.hash))
+
+
+def watch_key(domain: int) -> str:
+    """The key that all tokens of a domain match."""
+    return f"{ADMIN_SPACE}/{domain}/**"
+
+
+def parse_token(token: str) -> Entity | None:
+    """The entity that a token announces, or None when it announces none that is known here."""
+    parts = token.split("/")
+    if len(parts) < 9 or parts[0] != ADMIN_SPACE or not all(parts):
+        return None
+    _, domain, zid, nid, eid, kind, enclave, namespace, node = parts[:9]
+    if kind not in Kind.__members__.values() or not (domain.isdecimal() and nid.isdecimal() and eid.isdecimal()):
+        return None
+    head = (int(domain), zid, int(nid), int(eid), Kind(kind), _demangle(namespace), node)
+    if kind == Kind.NODE:
+        entity = Entity(*head, enclave=_demangle(enclave))
+    elif len(parts) < 13:
+        return None
+    else:
+        name, type_, hash_, qos = parts[9:13]
+        entity = Entity(*head, _demangle(name), keyexpr.ros_type(type_), hash_, parse_qos(qos), _demangle(enclave))
+    entity.token = token
+    return entity
+
+
+_SECOND = 1_000_000_000
+
+
+def qos_chunk(qos: Qos) -> str:
+    """A profile in a token: fields that equal rmw_zenoh's defaults are left empty."""
+
+    def unless(value: int, default: int) -> str:
+        return "" if value == default else str(value)
+
+    def span(ns: int) -> str:
+        sec, nsec = divmod(ns, _SECOND)
+        return f"{unless(sec, INFINITE_NS // _SECOND)},{unless(nsec, INFINITE_NS % _SECOND)}"
+
+    return ":".join(
+        [
+            unless(qos.reliability, Reliability.RELIABLE),
+            unless(qos.durability, Durability.VOLATILE),
+            f"{unless(qos.history, History.KEEP_LAST)},{unless(qos.depth, DEFAULT_DEPTH)}",
+            span(qos.deadline_ns),
+            span(qos.lifespan_ns),
+            f"{unless(qos.liveliness, Liveliness.AUTOMATIC)},{span(qos.lease_ns)}",
+        ]
+    )
+
+
+def parse_qos(chunk: str) -> Qos:
+    """Read a QoS chunk; whatever is missing or not understood takes its default."""
+    fields = [part.split(",") for part in chunk.split(":")]
+
+    def number(field: int, part: int, default: int) -> int:
+        try:
+            return int(fields[field][part])
+        except (IndexError, ValueError):
+            return default
+
+    def span(field: int, part: int) -> int:
+        sec = number(field, part, INFINITE_NS // _SECOND)
+        return sec * _SECOND + number(field, part + 1, INFINITE_NS % _SECOND)
+
+    return Qos(
+        depth=number(2, 1, DEFAULT_DEPTH),
+        reliability=Reliability.BEST_EFFORT if number(0, 0, 1) == Reliability.BEST_EFFORT else Reliability.RELIABLE,
+        durability=Durability.TRANSIENT_LOCAL if number(1, 0, 2) == Durability.TRANSIENT_LOCAL else Durability.VOLATILE,
+        history=History.KEEP_ALL if number(2, 0, 1) == History.KEEP_ALL else History.KEEP_LAST,
+        deadline_ns=span(3, 0),
+        lifespan_ns=span(4, 0),
+        liveliness=Liveliness.MANUAL_BY_TOPIC
+        if number(5, 0, 1) == Liveliness.MANUAL_BY_TOPIC
+        else Liveliness.AUTOMATIC,
+        lease_ns=span(5, 1),
+    )

@@ -1,0 +1,93 @@
+"""RIHS01: the hash of a type's description, part of every key and token.
+
+Source: REP-2011; rosidl_generator_type_description. Defaults, constants and comments do not enter.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+
+from graphflow.wire.schema import FieldType, Message
+
+PREFIX = "RIHS01_"
+
+_IDS = {
+    "int8": 2,
+    "uint8": 3,
+    "char": 3,
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float32": 10,
+    "float64": 11,
+    "bool": 15,
+    "byte": 16,
+    "string": 17,
+    "wstring": 18,
+}
+_BOUNDED_STRING_IDS = {"string": 21, "wstring": 22}
+_ARRAY_OFFSETS = {"": 0, "fixed": 48, "bounded": 96, "unbounded": 144}
+
+Lookup = Callable[[str], Message]
+"""Finds the schema of `package/msg/Name`."""
+
+
+def type_id(type_: FieldType) -> int:
+    """The number of a field type, type_description_interfaces/msg/FieldType."""
+    base = _BOUNDED_STRING_IDS[type_.base] if type_.string_bound else _IDS.get(type_.base, 1)
+    return base + _ARRAY_OFFSETS[type_.array]
+
+
+def _describe(message: Message) -> dict[str, object]:
+    fields: Iterable[tuple[str, FieldType]] = [(f.name, f.type) for f in message.fields]
+    # A type without fields is described, and sent, as one hidden byte.
+    fields = fields or [("structure_needs_at_least_one_member", FieldType("uint8"))]
+    return {
+        "type_name": message.name,
+        "fields": [
+            {
+                "name": name,
+                "type": {
+                    "type_id": type_id(t),
+                    "capacity": t.size,
+                    "string_capacity": t.string_bound,
+                    "nested_type_name": "" if t.is_primitive else t.base,
+                },
+            }
+            for name, t in fields
+        ],
+    }
+
+
+def referenced(message: Message, lookup: Lookup) -> dict[str, Message]:
+    """Every type reachable from `message`, itself left out, by name."""
+    found: dict[str, Message] = {}
+    todo = [message]
+    while todo:
+        for field in todo.pop().fields:
+            name = field.type.base
+            if not field.type.is_primitive and name not in found and name != message.name:
+                found[name] = lookup(name)
+                todo.append(found[name])
+    return found
+
+
+def type_description(message: Message, lookup: Lookup) -> str:
+    """The JSON text that is hashed."""
+    others = referenced(message, lookup)
+    return json.dumps(
+        {
+            "type_description": _describe(message),
+            "referenced_type_descriptions": [_describe(others[name]) for name in sorted(others)],
+        }
+    )
+
+
+def type_hash(message: Message, lookup: Lookup) -> str:
+    """`RIHS01_` and 64 hex digits."""
+    return PREFIX + hashlib.sha256(type_description(message, lookup).encode()).hexdigest()

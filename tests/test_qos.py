@@ -1,0 +1,84 @@
+"""Quality of service profiles."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError
+from typing import Any
+
+import pytest
+
+from graphflow import qos
+from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
+
+
+def test_numbers_are_those_of_rmw() -> None:
+    """Each policy has the number that rmw gives it and that stands in tokens."""
+    assert (Reliability.RELIABLE, Reliability.BEST_EFFORT) == (1, 2)
+    assert (Durability.TRANSIENT_LOCAL, Durability.VOLATILE) == (1, 2)
+    assert (History.KEEP_LAST, History.KEEP_ALL) == (1, 2)
+    assert (Liveliness.AUTOMATIC, Liveliness.MANUAL_BY_TOPIC) == (1, 3)
+
+
+def test_no_limit_is_rmws_largest_duration() -> None:
+    """No limit is 9223372036 seconds and 854775807 nanoseconds."""
+    assert divmod(qos.INFINITE_NS, 10**9) == (9_223_372_036, 854_775_807)
+
+
+def test_the_default_is_reliable_volatile_and_ten_deep() -> None:
+    """The default profile is ROS 2's, without deadline, lifespan or lease."""
+    assert (
+        Qos()
+        == qos.DEFAULT
+        == Qos(
+            10,
+            Reliability.RELIABLE,
+            Durability.VOLATILE,
+            History.KEEP_LAST,
+            qos.INFINITE_NS,
+            qos.INFINITE_NS,
+            Liveliness.AUTOMATIC,
+            qos.INFINITE_NS,
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("profile", "changed"),
+    [
+        (qos.SENSOR_DATA, {"depth": 5, "reliability": Reliability.BEST_EFFORT}),
+        (qos.SERVICES, {}),
+        (qos.PARAMETERS, {"depth": 1000}),
+        (qos.ROSOUT, {"depth": 1000, "durability": Durability.TRANSIENT_LOCAL, "lifespan_ns": 10 * 10**9}),
+    ],
+)
+def test_presets_are_rmws(profile: Qos, changed: dict[str, Any]) -> None:
+    """The presets differ from the default in what rmw says and nothing else."""
+    assert profile == Qos(**changed)
+
+
+def test_a_number_is_a_depth() -> None:
+    """A number means the default profile of that depth."""
+    assert Qos.of(3) == Qos(depth=3)
+
+
+def test_a_depth_of_zero_is_rmw_zenohs_default() -> None:
+    """Who asks for depth 0 gets the depth rmw_zenoh gives."""
+    assert Qos.of(0) == Qos(depth=42)
+
+
+def test_a_negative_depth_is_refused() -> None:
+    """A negative depth is a ValueError that says what to give."""
+    with pytest.raises(ValueError, match="cannot be -1; give 1 or more"):
+        Qos.of(-1)
+
+
+def test_a_profile_stays_as_it_is() -> None:
+    """A profile is its own short form."""
+    assert Qos.of(qos.SENSOR_DATA) is qos.SENSOR_DATA
+
+
+def test_a_profile_cannot_change() -> None:
+    """Profiles are shared, so they are frozen."""
+    with pytest.raises(FrozenInstanceError):
+        qos.DEFAULT.depth = 5  # type: ignore[misc]
+    assert len({Qos(), qos.DEFAULT, qos.SERVICES}) == 1

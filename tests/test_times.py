@@ -1,0 +1,74 @@
+"""Times and durations in whole nanoseconds."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from graphflow.times import NANOSECONDS, Duration, Time, to_ns
+
+
+@pytest.mark.parametrize(
+    ("seconds", "nanoseconds"),
+    [(0, 0), (1, NANOSECONDS), (0.1, 100_000_000), (-0.5, -500_000_000), (1e-9, 1), (4e-10, 0), (6e-10, 1)],
+)
+def test_seconds_round_to_the_nearest_nanosecond(seconds: float, nanoseconds: int) -> None:
+    """Seconds become whole nanoseconds, rounded to nearest, with their sign."""
+    assert to_ns(seconds) == nanoseconds
+    assert Duration.of(seconds) == Duration(nanoseconds)
+
+
+@pytest.mark.parametrize(
+    ("nanoseconds", "sec", "nanosec"),
+    [(0, 0, 0), (1, 0, 1), (1_500_000_000, 1, 500_000_000), (-1, -1, 999_999_999), (-1_000_000_000, -1, 0)],
+)
+def test_the_message_fields_round_down(nanoseconds: int, sec: int, nanosec: int) -> None:
+    """`sec` is rounded down, so that `nanosec` is never negative, as in builtin_interfaces."""
+    for value in (Duration(nanoseconds), Time(nanoseconds)):
+        assert (value.sec, value.nanosec) == (sec, nanosec)
+
+
+@settings(derandomize=True, deadline=None)
+@given(st.integers(-(2**62), 2**62))
+def test_the_message_fields_lose_nothing(nanoseconds: int) -> None:
+    """Seconds and nanoseconds of the message add up to the value."""
+    for value in (Duration(nanoseconds), Time(nanoseconds)):
+        assert value.sec * NANOSECONDS + value.nanosec == nanoseconds
+        assert 0 <= value.nanosec < NANOSECONDS
+
+
+def test_seconds_are_floats() -> None:
+    """A value in seconds is a float, of either sign."""
+    assert (Time(1_500_000_000).seconds, Duration(-250_000_000).seconds) == (1.5, -0.25)
+
+
+def test_a_time_and_a_duration_are_a_time() -> None:
+    """A point in time moves by a span, forwards and backwards."""
+    moved = Time(5) + Duration(-7)
+    assert (type(moved), moved.nanoseconds) == (Time, -2)
+
+
+def test_two_times_are_not_added() -> None:
+    """The sum of two points in time means nothing and is refused."""
+    with pytest.raises(TypeError):
+        Time(1) + Time(2)
+
+
+def test_the_span_between_two_times() -> None:
+    """How long after another time one is, negative when it is before."""
+    assert Time(5).since(Time(7)) == Duration(-2)
+    assert type(Time(7).since(Time(5))) is Duration
+
+
+def test_times_are_ordered() -> None:
+    """Times and durations compare by their nanoseconds, the sign included."""
+    assert sorted([Time(3), Time(-1), Time(2)]) == [Time(-1), Time(2), Time(3)]
+    assert Duration(-1) < Duration(0)
+
+
+def test_large_times_stay_exact() -> None:
+    """Today's date in nanoseconds, which a float cannot hold, is exact."""
+    now = Time(1_700_000_000_123_456_789)
+    assert (now + Duration(1)).since(now).nanoseconds == 1
+    assert (now.sec, now.nanosec) == (1_700_000_000, 123_456_789)
