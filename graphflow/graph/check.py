@@ -1,0 +1,128 @@
+"""A Plan held against the Interfaces of its classes: every name, type and value that cannot be right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
+
+from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
+from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
+from graphflow.interface import Endpoint, Interface
+from graphflow.names import Resolver, did_you_mean, expand, split
+
+ImportFault = Problem
+Interfaces = Mapping[str, Interface | ImportFault]
+"""By class path: what the class declares, or why it could not be imported."""
+
+
+def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
+    """Every problem of a plan, in the order of its file."""
+    problems: list[Problem] = []
+    for node in plan.nodes:
+        problems += _check_node(node, interfaces)
+    for step in plan.steps:
+        problems += _check_step(step, plan, interfaces)
+    return problems
+
+
+def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
+    interface = interfaces[node.class_path]
+    if isinstance(interface, Problem):
+        yield Problem(node.class_place, f"{node.class_path}: {interface.message}{_at(interface.place)}")
+        return
+    yield from _check_params(node, interface)
+    yield from _check_remaps(node, interface)
+
+
+def _at(place: Place) -> str:
+    return f" ({place})" if place.file else ""
+
+
+def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
+    known = [p.name for p in interface.params]
+    for name, setting in node.params.items():
+        declared = interface.param(name)
+        if declared is None:
+            if interface.dynamic_names is not True:
+                yield Problem(
+                    setting.place, f"{_class(interface)} has no parameter {name!r}{did_you_mean(name, known)}"
+                )
+            continue
+        try:
+            declared.fit(setting.value)
+        except ParameterError as error:
+            yield Problem(setting.place, str(error))
+
+
+def _class(interface: Interface) -> str:
+    return interface.class_path.rpartition(":")[2]
+
+
+def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
+    if interface.dynamic_names is True:
+        return
+    names = resolver(node)
+    namespace, name = split(node.name)
+    full = {expand(e.name, namespace, name): e.name for e in interface.endpoints}
+    for rule in node.remaps:
+        match = expand(rule.match, names.namespace, names.name)
+        patterns = interface.dynamic_names or ()
+        if match not in full and not any(fnmatchcase(match, p) for p in patterns if isinstance(p, str)):
+            yield Problem(
+                rule.place,
+                f"{_class(interface)} has no topic or service {rule.match!r}{did_you_mean(rule.match, full.values())}",
+            )
+
+
+def resolver(node: PlannedNode) -> Resolver:
+    """The names of a planned node."""
+    namespace, name = split(node.name)
+    return Resolver(name, namespace, [rule.remap() for rule in node.remaps])
+
+
+def offered_services(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
+    """Types by full name of every service that the plan's classes declare."""
+    found = {}
+    for node in plan.nodes:
+        interface = interfaces[node.class_path]
+        if isinstance(interface, Interface):
+            names = resolver(node)
+            for endpoint in _services(interface):
+                found[names.resolve(endpoint.name, "service")] = endpoint.type
+    return found
+
+
+def _services(interface: Interface) -> list[Endpoint]:
+    return [e for e in interface.endpoints if e.kind == "service"]
+
+
+def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | None:
+    """The service type a step calls, as far as the file or the classes tell."""
+    return step.type or offered_services(plan, interfaces).get(step.call)
+
+
+def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    from graphflow.msgs import registry
+    from graphflow.msgs.build import from_plain
+
+    type_ = step_type(step, plan, interfaces)
+    if type_ is None:
+        imported = [i for i in interfaces.values() if isinstance(i, Interface)]
+        patterns = [p for i in imported if not isinstance(i.dynamic_names, bool) for p in i.dynamic_names]
+        unsure = len(imported) < len(interfaces) or any(i.dynamic_names is True for i in imported)
+        if unsure or any(fnmatchcase(step.call, p) for p in patterns):
+            return
+        offered = offered_services(plan, interfaces)
+        yield Problem(
+            step.call_place,
+            f"no node of this graph offers the service {step.call}{did_you_mean(step.call, offered)}"
+            " (for one from outside add type: package/srv/Name)",
+        )
+        return
+    try:
+        request = registry.service_schema(registry.full_name(type_)).request
+        from_plain(registry.interface_class(request.name), step.request)
+    except EncodeError as error:
+        yield Problem(step.request_place, str(error))
+    except GraphflowError as error:
+        yield Problem(step.call_place, str(error))

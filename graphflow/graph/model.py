@@ -1,0 +1,80 @@
+"""The grammar of a graph file, as pydantic models. Unknown keys are errors."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool, StrictFloat, StrictInt, StrictStr
+
+_CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
+
+
+def _class_path(text: str) -> str:
+    if not _CLASS.match(text):
+        raise ValueError(f"{text!r} is no class; write package.module:Class, for example nodes.talker:Talker")
+    return text
+
+
+def _service_type(text: str) -> str:
+    if not re.match(r"[a-z]\w*(/srv)?/[A-Z]\w*\Z", text):
+        raise ValueError(f"{text!r} is no service type; write package/srv/Name")
+    return text
+
+
+Scalar = StrictBool | StrictInt | StrictFloat | StrictStr
+ParamValue = Scalar | list[Scalar]
+EnvValue = StrictStr | StrictInt | StrictFloat
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Arg(_Model):
+    """A value that `name:=value` on the command line sets."""
+
+    default: Any = None
+    doc: StrictStr = ""
+    unit: StrictStr = ""
+    choices: list[Scalar] = []
+
+
+class NodeSpec(_Model):
+    """One node of the graph. Its key is its name, absolute or relative to `namespace`."""
+
+    class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
+    namespace: StrictStr = ""
+    params: dict[str, Any] = {}
+    remap: dict[str, StrictStr] = {}
+    process: StrictStr = ""
+    env: dict[str, EnvValue] = {}
+    after: StrictStr | list[StrictStr] = []
+
+
+class StepSpec(_Model):
+    """Something done once, after nodes and other steps: a service call."""
+
+    call: StrictStr
+    type: Annotated[StrictStr, AfterValidator(_service_type)] | None = None
+    request: dict[str, Any] = {}
+    after: StrictStr | list[StrictStr] = []
+    timeout: StrictFloat | StrictInt = Field(10.0, gt=0)
+
+
+class GraphFile(_Model):
+    """A whole file."""
+
+    name: StrictStr = ""
+    domain: StrictInt | None = Field(None, ge=0)
+    args: dict[str, Arg] = {}
+    nodes: dict[str, NodeSpec]
+    steps: dict[str, StepSpec] = {}
+
+
+TOP_KEYS = tuple(GraphFile.model_fields)
+
+
+def keys_of(model: type[BaseModel]) -> list[str]:
+    """The keys a model knows, as written in a file."""
+    return [f.alias or name for name, f in model.model_fields.items()]

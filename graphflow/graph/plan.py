@@ -1,0 +1,142 @@
+"""A Plan: everything that would run, resolved. Frozen, complete, printable, and readable back from JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from graphflow.errors import Place
+from graphflow.names import Remap
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A parameter value and where it was written."""
+
+    value: Any
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A remap rule and where it was written."""
+
+    match: str
+    replacement: str
+    place: Place
+
+    def remap(self) -> Remap:
+        return Remap(self.match, self.replacement, source=str(self.place))
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedNode:
+    """One node as it would run."""
+
+    name: str
+    """Full name."""
+    class_path: str
+    place: Place
+    class_place: Place
+    params: dict[str, Setting] = field(default_factory=dict)
+    remaps: tuple[Rule, ...] = ()
+    process: str = ""
+    """Nodes with the same word share a process; empty: a process of its own."""
+    env: dict[str, str] = field(default_factory=dict)
+    after: tuple[str, ...] = ()
+    """Full names of nodes, or names of steps, that come first."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedStep:
+    """A service call made once."""
+
+    name: str
+    call: str
+    """Full name of the service."""
+    place: Place
+    call_place: Place
+    request_place: Place
+    request: dict[str, Any] = field(default_factory=dict)
+    type: str | None = None
+    after: tuple[str, ...] = ()
+    timeout: float = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A graph file resolved with its arguments."""
+
+    name: str
+    file: str
+    root: str
+    """The folder its classes are imported from."""
+    nodes: tuple[PlannedNode, ...]
+    steps: tuple[PlannedStep, ...] = ()
+    args: dict[str, Any] = field(default_factory=dict)
+    domain: int | None = None
+
+    def processes(self) -> dict[str, list[PlannedNode]]:
+        """Nodes by the process they share, in the order of the file; a process of one is called as its node."""
+        found: dict[str, list[PlannedNode]] = {}
+        for node in self.nodes:
+            found.setdefault(node.process or node.name, []).append(node)
+        return found
+
+    def to_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Plan:
+        return cls(
+            **{k: v for k, v in data.items() if k not in ("nodes", "steps")},
+            nodes=tuple(node_from_json(n) for n in data["nodes"]),
+            steps=tuple(_step(s) for s in data["steps"]),
+        )
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    def lines(self) -> Iterable[str]:
+        """The plan for a reader, with the place of every setting."""
+        yield f"graph {self.name}  ({self.file}; classes from {self.root})"
+        if self.domain is not None:
+            yield f"domain {self.domain}"
+        for name, value in self.args.items():
+            yield f"  {name}:={value}"
+        for node in self.nodes:
+            yield f"{node.name}"
+            yield f"  class    {node.class_path}"
+            if node.process:
+                yield f"  process  {node.process}"
+            if node.after:
+                yield f"  after    {', '.join(node.after)}"
+            for name, setting in node.params.items():
+                yield f"  param    {name} = {setting.value!r}  # {setting.place}"
+            for rule in node.remaps:
+                yield f"  remap    {rule.match} -> {rule.replacement}  # {rule.place}"
+            for name, value in node.env.items():
+                yield f"  env      {name}={value}"
+        for step in self.steps:
+            yield f"step {step.name}"
+            if step.after:
+                yield f"  after    {', '.join(step.after)}"
+            yield f"  call     {step.call} {step.request}"
+
+
+def node_from_json(data: dict[str, Any]) -> PlannedNode:
+    """A node from its part of `Plan.to_json`."""
+    return PlannedNode(
+        **{k: v for k, v in data.items() if k in ("name", "class_path", "process", "env")},
+        place=Place(*data["place"]),
+        class_place=Place(*data["class_place"]),
+        params={k: Setting(s["value"], Place(*s["place"])) for k, s in data["params"].items()},
+        remaps=tuple(Rule(r["match"], r["replacement"], Place(*r["place"])) for r in data["remaps"]),
+        after=tuple(data["after"]),
+    )
+
+
+def _step(data: dict[str, Any]) -> PlannedStep:
+    places = {k: Place(*data[k]) for k in ("place", "call_place", "request_place")}
+    return PlannedStep(**{**data, **places, "after": tuple(data["after"])})

@@ -1,0 +1,121 @@
+"""Messages as text: YAML blocks and flow style as `ros2 topic echo` prints them, plain values for JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from graphflow.msgs.base import Message
+
+TRUNCATE = 128
+"""Elements and characters shown of long arrays and strings."""
+
+
+def plain(value: Any) -> Any:
+    """A message as dicts, lists and scalars."""
+    if isinstance(value, Message):
+        return {f.name: plain(getattr(value, f.name)) for f in value.SCHEMA.fields}
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+def truncated(value: Any, limit: int | None = TRUNCATE) -> Any:
+    """Plain data with long lists and strings cut, as marked by `...`."""
+    if limit is None:
+        return value
+    if isinstance(value, dict):
+        return {k: truncated(v, limit) for k, v in value.items()}
+    if isinstance(value, list):
+        cut = [truncated(v, limit) for v in value[:limit]]
+        return [*cut, "..."] if len(value) > limit else cut
+    if isinstance(value, str) and len(value) > limit:
+        return value[:limit] + "..."
+    return value
+
+
+def block(data: Any, indent: int = 0) -> str:
+    """Plain data as YAML in block style."""
+    pad = "  " * indent
+    if isinstance(data, dict):
+        if not data:
+            return f"{pad}{{}}"
+        return "\n".join(_entry(f"{pad}{key}:", value, indent) for key, value in data.items())
+    if isinstance(data, list):
+        return "\n".join(_item(value, indent) for value in data) or f"{pad}[]"
+    return pad + scalar(data)
+
+
+def _entry(head: str, value: Any, indent: int) -> str:
+    if isinstance(value, dict) and value:
+        return f"{head}\n{block(value, indent + 1)}"
+    if isinstance(value, list) and value:
+        return f"{head}\n{block(value, indent)}"
+    return f"{head} {flow(value)}"
+
+
+def _item(value: Any, indent: int) -> str:
+    pad = "  " * indent
+    if isinstance(value, (dict, list)) and value:
+        return f"{pad}- {block(value, indent + 1).lstrip()}"
+    return f"{pad}- {flow(value)}"
+
+
+def flow(data: Any) -> str:
+    """Plain data as YAML on one line."""
+    if isinstance(data, dict):
+        return "{" + ", ".join(f"{k}: {flow(v)}" for k, v in data.items()) + "}"
+    if isinstance(data, list):
+        return "[" + ", ".join(flow(v) for v in data) + "]"
+    return scalar(data)
+
+
+def scalar(value: Any) -> str:
+    """One value so that it reads back as what it is."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return _number(value)
+    if isinstance(value, str):
+        return _string(value)
+    return str(value)
+
+
+def _number(value: float) -> str:
+    if math.isnan(value):
+        return ".nan"
+    if math.isinf(value):
+        return ".inf" if value > 0 else "-.inf"
+    return repr(value)
+
+
+def _string(text: str) -> str:
+    from graphflow.graph.source import scalar as read
+
+    plain_safe = (
+        text
+        and text == text.strip()
+        and not any(c in text for c in '\n\t"\\#{}[],&*|>%@`')
+        and ": " not in text
+        and not text.endswith(":")
+        and text[0] not in "!?-'"
+        and isinstance(read(text), str)
+    )
+    if plain_safe or text == "...":
+        return text
+    if text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    return '"' + text.encode("unicode_escape").decode().replace('"', '\\"') + '"'
+
+
+def csv(data: Any) -> str:
+    """The leaves of plain data, separated by commas."""
+    if isinstance(data, dict):
+        return ",".join(csv(v) for v in data.values())
+    if isinstance(data, list):
+        return ",".join(csv(v) for v in data)
+    return str(data)

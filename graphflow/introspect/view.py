@@ -1,0 +1,181 @@
+"""A look at the graph from outside, without asyncio and without showing up in it: for short commands."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterable
+from types import TracebackType
+from typing import Any, Self
+
+from graphflow.errors import (
+    CallError,
+    CallTimeout,
+    RemoteError,
+    ServerLost,
+    ServiceUnavailable,
+    SupervisorError,
+)
+from graphflow.machines.cache import GraphCache
+from graphflow.names import did_you_mean
+from graphflow.transport.client import Client
+from graphflow.wire import attachment
+from graphflow.wire.keyexpr import DataKey
+from graphflow.wire.liveliness import Kind, watch_key
+
+GID = bytes(16)
+"""Commands are no entity of the graph, so they have no GID of their own."""
+
+
+class View:
+    """The graph of a domain at one moment, and calls into it. A context manager.
+
+    Raises:
+        SupervisorError: Nothing is running (exit 3).
+        TransportError: The rendezvous is not usable.
+    """
+
+    def __init__(self, domain: int) -> None:
+        self.domain = domain
+        self._client = Client()
+        self.cache = GraphCache(self._client.tokens(watch_key(domain)))
+        self._calls = 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._client.close()
+
+    def refresh(self) -> None:
+        """Look again."""
+        self.cache = GraphCache(self._client.tokens(watch_key(self.domain)))
+
+    def node(self, name: str) -> str:
+        """The full name of the node that `name` means: full, or without the leading slash.
+
+        Raises:
+            CallError: There is none; the text names the nearest.
+        """
+        wanted = name if name.startswith("/") else f"/{name}"
+        nodes = self.cache.nodes()
+        if wanted in nodes:
+            return wanted
+        visible = self.cache.nodes(hidden=False)
+        raise CallError(f"there is no node {wanted}{did_you_mean(wanted, visible) or self._empty(visible)}")
+
+    def _empty(self, names: Iterable[str]) -> str:
+        return "" if names else f"; domain {self.domain} has no nodes"
+
+    def service_type(self, name: str) -> str:
+        """The type of a service that is offered.
+
+        Raises:
+            ServiceUnavailable: Nobody offers it; the text names the nearest.
+        """
+        servers = self.cache.endpoints(Kind.SERVICE, name)
+        if servers:
+            return servers[0].type
+        offered = {e.name for e in self.cache.endpoints(Kind.SERVICE)}
+        raise ServiceUnavailable(f"nobody offers the service {name}{did_you_mean(name, offered)}")
+
+    def wait_for_service(self, name: str, timeout: float) -> None:
+        """Wait until somebody offers the service.
+
+        Raises:
+            ServiceUnavailable: Nobody did within `timeout` seconds.
+        """
+        deadline = time.monotonic() + timeout
+        while not self.cache.endpoints(Kind.SERVICE, name):
+            if time.monotonic() > deadline:
+                self.service_type(name)
+            time.sleep(0.05)
+            self.refresh()
+
+    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:
+        """Call a service; returns the response message.
+
+        Args:
+            name: Full name of the service.
+            type_name: `package/srv/Name`, as the server announces it.
+            request: A message of its request type.
+            timeout: Seconds.
+
+        Raises:
+            CallError: As `ServiceClient.call`.
+        """
+        from graphflow.msgs import registry
+
+        service = registry.service_schema(type_name)
+        key = str(DataKey(self.domain, name, type_name, registry.hash_of(type_name)))
+        self._calls += 1
+        beside = attachment.pack(self._calls, time.time_ns(), GID)
+        try:
+            reply = self._client.call(key, request.to_bytes(), beside, timeout)
+        except TimeoutError:
+            raise CallTimeout(f"{name} did not answer within {timeout:g} s") from None
+        if reply is None:
+            raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
+        if reply.is_error:
+            raise _remote(reply.payload)
+        return registry.codec(service.response.name).decode(reply.payload)
+
+    def _no_answer(self, name: str, type_name: str, hash_: str) -> str:
+        for server in self.cache.endpoints(Kind.SERVICE, name):
+            if server.type != type_name:
+                return f"{name} is a {server.type}, not a {type_name}"
+            if server.hash != hash_:
+                return f"{name}: the server's {type_name} has another definition than the one here"
+        return f"{name}: the server went away before it answered"
+
+
+def _remote(payload: bytes) -> RemoteError:
+    try:
+        data = json.loads(payload)
+        return RemoteError(str(data["type"]), str(data["message"]))
+    except (ValueError, KeyError, TypeError):
+        return RemoteError("Error", payload[:200].decode(errors="replace"))
+
+
+def refuse_taken_names(names: Iterable[str], domain: int) -> None:
+    """Check that no node of the domain has one of `names`.
+
+    Raises:
+        SupervisorError: Some have; the text says whose they are.
+    """
+    try:
+        view = View(domain)
+    except SupervisorError as error:
+        if error.exit_code == 3:  # nobody is there, so nothing is taken
+            return
+        raise
+    with view:
+        taken = sorted(set(names) & set(view.cache.nodes()))
+        if taken:
+            owners = "; ".join(f"{name} ({_owner(view, name)})" for name in taken)
+            raise SupervisorError(
+                f"already in domain {domain}: {owners}. Stop what runs there, rename the node, or take another domain "
+                "with --domain N"
+            )
+
+
+def _owner(view: View, name: str) -> str:
+    """Whose a node is: the graphflow process it lives in, as far as its tokens tell."""
+    zids = {e.zid for e in view.cache.owners(name)}
+    for token in view._client.tokens(f"@graphflow/{view.domain}/proc/**"):
+        parts = token.split("/")
+        if len(parts) == 6 and parts[3] in zids:
+            return f"process {parts[5]}{_graph_of(int(parts[5]))}"
+    return f"session {', '.join(sorted(zids))}, not of graphflow"
+
+
+def _graph_of(pid: int) -> str:
+    from pathlib import Path
+
+    try:
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+    except OSError:
+        return ""
+    return f": {b' '.join(words).decode(errors='replace').strip()}"

@@ -1,0 +1,1 @@
+"""Decisions: (state, event, now) -> (state, things to do). Nothing here waits, reads a clock or does I/O."""

@@ -1,0 +1,103 @@
+"""The graph as its tokens tell it: they come and go in any order, several times each, and this is the picture.
+
+Source: rmw_zenoh graph_cache; the queries are those of rmw's graph functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from graphflow.names import is_hidden
+from graphflow.wire.liveliness import Entity, Kind, parse_token
+
+_FEEDBACK = "/_action/feedback"
+_FEEDBACK_TYPE = "_FeedbackMessage"
+
+
+class Change(NamedTuple):
+    """An entity that came (`alive`) or went."""
+
+    entity: Entity
+    alive: bool
+
+
+class GraphCache:
+    """The nodes and endpoints of one domain."""
+
+    def __init__(self, tokens: Iterable[str] = ()) -> None:
+        self._entities: dict[str, Entity] = {}
+        for token in tokens:
+            self.apply(token, alive=True)
+
+    def __repr__(self) -> str:
+        return f"<GraphCache {len(self.nodes())} nodes, {len(self._entities)} tokens>"
+
+    def apply(self, token: str, *, alive: bool) -> list[Change]:
+        """Take in one token event; returns what it changed, nothing for a repeated or unknown token.
+
+        The end of a node's token ends its endpoints too.
+        """
+        if not alive:
+            gone = self._entities.pop(token, None)
+            if gone is None:
+                return []
+            changes = [Change(gone, False)]
+            if gone.kind is Kind.NODE:
+                rest = [t for t, e in self._entities.items() if (e.zid, e.nid) == (gone.zid, gone.nid)]
+                changes += [Change(self._entities.pop(t), False) for t in rest]
+            return changes
+        if token in self._entities:
+            return []
+        entity = parse_token(token)
+        if entity is None:
+            return []
+        self._entities[token] = entity
+        return [Change(entity, True)]
+
+    def __iter__(self) -> Iterator[Entity]:
+        return iter(self._entities.values())
+
+    def __contains__(self, token: str) -> bool:
+        return token in self._entities
+
+    def nodes(self, *, hidden: bool = True) -> list[str]:
+        """Full node names, sorted; a name shared by several nodes appears as often."""
+        names = {(e.zid, e.nid): e.node_name for e in self}
+        return sorted(n for n in names.values() if hidden or not is_hidden(n))
+
+    def endpoints(self, kind: Kind, name: str | None = None, node: str | None = None) -> list[Entity]:
+        """Endpoints of a kind, of one topic or service, of one node; in a stable order."""
+        found = [
+            e
+            for e in self
+            if e.kind is kind and (name is None or e.name == name) and (node is None or e.node_name == node)
+        ]
+        return sorted(found, key=lambda e: (e.name, e.node_name, e.type, e.eid))
+
+    def owners(self, name: str) -> list[Entity]:
+        """The node tokens of everything called `name`."""
+        return [e for e in self if e.kind is Kind.NODE and e.node_name == name]
+
+    def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
+        """Types by topic, both sorted."""
+        return self._types(Kind.PUBLISHER, Kind.SUBSCRIPTION, hidden=hidden)
+
+    def services(self, *, hidden: bool = False) -> dict[str, list[str]]:
+        """Types by service that a server offers or a client uses, both sorted."""
+        return self._types(Kind.SERVICE, Kind.CLIENT, hidden=hidden)
+
+    def actions(self) -> dict[str, list[str]]:
+        """Types by action, told by the feedback topics."""
+        return {
+            name.removesuffix(_FEEDBACK): [t.removesuffix(_FEEDBACK_TYPE) for t in types]
+            for name, types in self.topics(hidden=True).items()
+            if name.endswith(_FEEDBACK)
+        }
+
+    def _types(self, *kinds: Kind, hidden: bool) -> dict[str, list[str]]:
+        found: dict[str, set[str]] = {}
+        for e in self:
+            if e.kind in kinds and (hidden or not is_hidden(e.name)):
+                found.setdefault(e.name, set()).add(e.type)
+        return {name: sorted(found[name]) for name in sorted(found)}

@@ -1,0 +1,147 @@
+r"""The life of one supervised process, as a table.
+
+    PENDING --go--> STARTING --ready--> READY --stop--> STOPPING --exit--> ENDED
+                        \-----------------exit-----------------------------^
+
+A process waits (PENDING) until what it comes `after` is there. It is READY when all its nodes have said so themselves.
+Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the last rung at once. Whatever happens,
+`exit` is the only way to ENDED, so nothing is called ended that may still run. An end that nobody asked for is told
+apart by how it came: `failed` is true when the process left by a signal or with another code than 0.
+
+Source: sections D.4 S3 and S6 of the supervision design; systemd's and Erlang's stop sequences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+START_LIMIT = 20.0
+"""Seconds a process may take from its start until all its nodes are ready."""
+STOP_LIMIT = 5.0
+"""Seconds between SIGTERM and SIGKILL."""
+
+
+class State(Enum):
+    PENDING = "pending"
+    STARTING = "starting"
+    READY = "ready"
+    STOPPING = "stopping"
+    ENDED = "ended"
+
+
+class Event(Enum):
+    GO = "go"
+    """What it comes after is there."""
+    READY = "ready"
+    """Its last node is ready."""
+    STOP = "stop"
+    KILL = "kill"
+    LATE = "late"
+    """The alarm set on entering the state has rung."""
+    EXIT = "exit"
+
+
+class Action(Enum):
+    SPAWN = "spawn"
+    TERMINATE = "terminate"
+    """SIGTERM to the whole process group."""
+    KILL = "kill"
+    """SIGKILL to the whole process group."""
+    GIVE_UP = "give up"
+    """It did not get ready in time: report it."""
+
+
+TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Action, ...]]]] = {
+    State.PENDING: {
+        Event.GO: (State.STARTING, (Action.SPAWN,)),
+        Event.STOP: (State.ENDED, ()),
+        Event.KILL: (State.ENDED, ()),
+    },
+    State.STARTING: {
+        Event.READY: (State.READY, ()),
+        Event.STOP: (State.STOPPING, (Action.TERMINATE,)),
+        Event.KILL: (State.STOPPING, (Action.KILL,)),
+        Event.LATE: (State.STOPPING, (Action.GIVE_UP, Action.TERMINATE)),
+        Event.EXIT: (State.ENDED, ()),
+    },
+    State.READY: {
+        Event.STOP: (State.STOPPING, (Action.TERMINATE,)),
+        Event.KILL: (State.STOPPING, (Action.KILL,)),
+        Event.EXIT: (State.ENDED, ()),
+    },
+    State.STOPPING: {
+        Event.KILL: (State.STOPPING, (Action.KILL,)),
+        Event.LATE: (State.STOPPING, (Action.KILL,)),
+        Event.EXIT: (State.ENDED, ()),
+    },
+    State.ENDED: {},
+}
+"""Events that a state does not list change nothing."""
+
+ALARMS: Mapping[State, float] = {State.STARTING: START_LIMIT, State.STOPPING: STOP_LIMIT}
+"""Seconds after entering a state at which LATE happens."""
+
+
+def step(state: State, event: Event) -> tuple[State, tuple[Action, ...]]:
+    """What an event does in a state."""
+    return TRANSITIONS[state].get(event, (state, ()))
+
+
+@dataclass(frozen=True)
+class Exit:
+    """How a process ended: its code, or the signal that ended it."""
+
+    code: int | None = None
+    signal: int | None = None
+
+    @classmethod
+    def of_status(cls, returncode: int) -> Exit:
+        """From a return code as `subprocess` gives it: negative for a signal."""
+        return cls(signal=-returncode) if returncode < 0 else cls(code=returncode)
+
+    @property
+    def failed(self) -> bool:
+        return self.code != 0
+
+    def __str__(self) -> str:
+        if self.signal is not None:
+            names = {1: "SIGHUP", 2: "SIGINT", 6: "SIGABRT", 9: "SIGKILL", 11: "SIGSEGV", 15: "SIGTERM"}
+            hint = " (killed, perhaps for lack of memory)" if self.signal == 9 else ""
+            return f"signal {names.get(self.signal, self.signal)}{hint}"
+        meaning = {64: " (wrong usage)", 70: " (an error in the node)", 78: " (wrong configuration)"}
+        return f"exit code {self.code}{meaning.get(self.code or 0, '')}"
+
+
+@dataclass(frozen=True)
+class Order:
+    """What must be ready before what: processes and steps by name."""
+
+    after: Mapping[str, frozenset[str]]
+
+    def startable(self, done: Iterable[str]) -> list[str]:
+        """Names all of whose predecessors are done, in the order given."""
+        finished = set(done)
+        return [name for name, needs in self.after.items() if needs <= finished]
+
+    def stop_layers(self, names: Iterable[str]) -> list[list[str]]:
+        """Names in the order of stopping: last started first, those of one layer together."""
+        left = list(names)
+        layers = []
+        while left:
+            needed = {n for name in left for n in self._all_before(name)}
+            layer = [name for name in left if name not in needed] or left
+            layers.append(layer)
+            left = [name for name in left if name not in layer]
+        return layers
+
+    def _all_before(self, name: str) -> set[str]:
+        found: set[str] = set()
+        todo = [name]
+        while todo:
+            for needed in self.after.get(todo.pop(), ()):
+                if needed not in found:
+                    found.add(needed)
+                    todo.append(needed)
+        return found

@@ -1,0 +1,86 @@
+"""ROS 2's arguments of a node: `--ros-args -r from:=to -p name:=value --`.
+
+Source: rcl arguments; `ros2 run ... --help` and the "Passing ROS arguments" guide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import GraphflowError, InvalidName
+from graphflow.graph.source import parse_value
+from graphflow.names import Remap, did_you_mean
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+_OPTIONS = ("-r", "--remap", "-p", "--param", "--log-level", "--ros-args", "--")
+
+
+@dataclass
+class RosArgs:
+    """What the arguments say."""
+
+    remaps: list[Remap] = field(default_factory=list)
+    params: list[tuple[str | None, str, Any, str]] = field(default_factory=list)
+    """(node or None for all, parameter, value, where it was written)."""
+    log_level: str = "info"
+    rest: list[str] = field(default_factory=list)
+    """Words that are not for ROS."""
+
+    def params_for(self, cls: type[Node]) -> dict[str, tuple[Any, str]]:
+        """Values for a node of the class, by parameter."""
+        name = cls.interface().node_name
+        renamed = [r.replacement for r in self.remaps if r.match in ("__node", "__name")]
+        return {p: (v, source) for node, p, v, source in self.params if node in (None, name, *renamed)}
+
+
+def parse_ros_args(words: Sequence[str]) -> RosArgs:
+    """Read a node's arguments. A bare `from:=to` is taken for a remap, which ROS 2 would ignore in silence.
+
+    Raises:
+        GraphflowError: A rule or an option is wrong.
+    """
+    result = RosArgs()
+    todo = list(words)
+    in_ros = False
+    while todo:
+        word = todo.pop(0)
+        if word == "--ros-args":
+            in_ros = True
+        elif word == "--" and in_ros:
+            in_ros = False
+        elif word in ("-r", "--remap", "-p", "--param", "--log-level"):
+            if not todo:
+                raise GraphflowError(f"{word} needs a value after it, such as pose:=/turtle1/pose")
+            _option(result, word, todo.pop(0))
+        elif ":=" in word and not word.startswith("-"):
+            _remap(result, word)
+        elif in_ros:
+            raise GraphflowError(f"{word!r} is no ROS argument{did_you_mean(word, _OPTIONS)}")
+        else:
+            result.rest.append(word)
+    return result
+
+
+def _option(result: RosArgs, option: str, value: str) -> None:
+    if option in ("-r", "--remap"):
+        _remap(result, value)
+    elif option == "--log-level":
+        result.log_level = value
+    else:
+        target, arrow, text = value.partition(":=")
+        if not arrow or not target:
+            raise GraphflowError(f"-p {value!r}: write name:=value, for example rate:=2.0")
+        node, colon, name = target.rpartition(":")
+        result.params.append((node if colon else None, name, parse_value(text), "command line"))
+
+
+def _remap(result: RosArgs, text: str) -> None:
+    try:
+        result.remaps.append(Remap.parse(text, "command line"))
+    except InvalidName as error:
+        hint = "; use --ros-args -r __ns:=/turtle1" if text.startswith("__") else ""
+        raise GraphflowError(f"{error}{hint}") from None

@@ -1,0 +1,111 @@
+"""What all nodes of a process share: the session, the clock, the picture of the graph, the ids."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+from graphflow.domain import domain_id
+from graphflow.machines.cache import Change, GraphCache
+from graphflow.runtime.clock import Clock, WallClock
+from graphflow.transport.base import Closable, Session
+from graphflow.wire.liveliness import watch_key
+
+if TYPE_CHECKING:
+    from graphflow.transport.takeover import Takeover
+
+
+class Context:
+    """One process's part in a domain. Made by `open` or, over any session, by the constructor."""
+
+    def __init__(self, session: Session, *, domain: int = 0, clock: Clock | None = None) -> None:
+        self.session = session
+        self.domain = domain
+        self.clock = clock or WallClock()
+        self.loop = asyncio.get_running_loop()
+        self.cache = GraphCache()
+        """The domain's nodes and endpoints, as far as their tokens have arrived."""
+        self._ids = itertools.count()
+        self._takeover: Takeover | None = None
+        self._listeners: list[Callable[[Change], None]] = []
+        self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
+        self._threads: ThreadPoolExecutor | None = None
+
+    @classmethod
+    async def open(cls, domain: int | None = None, *, mode: str = "peer", checked: bool = False) -> Context:
+        """Join the machine's graphs over Zenoh.
+
+        Args:
+            domain: See `domain_id`.
+            mode: Of the Zenoh session: `peer` or `client`.
+            checked: The rendezvous was looked at a moment ago by a process this one trusts.
+
+        Raises:
+            TransportError: The rendezvous cannot be reached or hosted, or is another user's.
+        """
+        from graphflow.transport.rendezvous import establish, user_id
+        from graphflow.transport.takeover import Takeover
+        from graphflow.transport.zenoh import ZenohSession
+
+        domain = domain_id(domain)
+        loop = asyncio.get_running_loop()
+        takeover = Takeover(None if checked else establish())
+        try:
+            session = ZenohSession(loop, mode)
+        except BaseException:
+            await takeover.close()
+            raise
+        context = cls(session, domain=domain)
+        context._takeover = takeover
+        takeover.guard(session, loop)
+        session.announce(f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}")
+        return context
+
+    def next_id(self) -> int:
+        """A number no other node or endpoint of this process has."""
+        return next(self._ids)
+
+    @property
+    def threads(self) -> ThreadPoolExecutor:
+        """Where handlers marked `thread=True` and `offload` run."""
+        if self._threads is None:
+            self._threads = ThreadPoolExecutor(thread_name_prefix="graphflow")
+        return self._threads
+
+    def on_change(self, listener: Callable[[Change], None]) -> Callable[[], None]:
+        """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    async def wait_for(self, condition: Callable[[], bool]) -> None:
+        """Wait until `condition` holds, looking again whenever the graph changes."""
+        if condition():
+            return
+        future = self.loop.create_future()
+
+        def look(_: Change) -> None:
+            if not future.done() and condition():
+                future.set_result(None)
+
+        stop = self.on_change(look)
+        try:
+            await future
+        finally:
+            stop()
+
+    def _token(self, token: str, alive: bool) -> None:
+        for change in self.cache.apply(token, alive=alive):
+            for listener in list(self._listeners):
+                listener(change)
+
+    async def close(self) -> None:
+        """Leave the network. Nodes are to be stopped before."""
+        if self._threads is not None:
+            self._threads.shutdown(wait=False, cancel_futures=True)
+        if self._takeover is not None:
+            await self._takeover.close()
+        await self.session.close()

@@ -1,0 +1,437 @@
+"""What a node class says of itself. Capital: something a node holds. Lower case: something it does.
+
+A declaration is checked when the class is made and turned into data (`graphflow.interface`); nothing runs. When a
+node is made each declaration becomes a call of the `create_*` method that a node could also have called itself.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
+
+from graphflow.errors import DeclarationError, GraphflowError, InvalidName, Place
+from graphflow.interface import Endpoint, Interface, Parameter, type_of
+from graphflow.msgs import base
+from graphflow.msgs.base import Message, Request, Response, Service
+from graphflow.names import expand
+from graphflow.qos import Qos
+from graphflow.runtime.clock import period_ns
+
+if TYPE_CHECKING:
+    from graphflow.runtime.endpoints import ServiceClient, TopicPublisher, TopicSubscription
+    from graphflow.runtime.node import Node
+
+M = TypeVar("M", bound=Message)
+V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])
+F = TypeVar("F", bound=Callable[..., Any])
+
+_MARK = "__graphflow__"
+
+
+def _here(depth: int = 2) -> Place:
+    frame = sys._getframe(depth)
+    return Place(frame.f_code.co_filename, frame.f_lineno)
+
+
+def _check_type(type_: Any, kind: type, what: str, place: Place) -> None:
+    if not (isinstance(type_, type) and issubclass(type_, kind)):
+        hint = ""
+        if kind is base.Service and isinstance(type_, type) and issubclass(type_, Message):
+            hint = "; give the service's class, as in AddTwoInts, not its Request"
+        raise DeclarationError(f"{place}: {what} needs a {kind.__name__.lower()} class, not {type_!r}{hint}")
+
+
+def _check_name(name: Any, what: str, place: Place) -> None:
+    if not isinstance(name, str):
+        raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is no name")
+    try:
+        expand(name, "/", "node")
+    except InvalidName as error:
+        raise DeclarationError(f"{place}: {what}: {error}") from None
+
+
+def _qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
+    try:
+        return Qos.of(qos if depth is None else depth)
+    except (ValueError, TypeError) as error:
+        raise DeclarationError(f"{place}: {error}") from None
+
+
+class Group:
+    """A concurrency group: how many of its handlers' runs there may be at one time.
+
+    Args:
+        limit: 1 excludes one another (ROS 2's MutuallyExclusive), None sets no limit (Reentrant).
+    """
+
+    def __init__(self, limit: int | None = 1) -> None:
+        if limit is not None and (not isinstance(limit, int) or limit < 1):
+            raise DeclarationError(f"{_here()}: a group's limit is 1 or more, or None for no limit, not {limit!r}")
+        self.limit = limit
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = self.name or name
+
+    def __repr__(self) -> str:
+        return f"Group({self.name or 'unnamed'}, limit={self.limit})"
+
+
+class _Held:
+    """A declaration that is an attribute of the class; on a node it gives what the node holds."""
+
+    attribute = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.attribute = name
+
+    def bind(self, node: Node) -> Any:
+        """Make, for one node, what is declared."""
+        raise NotImplementedError
+
+
+class Publisher(_Held, Generic[M]):
+    """A topic the node publishes.
+
+    Args:
+        type: The message class.
+        name: The topic: relative, absolute or `~/private`.
+        qos: A profile, or a queue depth.
+        depth: The same as a number for `qos`.
+    """
+
+    def __init__(self, type: type[M], name: str, qos: Qos | int = 10, *, depth: int | None = None) -> None:  # noqa: A002
+        self.place = _here()
+        _check_type(type, Message, "Publisher", self.place)
+        _check_name(name, "Publisher", self.place)
+        self.type, self.name, self.qos = type, name, _qos(qos, depth, self.place)
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> TopicPublisher[M]: ...
+    def __get__(self, node: Node | None, owner: type) -> Any:
+        return self if node is None else node._held[self.attribute]
+
+    def bind(self, node: Node) -> TopicPublisher[M]:
+        return node.create_publisher(self.type, self.name, self.qos)
+
+
+class Subscription(_Held, Generic[M]):
+    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as `Publisher`."""
+
+    def __init__(self, type: type[M], name: str, qos: Qos | int = 10, *, depth: int | None = None) -> None:  # noqa: A002
+        self.place = _here()
+        _check_type(type, Message, "Subscription", self.place)
+        _check_name(name, "Subscription", self.place)
+        self.type, self.name, self.qos = type, name, _qos(qos, depth, self.place)
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> TopicSubscription[M]: ...
+    def __get__(self, node: Node | None, owner: type) -> Any:
+        return self if node is None else node._held[self.attribute]
+
+    def bind(self, node: Node) -> TopicSubscription[M]:
+        return node.create_subscription(self.type, self.name, None, self.qos)
+
+
+class Client(_Held, Generic[Request, Response]):
+    """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`."""
+
+    def __init__(self, type: type[Service[Request, Response]], name: str) -> None:  # noqa: A002
+        self.place = _here()
+        _check_type(type, Service, "Client", self.place)
+        _check_name(name, "Client", self.place)
+        self.type, self.name = type, name
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> ServiceClient[Request, Response]: ...
+    def __get__(self, node: Node | None, owner: type) -> Any:
+        return self if node is None else node._held[self.attribute]
+
+    def bind(self, node: Node) -> ServiceClient[Request, Response]:
+        return node.create_client(self.type, self.name)
+
+
+class Param(_Held, Generic[V]):
+    """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
+
+    Args:
+        default: Its value when nobody sets it; decides the type. A bool, int, float, str, bytes, or list of one.
+        unit: For readers, as in `Hz` or `m/s`.
+        doc: One sentence.
+        ge, le, gt, lt: Limits: at least, at most, more than, less than.
+        read_only: Settable only from outside and at the start.
+        name: If it is not that of the attribute.
+    """
+
+    def __init__(
+        self,
+        default: V,
+        *,
+        unit: str = "",
+        doc: str = "",
+        ge: float | None = None,
+        le: float | None = None,
+        gt: float | None = None,
+        lt: float | None = None,
+        read_only: bool = False,
+        name: str = "",
+    ) -> None:
+        self.place = _here()
+        self._name = name
+        try:
+            self.parameter = Parameter(
+                name or "unnamed", type_of(default), default, self.place, unit, doc, ge, le, gt, lt, read_only
+            )
+            self.parameter.fit(default)
+        except GraphflowError as error:
+            raise DeclarationError(f"{self.place}: {error}") from None
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)
+        p = self.parameter
+        self.parameter = Parameter(
+            self._name or name, p.type, p.default, p.place, p.unit, p.doc, p.ge, p.le, p.gt, p.lt, p.read_only
+        )
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> V: ...
+    def __get__(self, node: Node | None, owner: type) -> Any:
+        return self if node is None else node.parameters.get(self.parameter.name)
+
+    def __set__(self, node: Node, value: V) -> None:
+        node.parameters.set({self.parameter.name: value}, source="node")
+
+    def bind(self, node: Node) -> Any:
+        return node.parameters.declare(self.parameter)
+
+
+# What a node does: decorators leave a mark on the function and return it as it was.
+
+
+@dataclass(frozen=True)
+class Handler:
+    """A decorated method."""
+
+    kind: str
+    place: Place
+    group: Group | None = None
+    thread: bool = False
+    type: Any = None
+    name: str = ""
+    qos: Qos = field(default_factory=Qos)
+    takes_info: bool = False
+    rate: Rate | None = None
+
+
+class Rate:
+    """How often a timer runs: a period in seconds or a frequency, perhaps from a parameter."""
+
+    def __init__(self, period: float | Param[Any] | None, hz: float | Param[Any] | None) -> None:
+        self._sources = (period, hz)
+
+    def parameters(self) -> list[str]:
+        """The parameters it is read from."""
+        return [source.parameter.name for source in self._sources if isinstance(source, Param)]
+
+    def period_ns(self, node: Node | None = None) -> int:
+        """The period now, or with the parameters' defaults when there is no node yet.
+
+        Raises:
+            ValueError: as `clock.period_ns`.
+        """
+
+        def plain(source: float | Param[Any] | None) -> float | None:
+            if not isinstance(source, Param):
+                return source
+            value = source.parameter.default if node is None else node.parameters.get(source.parameter.name)
+            return float(value)
+
+        period, hz = self._sources
+        return period_ns(plain(period), plain(hz))
+
+
+def _mark(fn: F, handler: Handler, arguments: range) -> F:
+    name = getattr(fn, "__name__", repr(fn))
+    if not inspect.isfunction(fn):
+        raise DeclarationError(f"{handler.place}: @{handler.kind} goes on a method, not on {fn!r}")
+    if handler.thread and inspect.iscoroutinefunction(fn):
+        raise DeclarationError(f"{handler.place}: {name}: thread=True is for `def`, an `async def` runs on the loop")
+    positional = [
+        p
+        for p in inspect.signature(fn).parameters.values()
+        if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty
+    ]
+    if len(positional) not in arguments:
+        wanted = " or ".join(["self", "self and one argument"][n - 1] for n in arguments)
+        raise DeclarationError(f"{handler.place}: {name} must take {wanted}, it takes {len(positional)} arguments")
+    place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
+    takes_info = handler.kind == "timer" and len(positional) == 2
+    object.__setattr__(handler, "place", place)
+    object.__setattr__(handler, "takes_info", takes_info)
+    setattr(fn, _MARK, handler)
+    return fn
+
+
+def subscription(
+    type: type[M],  # noqa: A002
+    name: str,
+    qos: Qos | int = 10,
+    *,
+    depth: int | None = None,
+    group: Group | None = None,
+    thread: bool = False,
+) -> Callable[[F], F]:
+    """Have the method called with each message of a topic: `async def heard(self, msg: String) -> None`."""
+    place = _here()
+    _check_type(type, Message, "@subscription", place)
+    _check_name(name, "@subscription", place)
+    handler = Handler("subscription", place, group, thread, type, name, _qos(qos, depth, place))
+    return lambda fn: _mark(fn, handler, range(2, 3))
+
+
+def timer(
+    period: float | Param[Any] | None = None,
+    *,
+    hz: float | Param[Any] | None = None,
+    group: Group | None = None,
+    thread: bool = False,
+) -> Callable[[F], F]:
+    """Have the method called once a period (seconds) or `hz` times a second; a parameter may stand for either.
+
+    Missed periods are skipped and the phase is kept. The method may take a `TimerInfo`.
+    """
+    place = _here()
+    if callable(period) and not isinstance(period, Param):
+        raise DeclarationError(f"{place}: write @timer(0.5) or @timer(hz=2.0), with a period")
+    try:
+        rate = Rate(period, hz)
+        rate.period_ns()
+    except (ValueError, TypeError) as error:
+        raise DeclarationError(f"{place}: @timer: {error}") from None
+    handler = Handler("timer", place, group, thread, rate=rate)
+    return lambda fn: _mark(fn, handler, range(1, 3))
+
+
+def service(
+    type: type[Service[Request, Response]],  # noqa: A002
+    name: str,
+    *,
+    group: Group | None = None,
+    thread: bool = False,
+) -> Callable[[F], F]:
+    """Have the method answer a service: `async def add(self, request: X.Request) -> X.Response`."""
+    place = _here()
+    _check_type(type, Service, "@service", place)
+    _check_name(name, "@service", place)
+    handler = Handler("service", place, group, thread, type, name)
+    return lambda fn: _mark(fn, handler, range(2, 3))
+
+
+def task(fn: F) -> F:
+    """Run the method once the node is up, beside everything else it does. An error in it ends the node."""
+    place = _here()
+    if not inspect.iscoroutinefunction(fn):
+        raise DeclarationError(f"{place}: @task goes on an `async def` method, without parentheses")
+    return _mark(fn, Handler("task", place), range(1, 2))
+
+
+def snake_case(class_name: str) -> str:
+    """`TurtleSim` as `turtle_sim`: the name of a node that was given none."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
+
+
+def default_name(cls: type[Node]) -> str:
+    """The name of a node of the class that is given none."""
+    return cls.node_name or snake_case(cls.__name__)
+
+
+def held(cls: type) -> dict[str, _Held]:
+    """The declarations of a class and its parents by attribute; a child's stand in place of its parents'."""
+    found: dict[str, _Held] = {}
+    for attribute, value in _members(cls):
+        if isinstance(value, _Held):
+            found[attribute] = value
+        else:
+            found.pop(attribute, None)
+    return found
+
+
+def handlers(cls: type) -> dict[str, Handler]:
+    """The handlers of a class and its parents by method name.
+
+    A child that overrides a handler's method without decorating it anew replaces the body only.
+    """
+    found: dict[str, Handler] = {}
+    for attribute, value in _members(cls):
+        mark = getattr(value, _MARK, None)
+        if isinstance(mark, Handler):
+            found[attribute] = mark
+        elif attribute in found and not inspect.isfunction(value):
+            del found[attribute]
+    return found
+
+
+def groups(cls: type) -> dict[str, Group]:
+    """The groups of a class and its parents by name."""
+    return {name: value for name, value in _members(cls) if isinstance(value, Group)}
+
+
+def _members(cls: type) -> Iterator[tuple[str, Any]]:
+    for parent in reversed(cls.__mro__):
+        yield from vars(parent).items()
+
+
+def interface_of(cls: type[Node]) -> Interface:
+    """Everything a node class declares, as data.
+
+    Raises:
+        DeclarationError: Two declarations contradict each other.
+    """
+    lines = getattr(cls, "__firstlineno__", 0)
+    try:
+        place = Place(inspect.getsourcefile(cls) or "", lines or inspect.getsourcelines(cls)[1])
+    except (OSError, TypeError):
+        place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
+    endpoints: list[Endpoint] = []
+    params: dict[str, Parameter] = {}
+    kinds = {Publisher: "publisher", Subscription: "subscription", Client: "client"}
+    for attribute, declared in held(cls).items():
+        if isinstance(declared, Param):
+            p = declared.parameter
+            if p.name in params:
+                raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
+            params[p.name] = p
+        elif isinstance(declared, (Publisher, Subscription, Client)):
+            type_name = declared.type.NAME if isinstance(declared, Client) else declared.type.SCHEMA.name
+            kind: Any = kinds[type(declared)]
+            endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
+    methods = handlers(cls)
+    for attribute, handler in methods.items():
+        if handler.kind in ("subscription", "service"):
+            type_name = handler.type.NAME if handler.kind == "service" else handler.type.SCHEMA.name
+            kind = handler.kind
+            endpoints.append(Endpoint(kind, handler.name, type_name, attribute, handler.place))
+    dynamic = cls.dynamic_names
+    return Interface(
+        class_path=f"{cls.__module__}:{cls.__qualname__}",
+        node_name=default_name(cls),
+        place=place,
+        doc=inspect.cleandoc(cls.__doc__ or ""),
+        endpoints=tuple(endpoints),
+        params=tuple(params.values()),
+        handlers=tuple(name for name, handler in methods.items() if handler.kind != "task"),
+        groups={name: group.limit for name, group in groups(cls).items()},
+        dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
+    )

@@ -1,0 +1,98 @@
+"""Python's logging as ROS 2's: the console's line format, and every record published on /rosout.
+
+Source: rcutils' default console format; rcl_interfaces/msg/Log.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+from graphflow.qos import ROSOUT
+from graphflow.runtime.endpoints import TopicPublisher
+from graphflow.times import Time
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+ROOT = "graphflow.node"
+LEVELS = {logging.DEBUG: 10, logging.INFO: 20, logging.WARNING: 30, logging.ERROR: 40, logging.CRITICAL: 50}
+_WORDS = {logging.DEBUG: "DEBUG", logging.INFO: "INFO", logging.WARNING: "WARN", logging.ERROR: "ERROR"}
+
+
+def node_logger(full_name: str) -> logging.Logger:
+    """The logger of the node `full_name`: `/turtle1/follower` logs as `turtle1.follower`."""
+    return logging.getLogger(f"{ROOT}.{full_name[1:].replace('/', '.')}")
+
+
+class ConsoleFormatter(logging.Formatter):
+    """ROS 2's line: `[INFO] [1700000000.123456789] [talker]: text`."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        name = record.name.removeprefix(f"{ROOT}.")
+        word = _WORDS.get(record.levelno, record.levelname if record.levelno < 50 else "FATAL")
+        line = f"[{word}] [{record.created:.9f}] [{name}]: {record.getMessage()}"
+        if record.exc_info and record.exc_info[0] is not None:
+            line += "\n" + self.formatException(record.exc_info)
+        return line
+
+
+def setup_console(level: int = logging.INFO) -> None:
+    """Write graphflow's log records to stderr in ROS 2's format. Calling it again changes the level only."""
+    logger = logging.getLogger("graphflow")
+    logger.setLevel(level)
+    if not any(isinstance(h.formatter, ConsoleFormatter) for h in logger.handlers):
+        handler = logging.StreamHandler(sys.stderr)
+        handler.setFormatter(ConsoleFormatter())
+        logger.addHandler(handler)
+
+
+class Rosout(logging.Handler):
+    """Publishes a node's log records on /rosout while the node runs."""
+
+    def __init__(self, node: Node) -> None:
+        super().__init__()
+        from graphflow.msgs.rcl_interfaces.msg import Log
+
+        self._node = node
+        self._thread = threading.get_ident()
+        self._publisher = TopicPublisher(node, Log, "/rosout", ROSOUT)
+
+    def attach(self) -> None:
+        """Take part in the node's life: open and close with its endpoints."""
+        self._node._openables.append(self)
+
+    def open(self) -> None:
+        self._publisher.open()
+        self._node.log.addHandler(self)
+
+    def close(self) -> None:
+        self._node.log.removeHandler(self)
+        self._publisher.close()
+        self._node.forget(self)
+        super().close()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        loop = self._node.context.loop
+        if threading.get_ident() == self._thread:
+            self._publish(record)
+        elif not loop.is_closed():
+            loop.call_soon_threadsafe(self._publish, record)
+
+    def _publish(self, record: logging.LogRecord) -> None:
+        from graphflow.msgs.rcl_interfaces.msg import Log
+
+        if not self._publisher.is_open:
+            return
+        message = Log(
+            stamp=Time(int(record.created * 1e9)),
+            level=LEVELS.get(record.levelno, 20),
+            name=record.name.removeprefix(f"{ROOT}."),
+            msg=record.getMessage(),
+            file=record.pathname,
+            function=record.funcName or "",
+            line=record.lineno,
+        )
+        self._publisher.publish(message)

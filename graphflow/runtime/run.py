@@ -1,0 +1,129 @@
+"""Running nodes: `graphflow.run(Talker())` is a whole program; `async with graphflow.graph(...)` is for your own."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from collections.abc import AsyncGenerator, Callable, Sequence
+from contextlib import asynccontextmanager
+from typing import Any
+
+from graphflow.errors import GraphflowError
+from graphflow.runtime.args import RosArgs, parse_ros_args
+from graphflow.runtime.context import Context
+from graphflow.runtime.node import Node
+from graphflow.runtime.rosout import setup_console
+
+
+@asynccontextmanager
+async def graph(*nodes: Node, context: Context | None = None) -> AsyncGenerator[Context, None]:
+    """Run nodes for the length of the block; a node that fails cancels the block and its error leaves it.
+
+    Args:
+        context: Where to run them; without one, a new one over Zenoh, closed at the end.
+    """
+    own = context is None
+    context = context or await Context.open()
+    started: list[Node] = []
+    try:
+        async with asyncio.TaskGroup() as group:
+            watchers = []
+            for node in nodes:
+                await node.start(context)
+                started.append(node)
+                watchers.append(group.create_task(node.wait_ended()))
+            try:
+                yield context
+            finally:
+                for watcher in watchers:
+                    watcher.cancel()
+    finally:
+        for node in reversed(started):
+            await node.stop()
+        if own:
+            await context.close()
+
+
+async def serve(
+    nodes: Sequence[Node],
+    context: Context,
+    stop: asyncio.Event,
+    ready: Callable[[Node], None] | None = None,
+) -> None:
+    """Run nodes until `stop` is set, one of them fails, or all have ended themselves.
+
+    Args:
+        ready: Called with each node once it has started.
+
+    Raises:
+        Exception: What ended a node.
+    """
+    started: list[Node] = []
+    waiting: list[asyncio.Task[Any]] = []
+    try:
+        for node in nodes:
+            await node.start(context)
+            started.append(node)
+            if ready is not None:
+                ready(node)
+        asked = asyncio.create_task(stop.wait())
+        waiting = [asked, *(asyncio.create_task(n.wait_ended()) for n in started)]
+        left = set(waiting)
+        while left - {asked} and asked in left:
+            done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+    finally:
+        for task in waiting:
+            task.cancel()
+        for node in reversed(started):
+            await node.stop()
+
+
+def catch_signals(stop: asyncio.Event) -> None:
+    """Set `stop` on SIGINT and SIGTERM."""
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        try:
+            loop.add_signal_handler(number, stop.set)
+        except (NotImplementedError, RuntimeError):  # no POSIX signals, or not the main thread
+            signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop.set))
+
+
+def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
+    """Run nodes until Ctrl-C or SIGTERM, then stop them in order.
+
+    Args:
+        nodes: Nodes, or node classes, which are then made with what the command line says.
+        args: Instead of the command line's words; `--ros-args -r from:=to -p name:=value` are understood.
+
+    Raises:
+        SystemExit: With 1 and a message when a node failed, with 2 when the arguments are wrong.
+    """
+    setup_console()
+    try:
+        ros = parse_ros_args(sys.argv[1:] if args is None else args)
+        made = [n if isinstance(n, Node) else make(n, ros) for n in nodes]
+        asyncio.run(_run(made))
+    except KeyboardInterrupt:
+        return
+    except GraphflowError as error:
+        raise SystemExit(f"error: {error}") from None
+    except Exception:
+        raise SystemExit(1) from None
+
+
+def make(cls: type[Node], ros: RosArgs) -> Node:
+    """A node as the command line wants it."""
+    return cls(remap=ros.remaps, overrides=ros.params_for(cls))
+
+
+async def _run(nodes: Sequence[Node]) -> None:
+    context = await Context.open()
+    stop = asyncio.Event()
+    catch_signals(stop)
+    try:
+        await serve(nodes, context, stop)
+    finally:
+        await context.close()

@@ -1,0 +1,288 @@
+"""How handlers run: activities, stepped straight from the arrival that caused them, under concurrency groups.
+
+An `Activity` is one run of a handler. It is a minimal asyncio task: the loop never hears of it unless the handler
+suspends, which saves a turn of the loop per message, and yet `asyncio.timeout`, `TaskGroup`, `current_task` and
+the rest work inside it from its first line (asyncio documents `_enter_task` and `_leave_task` for such tasks).
+
+A `Runner` feeds the items of one queue to one handler, a run at a time or as many as the group allows.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import AbstractEventLoop, CancelledError
+from asyncio.tasks import _enter_task, _leave_task
+from collections import deque
+from collections.abc import Callable, Coroutine
+from contextvars import Context, copy_context
+from inspect import iscoroutine
+from typing import Any
+
+from graphflow.machines.group import GroupState
+
+BURST = 64
+"""Runs of one handler in a row before the loop gets a turn."""
+
+
+class Activity:
+    """One run of a coroutine, with the part of `asyncio.Task`'s face that asyncio's own tools use.
+
+    Args:
+        finished: Called once with (result, error) when the coroutine has ended, its `finally` blocks included.
+    """
+
+    __slots__ = (
+        "__weakref__",
+        "_cancel_message",
+        "_cancel_requests",
+        "_context",
+        "_coroutine",
+        "_finished",
+        "_fut_waiter",
+        "_loop",
+        "_must_cancel",
+        "name",
+    )
+
+    def __init__(
+        self,
+        loop: AbstractEventLoop,
+        coroutine: Coroutine[Any, Any, Any],
+        name: str,
+        finished: Callable[[Any, BaseException | None], None],
+    ) -> None:
+        self.name = name
+        self._loop = loop
+        self._coroutine: Coroutine[Any, Any, Any] | None = coroutine
+        self._finished = finished
+        self._context: Context = copy_context()
+        self._fut_waiter: Any = None
+        self._must_cancel = False
+        self._cancel_message: Any = None
+        self._cancel_requests = 0
+
+    def __repr__(self) -> str:
+        return f"<Activity {self.name}{' done' if self.done() else ''}>"
+
+    def start(self) -> None:
+        """Run to the first suspension. Not from inside another task."""
+        self._context.run(self._step)
+
+    def _step(self, error: BaseException | None = None) -> None:
+        coroutine = self._coroutine
+        if coroutine is None:
+            return
+        if self._must_cancel:
+            if not isinstance(error, CancelledError):
+                error = self._cancelled()
+            self._must_cancel = False
+        self._fut_waiter = None
+        loop = self._loop
+        _enter_task(loop, self)  # type: ignore[arg-type]
+        try:
+            awaited = coroutine.send(None) if error is None else coroutine.throw(error)
+        except StopIteration as stop:
+            result, failure = stop.value, None
+        except (KeyboardInterrupt, SystemExit) as exit_:
+            _leave_task(loop, self)  # type: ignore[arg-type]
+            self._end(None, exit_)
+            raise
+        except BaseException as raised:
+            result, failure = None, raised
+        else:
+            _leave_task(loop, self)  # type: ignore[arg-type]
+            self._wait_for(awaited)
+            return
+        _leave_task(loop, self)  # type: ignore[arg-type]
+        self._end(result, failure)
+
+    def _wait_for(self, awaited: Any) -> None:
+        blocking = getattr(awaited, "_asyncio_future_blocking", None)
+        if awaited is None:
+            self._loop.call_soon(self._step, context=self._context)
+        elif blocking:
+            awaited._asyncio_future_blocking = False
+            awaited.add_done_callback(self._wakeup, context=self._context)
+            self._fut_waiter = awaited
+            if self._must_cancel and awaited.cancel(msg=self._cancel_message):
+                self._must_cancel = False
+        else:
+            wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which is nothing asyncio knows")
+            self._loop.call_soon(self._step, wrong, context=self._context)
+
+    def _wakeup(self, future: asyncio.Future[Any]) -> None:
+        try:
+            future.result()
+        except BaseException as error:
+            self._step(error)
+        else:
+            self._step()
+
+    def _end(self, result: Any, error: BaseException | None) -> None:
+        self._coroutine = None
+        self._finished(result, error)
+
+    def _cancelled(self) -> CancelledError:
+        return CancelledError() if self._cancel_message is None else CancelledError(self._cancel_message)
+
+    # What asyncio.timeout, TaskGroup and their like ask of the current task.
+
+    def cancel(self, msg: Any = None) -> bool:
+        """Raise CancelledError in the coroutine at its next step; False when it has ended."""
+        if self._coroutine is None:
+            return False
+        self._cancel_requests += 1
+        if self._fut_waiter is not None and self._fut_waiter.cancel(msg=msg):
+            return True
+        self._must_cancel = True
+        self._cancel_message = msg
+        return True
+
+    def cancelling(self) -> int:
+        return self._cancel_requests
+
+    def uncancel(self) -> int:
+        if self._cancel_requests:
+            self._cancel_requests -= 1
+            if not self._cancel_requests:
+                self._must_cancel = False
+        return self._cancel_requests
+
+    def done(self) -> bool:
+        return self._coroutine is None
+
+    def get_name(self) -> str:
+        return self.name
+
+    def get_coro(self) -> Coroutine[Any, Any, Any] | None:
+        return self._coroutine
+
+    def get_context(self) -> Context:
+        return self._context
+
+    def get_loop(self) -> AbstractEventLoop:
+        return self._loop
+
+
+Finished = Callable[[Any, Any, BaseException | None], None]
+
+
+class Runner:
+    """Feeds a queue to a handler under a group.
+
+    Args:
+        name: For messages: node, handler.
+        group: Whose slots the runs take.
+        items: The queue, filled by somebody else, who then calls `wake`.
+        invoke: Called with an item; returns a result, or a coroutine that will.
+        finished: Called with (item, result, error) after each run.
+    """
+
+    __slots__ = (
+        "_active",
+        "_closed",
+        "_finished",
+        "_group",
+        "_idle",
+        "_invoke",
+        "_loop",
+        "_waking",
+        "items",
+        "name",
+        "runs",
+    )
+
+    def __init__(
+        self,
+        loop: AbstractEventLoop,
+        name: str,
+        group: GroupState[Runner],
+        items: deque[Any],
+        invoke: Callable[[Any], Any],
+        finished: Finished,
+    ) -> None:
+        self.name = name
+        self.items = items
+        self.runs = 0
+        """Runs begun since the start."""
+        self._loop, self._group = loop, group
+        self._invoke, self._finished = invoke, finished
+        self._active: set[Activity] = set()
+        self._waking = False
+        self._closed = False
+        self._idle: asyncio.Future[None] | None = None
+
+    @property
+    def active(self) -> int:
+        """Runs that have begun and not ended."""
+        return len(self._active)
+
+    def wake(self) -> None:
+        """There may be something in the queue: run what the group allows."""
+        if self._waking or self._closed:
+            return
+        self._waking = True
+        try:
+            for _ in range(BURST):
+                if not self.items or not self._group.admit(self):
+                    return
+                self._run()
+        finally:
+            self._waking = False
+        if self.items:
+            self._loop.call_soon(self.wake)
+
+    def _granted(self) -> None:
+        """A slot was handed over."""
+        if self.items and not self._closed:
+            self._run()
+        else:
+            self._release()
+        self.wake()
+
+    def _run(self) -> None:
+        item = self.items.popleft()
+        self.runs += 1
+        try:
+            result = self._invoke(item)
+        except Exception as error:
+            self._ended(None, item, None, error)
+            return
+        if not iscoroutine(result):
+            self._ended(None, item, result, None)
+            return
+        activity = Activity(
+            self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error)
+        )
+        activity.start()
+        if not activity.done():
+            self._active.add(activity)
+
+    def _ended(self, activity: Activity | None, item: Any, result: Any, error: BaseException | None) -> None:
+        if activity is not None:
+            self._active.discard(activity)
+        try:
+            self._finished(item, result, error)
+        finally:
+            self._release()
+            self._look_idle()
+            self.wake()
+
+    def _release(self) -> None:
+        successor = self._group.release()
+        if successor is not None:
+            self._loop.call_soon(successor._granted)
+
+    def cancel(self) -> asyncio.Future[None]:
+        """Begin no more runs and cancel those under way; the future is done when they have ended."""
+        self._closed = True
+        self._group.withdraw(self)
+        self._idle = self._loop.create_future()
+        for activity in list(self._active):
+            activity.cancel()
+        self._look_idle()
+        return self._idle
+
+    def _look_idle(self) -> None:
+        if self._idle is not None and not self._active and not self._idle.done():
+            self._idle.set_result(None)

@@ -1,0 +1,59 @@
+"""Parameter values as rcl_interfaces/msg/ParameterValue, and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import ParameterError
+from graphflow.interface import TYPE_NAMES
+
+if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces import msg as rcl
+
+VALUE_FIELDS = (
+    "",
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+"""The field of ParameterValue that each type uses."""
+
+
+def to_message(value: Any, type_: int) -> rcl.ParameterValue:
+    """A value as message.
+
+    Args:
+        type_: A number of rcl_interfaces/msg/ParameterType.
+    """
+    from graphflow.msgs.rcl_interfaces.msg import ParameterValue
+
+    return ParameterValue(type=type_, **{VALUE_FIELDS[type_]: value})
+
+
+def from_message(message: rcl.ParameterValue) -> Any:
+    """The Python value of a message; None when it is not set.
+
+    Raises:
+        ParameterError: Its type number is none of ROS 2's.
+    """
+    if message.type == 0:
+        return None
+    if message.type >= len(VALUE_FIELDS):
+        raise ParameterError(f"{message.type} is no parameter type")
+    value = getattr(message, VALUE_FIELDS[message.type])
+    if message.type == 5:
+        return value.tobytes()
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def type_word(type_: int) -> str:
+    """How `param get` begins its line: `Integer value is`, `Double values are`."""
+    name = TYPE_NAMES[type_]
+    word = name.removesuffix(" array").capitalize()
+    return f"{word} values are" if name.endswith("array") else f"{word} value is"

@@ -1,0 +1,74 @@
+"""A clock that a test turns by hand."""
+
+from __future__ import annotations
+
+import asyncio
+import heapq
+import itertools
+from collections.abc import Callable
+from typing import Any
+
+from graphflow.runtime.clock import Clock
+from graphflow.times import Time, to_ns
+
+START_NS = 1_700_000_000_000_000_000
+"""The time of day at which every manual clock begins."""
+_TURNS = 100_000
+
+
+class _Alarm:
+    def __init__(self, callback: Callable[[], None]) -> None:
+        self.callback: Callable[[], None] | None = callback
+
+    def cancel(self) -> None:
+        self.callback = None
+
+
+class ManualClock(Clock):
+    """Stands still until `advance`."""
+
+    def __init__(self) -> None:
+        self._elapsed_ns = 0
+        self._alarms: list[tuple[int, int, _Alarm]] = []
+        self._order = itertools.count()
+
+    def now(self) -> Time:
+        return Time(START_NS + self._elapsed_ns)
+
+    def monotonic_ns(self) -> int:
+        return self._elapsed_ns
+
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> _Alarm:
+        alarm = _Alarm(callback)
+        heapq.heappush(self._alarms, (when_ns, next(self._order), alarm))
+        return alarm
+
+    async def advance(self, seconds: float) -> None:
+        """Let `seconds` pass: whatever falls due happens in order, each with all its consequences."""
+        until = self._elapsed_ns + to_ns(seconds)
+        await settle()
+        while self._alarms and self._alarms[0][0] <= until:
+            when_ns, _, alarm = heapq.heappop(self._alarms)
+            if alarm.callback is not None:
+                self._elapsed_ns = max(self._elapsed_ns, when_ns)
+                # By the loop and not from here: a handler is not to run inside the test's own task.
+                asyncio.get_running_loop().call_soon(alarm.callback)
+                await settle()
+        self._elapsed_ns = until
+        await settle()
+
+
+async def settle() -> None:
+    """Return when nothing is left to do but wait: for time, for a thread, for the outside world.
+
+    Raises:
+        RuntimeError: Something keeps itself busy for ever.
+    """
+    loop = asyncio.get_running_loop()
+    # asyncio has no public way to ask whether the loop is idle.
+    ready: Any = getattr(loop, "_ready", ())
+    for _ in range(_TURNS):
+        await asyncio.sleep(0)
+        if not ready:
+            return
+    raise RuntimeError("the graph does not come to rest: a handler or task keeps waking itself without waiting")

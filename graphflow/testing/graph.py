@@ -1,0 +1,126 @@
+"""A graph for one test: nodes on a memory network under a manual clock."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+from collections.abc import Iterator
+from typing import Any, Generic, TypeVar
+
+from graphflow.msgs.base import Message, Request, Response, Service
+from graphflow.qos import Durability, Qos
+from graphflow.runtime.context import Context
+from graphflow.runtime.endpoints import TopicPublisher
+from graphflow.runtime.node import Node
+from graphflow.testing.clock import ManualClock, settle
+from graphflow.transport.memory import Network
+
+M = TypeVar("M", bound=Message)
+
+
+class Tap(Generic[M]):
+    """What has been said on a topic since the tap was opened; a sequence of messages."""
+
+    def __init__(self) -> None:
+        self.messages: list[M] = []
+
+    def __iter__(self) -> Iterator[M]:
+        return iter(self.messages)
+
+    def __len__(self) -> int:
+        return len(self.messages)
+
+    def __getitem__(self, index: int) -> M:
+        return self.messages[index]
+
+    def __bool__(self) -> bool:
+        return bool(self.messages)
+
+    @property
+    def latest(self) -> M:
+        """The newest message; IndexError when there is none."""
+        return self.messages[-1]
+
+
+class Graph:
+    """Nodes, a clock and a network for the length of a test. Made by the fixture `graph`."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.network = Network()
+        self.nodes: list[Node] = []
+        self._contexts: list[Context] = []
+        self._names = itertools.count(1)
+        self._tester: Node | None = None
+
+    async def start(self, *nodes: Node) -> None:
+        """Start nodes, each as if in a process of its own, and let them settle."""
+        for node in nodes:
+            context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
+            self._contexts.append(context)
+            await node.start(context)
+            self.nodes.append(node)
+        await settle()
+
+    async def stop(self, node: Node) -> None:
+        """Stop one node."""
+        await node.stop()
+        await settle()
+
+    def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
+        """Collect everything said on `topic` from now on."""
+        tap: Tap[M] = Tap()
+        self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
+        return tap
+
+    def publisher(self, type_: type[M], topic: str, qos: Qos | int = 10) -> TopicPublisher[M]:
+        """A publisher for the test to speak with."""
+        return self._test_node().create_publisher(type_, topic, qos)
+
+    async def call(
+        self, type_: type[Service[Request, Response]], name: str, request: Request, *, timeout: float = 10.0
+    ) -> Response:
+        """Call a service; the clock is not needed for it.
+
+        Raises:
+            CallError: as `ServiceClient.call`.
+        """
+        client = self._test_node().create_client(type_, name)
+        await settle()
+        try:
+            return await client.call(request, timeout=timeout)
+        finally:
+            client.close()
+
+    async def settle(self) -> None:
+        """Let everything happen that can happen without time passing."""
+        await settle()
+
+    async def close(self) -> None:
+        """Stop all nodes; raises the error of a node that failed and whose failure the test did not take."""
+        for node in reversed(self.nodes):
+            await node.stop()
+        for context in self._contexts:
+            await context.close()
+
+    def _test_node(self) -> Node:
+        if self._tester is None:
+            context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
+            self._contexts.append(context)
+            self._tester = Node(f"_test_{next(self._names)}")
+            # Node.start is a coroutine for the sake of what it may wait for; a bare node waits for nothing.
+            _run_now(self._tester.start(context))
+            self.nodes.append(self._tester)
+        return self._tester
+
+
+def _run_now(coroutine: Any) -> None:
+    try:
+        coroutine.send(None)
+    except StopIteration:
+        return
+    raise AssertionError("starting a bare node waited")
+
+
+TRANSIENT_LOCAL = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL)
+"""For taps on latched topics."""

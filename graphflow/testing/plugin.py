@@ -1,0 +1,55 @@
+"""The pytest plugin: the fixture `graph`, and `async def` tests run in an event loop of their own.
+
+Nothing heavy is imported before a test asks for it: the plugin is loaded by every pytest run of an environment that
+has graphflow installed. Where another plugin runs asynchronous tests (pytest-asyncio, anyio), it keeps those that
+do not use `graph`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from graphflow.testing.graph import Graph
+
+LIMIT = 60.0
+"""Seconds of real time that an asynchronous test may take."""
+
+
+@pytest.fixture
+def graphflow_runner() -> Iterator[asyncio.Runner]:
+    """The event loop of one test."""
+    with asyncio.Runner() as runner:
+        yield runner
+
+
+@pytest.fixture
+def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
+    """A graph in memory under a manual clock; all its nodes are stopped after the test."""
+    from graphflow.testing.graph import Graph
+
+    made = Graph()
+    yield made
+    graphflow_runner.run(made.close())
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
+    """Run an `async def` test that uses `graph` or `graphflow_runner`."""
+    if not inspect.iscoroutinefunction(pyfuncitem.obj) or "graphflow_runner" not in pyfuncitem.fixturenames:
+        return None
+    runner: Any = pyfuncitem.funcargs["graphflow_runner"]
+    wanted = pyfuncitem._fixtureinfo.argnames
+    arguments: dict[str, Any] = {name: pyfuncitem.funcargs[name] for name in wanted}
+
+    async def limited() -> None:
+        async with asyncio.timeout(LIMIT):
+            await pyfuncitem.obj(**arguments)
+
+    runner.run(limited())
+    return True

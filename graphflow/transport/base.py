@@ -1,0 +1,201 @@
+"""What the runtime asks of a network, as small protocols, and the queue through which foreign threads reach the loop.
+
+The one path of whatever arrives: the network's thread appends it to an `Inbox`, which is bounded, and rings the
+`Bell` if it is silent; the loop empties the inbox. Payloads stay what the network gave until a handler is about to
+run, so that a message dropped from a full inbox has cost nothing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from graphflow.qos import Qos
+
+if TYPE_CHECKING:
+    from asyncio import AbstractEventLoop
+
+Payload = bytes | bytearray | memoryview
+
+
+class Closable(Protocol):
+    """Something declared on the network, until it is closed. Closing twice is harmless."""
+
+    def close(self) -> None: ...
+
+
+class Sender(Closable, Protocol):
+    """A publication on one key."""
+
+    def put(self, payload: Payload, attachment: bytes) -> None:
+        """Send without waiting. A receiver that cannot keep up loses messages; the sender is not held."""
+
+
+class Caller(Closable, Protocol):
+    """Requests to the servers on one key."""
+
+    def call(
+        self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
+    ) -> Callable[[], None]:
+        """Send a request.
+
+        Args:
+            answered: Called on the loop for each answer, and at the end with None.
+
+        Returns:
+            A function that gives the request up; no answer comes after it.
+        """
+
+    def has_server(self) -> bool:
+        """Whether the network knows a server that this caller would reach."""
+
+
+class Answer(NamedTuple):
+    """One answer to a call."""
+
+    payload: bytes
+    attachment: bytes | None = None
+    is_error: bool = False
+
+
+class Request(Protocol):
+    """One request as a server gets it. It must be answered once: until then the caller waits."""
+
+    @property
+    def payload(self) -> bytes: ...
+
+    @property
+    def attachment(self) -> bytes | None: ...
+
+    def reply(self, payload: Payload, attachment: bytes) -> None: ...
+
+    def reply_error(self, payload: bytes) -> None: ...
+
+
+class Arrival(Protocol):
+    """One publication as it arrived, not yet copied out of the network's memory."""
+
+    @property
+    def payload(self) -> bytes: ...
+
+    @property
+    def attachment(self) -> bytes | None: ...
+
+
+class Session(Protocol):
+    """One process's place on the network."""
+
+    zid: str
+    """The session's id as it stands in tokens: lower-case hex."""
+    bell: Bell
+    """Rung by this session's inboxes."""
+
+    def open_sender(self, key: str, qos: Qos) -> Sender: ...
+
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> Closable:
+        """Put every publication on `key` into `inbox`; `read` opens what is found there."""
+
+    def open_server(self, key: str, inbox: Inbox) -> Closable:
+        """Put every request on `key` into `inbox`, as `Request`s."""
+
+    def open_caller(self, key: str) -> Caller: ...
+
+    def announce(self, token: str) -> Closable:
+        """Show a liveliness token for as long as this process lives and the result is not closed."""
+
+    def watch(self, key: str, changed: Callable[[str, bool], None]) -> Closable:
+        """Call `changed(token, alive)` on the loop for every token that matches, also those already there."""
+
+    def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
+        """Payload and attachment of something that `open_receiver` put into an inbox."""
+
+    async def close(self) -> None: ...
+
+
+class Bell:
+    """Wakes the loop, once for a burst.
+
+    Args:
+        loop: The loop to wake.
+        threads: Whether rings come from other threads than the loop's.
+    """
+
+    def __init__(self, loop: AbstractEventLoop, *, threads: bool = True) -> None:
+        self._loop = loop
+        self._rung: deque[Inbox] = deque()
+        self._pending = False
+        self._wake = loop.call_soon_threadsafe if threads else loop.call_soon
+        self._fd: int | None = None
+        if threads and hasattr(os, "eventfd"):
+            self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
+            loop.add_reader(self._fd, self._answer)
+
+    def ring(self, inbox: Inbox) -> None:
+        """Have the loop attend to `inbox`. From any thread."""
+        self._rung.append(inbox)
+        if self._pending:
+            return
+        self._pending = True
+        if self._fd is not None:
+            os.eventfd_write(self._fd, 1)
+        elif not self._loop.is_closed():
+            self._wake(self._attend)
+
+    def _answer(self) -> None:
+        assert self._fd is not None
+        os.eventfd_read(self._fd)
+        self._attend()
+
+    def _attend(self) -> None:
+        self._pending = False
+        rung = self._rung
+        while rung:
+            rung.popleft().attend()
+
+    def close(self) -> None:
+        """Stop waking the loop; rings from now on are lost."""
+        self._pending = True
+        if self._fd is not None:
+            self._loop.remove_reader(self._fd)
+            os.close(self._fd)
+            self._fd = None
+
+
+class Inbox:
+    """A bounded queue that a foreign thread fills and the loop empties; when full the oldest is dropped.
+
+    Args:
+        bell: Wakes the loop.
+        depth: Items kept; None for no bound.
+        ready: Called on the loop when there is something and nobody is attending to it yet.
+    """
+
+    __slots__ = ("_bell", "_ringing", "dropped", "items", "ready", "received")
+
+    def __init__(self, bell: Bell, depth: int | None, ready: Callable[[], None]) -> None:
+        self.items: deque[Any] = deque(maxlen=depth)
+        self.ready = ready
+        self.received = 0
+        """Items put in since the start."""
+        self.dropped = 0
+        """Items lost because the queue was full."""
+        self._bell = bell
+        self._ringing = False
+
+    def put(self, item: Any) -> None:
+        """Add an item. From any one thread."""
+        items = self.items
+        if len(items) == items.maxlen:
+            self.dropped += 1
+        items.append(item)
+        self.received += 1
+        if not self._ringing:
+            self._ringing = True
+            self._bell.ring(self)
+
+    def attend(self) -> None:
+        """Called by the bell on the loop."""
+        self._ringing = False  # before the queue is read, so that what comes now rings again
+        self.ready()

@@ -1,0 +1,75 @@
+"""A client session for short commands: blocking, without asyncio, and invisible in the graph."""
+
+from __future__ import annotations
+
+import queue
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from graphflow.errors import SupervisorError
+from graphflow.transport.base import Answer
+from graphflow.transport.config import close_session, rendezvous_endpoint
+from graphflow.transport.rendezvous import join
+
+TOKENS_LIMIT = 2.0
+"""Seconds that asking for tokens may take."""
+
+
+class Client:
+    """A session at the rendezvous.
+
+    Raises:
+        TransportError: as `rendezvous.join`.
+        SupervisorError: Nobody is there (exit 3).
+    """
+
+    def __init__(self) -> None:
+        session = join()
+        if session is None:
+            raise SupervisorError(
+                f"nothing is running: nobody answers at {rendezvous_endpoint()}; start a graph with graphflow up, "
+                "or a node with graphflow run",
+                exit_code=3,
+            )
+        self._session = session
+
+    @property
+    def zid(self) -> str:
+        return str(self._session.info.zid())
+
+    def tokens(self, key: str) -> list[str]:
+        """Every liveliness token that matches."""
+        replies = self._session.liveliness().get(key, timeout=TOKENS_LIMIT)
+        return [str(r.ok.key_expr) for r in replies if r.ok is not None]
+
+    def call(self, key: str, payload: bytes, attachment: bytes, timeout: float) -> Answer | None:
+        """Ask the servers on a key; the first answer, or None when none came and none will.
+
+        Raises:
+            TimeoutError: Nothing came within `timeout` seconds.
+        """
+        answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._session.get(
+            key,
+            Callback(answers.put, drop=lambda: answers.put(None), indirect=False),
+            payload=payload,
+            attachment=attachment,
+            target=zenoh.QueryTarget.ALL_COMPLETE,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=timeout + 1.0,
+        )
+        try:
+            reply = answers.get(timeout=timeout)
+        except queue.Empty:
+            raise TimeoutError from None
+        if reply is None:
+            return None
+        if reply.ok is None:
+            return Answer(reply.err.payload.to_bytes(), None, True)
+        beside = reply.ok.attachment
+        return Answer(reply.ok.payload.to_bytes(), beside.to_bytes() if beside is not None else None, False)
+
+    def close(self) -> None:
+        close_session(self._session)

@@ -1,0 +1,201 @@
+"""A network inside one process: for tests and notebooks. Same promises as the real one, and no thread.
+
+Everything is delivered by the loop in the order it was sent, never inside the call that sent it. Like Zenoh, keys
+match exactly, a request goes to every server of its key, and a transient-local sender keeps its last messages for
+receivers that ask for them.
+"""
+
+from __future__ import annotations
+
+import itertools
+from asyncio import AbstractEventLoop
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from graphflow.qos import Durability, Qos
+from graphflow.transport.base import Answer, Bell, Inbox, Payload
+
+_zids = itertools.count(1)
+
+
+class _Sample(NamedTuple):
+    payload: bytes
+    attachment: bytes | None
+
+
+class Network:
+    """The medium that memory sessions share."""
+
+    def __init__(self) -> None:
+        self.senders: dict[str, list[_Sender]] = {}
+        self.receivers: dict[str, list[Inbox]] = {}
+        self.servers: dict[str, list[Inbox]] = {}
+        self.tokens: dict[str, None] = {}
+        self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
+
+    def session(self, loop: AbstractEventLoop) -> MemorySession:
+        """A new participant."""
+        return MemorySession(self, loop)
+
+
+class _Declared:
+    """Something in one of the network's lists, until closed."""
+
+    def __init__(self, undo: Callable[[], None]) -> None:
+        self._undo: Callable[[], None] | None = undo
+
+    def close(self) -> None:
+        undo, self._undo = self._undo, None
+        if undo is not None:
+            undo()
+
+
+class _Sender:
+    def __init__(self, network: Network, key: str, qos: Qos) -> None:
+        self._network, self._key = network, key
+        keeps = qos.durability is Durability.TRANSIENT_LOCAL
+        self.history: deque[_Sample] = deque(maxlen=qos.depth if keeps else 0)
+        network.senders.setdefault(key, []).append(self)
+
+    def put(self, payload: Payload, attachment: bytes) -> None:
+        sample = _Sample(bytes(payload), attachment)
+        self.history.append(sample)
+        for inbox in self._network.receivers.get(self._key, ()):
+            inbox.put(sample)
+
+    def close(self) -> None:
+        if self in self._network.senders.get(self._key, ()):
+            self._network.senders[self._key].remove(self)
+
+
+class _Request:
+    def __init__(self, payload: bytes, attachment: bytes, call: _Call) -> None:
+        self.payload, self.attachment = payload, attachment
+        self._call: _Call | None = call
+
+    def reply(self, payload: Payload, attachment: bytes) -> None:
+        self._finish(Answer(bytes(payload), attachment))
+
+    def reply_error(self, payload: bytes) -> None:
+        self._finish(Answer(payload, None, is_error=True))
+
+    def _finish(self, answer: Answer) -> None:
+        call, self._call = self._call, None
+        if call is not None:
+            call.server_done(answer)
+
+    def __del__(self) -> None:
+        if self._call is not None:
+            self._call.server_done(None)
+
+
+class _Call:
+    def __init__(self, loop: AbstractEventLoop, servers: int, answered: Callable[[Answer | None], None]) -> None:
+        self._loop, self._open, self._answered = loop, servers, answered
+        self._given_up = False
+
+    def server_done(self, answer: Answer | None) -> None:
+        self._open -= 1
+        for event in ([answer] if answer is not None else []) + ([None] if self._open <= 0 else []):
+            if not self._loop.is_closed():
+                self._loop.call_soon(self._deliver, event)
+
+    def _deliver(self, event: Answer | None) -> None:
+        if not self._given_up:
+            self._answered(event)
+
+    def give_up(self) -> None:
+        self._given_up = True
+
+
+class _Caller:
+    def __init__(self, network: Network, loop: AbstractEventLoop, key: str) -> None:
+        self._network, self._loop, self._key = network, loop, key
+
+    def call(
+        self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
+    ) -> Callable[[], None]:
+        servers = self._network.servers.get(self._key, [])
+        call = _Call(self._loop, len(servers), answered)
+        if not servers:
+            call.server_done(None)
+        for inbox in servers:
+            inbox.put(_Request(bytes(payload), attachment, call))
+        return call.give_up
+
+    def has_server(self) -> bool:
+        return bool(self._network.servers.get(self._key))
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+class MemorySession:
+    """One participant of a `Network`."""
+
+    def __init__(self, network: Network, loop: AbstractEventLoop) -> None:
+        self.zid = f"{next(_zids):x}"
+        self.bell = Bell(loop, threads=False)
+        self._network, self._loop = network, loop
+        self._declared: list[_Declared] = []
+
+    def open_sender(self, key: str, qos: Qos) -> _Sender:
+        return _Sender(self._network, key, qos)
+
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> _Declared:
+        if qos.durability is Durability.TRANSIENT_LOCAL:
+            for sender in self._network.senders.get(key, ()):
+                for sample in list(sender.history)[-qos.depth :]:
+                    inbox.put(sample)
+        return self._list(self._network.receivers.setdefault(key, []), inbox)
+
+    def open_server(self, key: str, inbox: Inbox) -> _Declared:
+        return self._list(self._network.servers.setdefault(key, []), inbox)
+
+    def open_caller(self, key: str) -> _Caller:
+        return _Caller(self._network, self._loop, key)
+
+    def announce(self, token: str) -> _Declared:
+        self._network.tokens[token] = None
+        self._tell(token, True)
+
+        def withdraw() -> None:
+            self._network.tokens.pop(token, None)
+            self._tell(token, False)
+
+        return self._keep(_Declared(withdraw))
+
+    def watch(self, key: str, changed: Callable[[str, bool], None]) -> _Declared:
+        watcher = (key, changed)
+        self._network.watchers.append(watcher)
+        for token in self._network.tokens:
+            if _matches(key, token):
+                self._loop.call_soon(changed, token, True)
+        return self._keep(_Declared(lambda: self._network.watchers.remove(watcher)))
+
+    def read(self, arrival: _Sample) -> tuple[bytes, bytes | None]:
+        return arrival
+
+    async def close(self) -> None:
+        for declared in reversed(self._declared):
+            declared.close()
+        self._declared.clear()
+        self.bell.close()
+
+    def _tell(self, token: str, alive: bool) -> None:
+        for key, changed in self._network.watchers:
+            if _matches(key, token) and not self._loop.is_closed():
+                self._loop.call_soon(changed, token, alive)
+
+    def _list(self, members: list[Inbox], inbox: Inbox) -> _Declared:
+        members.append(inbox)
+        return self._keep(_Declared(lambda: members.remove(inbox)))
+
+    def _keep(self, declared: _Declared) -> _Declared:
+        self._declared.append(declared)
+        return declared
+
+
+def _matches(key: str, token: str) -> bool:
+    return token.startswith(key.removesuffix("**")) if key.endswith("/**") else token == key

@@ -1,0 +1,149 @@
+"""The rendezvous: one router per machine and for all domains, through which sessions find each other.
+
+It is a second session inside some long-lived graphflow process: whoever binds the port first has it. When that
+process dies the others, whose direct links go on, try to take the port over at once. A Zenoh router that is
+already there, such as rmw_zenohd, is joined. Anything else on the port is an error that says what it is.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+
+import zenoh
+
+from graphflow.errors import TransportError
+from graphflow.transport.config import ENDPOINT_VARIABLE, close_session, config, open_session, rendezvous_endpoint
+
+TOKENS = "@graphflow/rendezvous"
+"""A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
+ANSWER_LIMIT = 0.5
+"""Seconds a listener may take to answer."""
+
+
+def user_id() -> int:
+    """This process's user, 0 where the system has none."""
+    return os.getuid() if hasattr(os, "getuid") else 0
+
+
+def address(endpoint: str) -> tuple[str, int]:
+    """Host and port of `tcp/HOST:PORT`.
+
+    Raises:
+        TransportError: It is something else.
+    """
+    protocol, _, rest = endpoint.partition("/")
+    host, _, port = rest.rpartition(":")
+    if protocol != "tcp" or not host or not port.isdecimal():
+        raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: write it as tcp/127.0.0.1:7447")
+    return host, int(port)
+
+
+def join() -> zenoh.Session | None:
+    """A client session at the rendezvous, or None when nobody listens there.
+
+    Raises:
+        TransportError: What listens is no Zenoh, does not answer, or belongs to another user.
+    """
+    endpoint = rendezvous_endpoint()
+    host, port = address(endpoint)
+    try:
+        socket.create_connection((host, port), ANSWER_LIMIT).close()
+    except ConnectionRefusedError:
+        return None
+    except OSError as error:
+        raise TransportError(occupied(endpoint, f"cannot be reached ({error})")) from None
+    try:
+        session = open_session(config("client", connect=endpoint))
+    except TransportError:
+        raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s")) from None
+    try:
+        _refuse_strangers(session, endpoint)
+    except BaseException:
+        close_session(session)
+        raise
+    return session
+
+
+def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
+    for reply in session.liveliness().get(f"{TOKENS}/**", timeout=ANSWER_LIMIT):
+        if reply.ok is None:
+            continue
+        parts = str(reply.ok.key_expr).split("/")
+        if len(parts) == 5 and parts[3] != str(user_id()):
+            raise TransportError(
+                f"the rendezvous at {endpoint} belongs to user {_user_name(parts[3])} (process {parts[4]}); "
+                f"your nodes and theirs would see each other. Start with --private for a port and a domain of your "
+                f"own, or set {ENDPOINT_VARIABLE}=tcp/127.0.0.1:PORT"
+            )
+
+
+def _user_name(uid: str) -> str:
+    try:
+        import pwd
+
+        return f"{pwd.getpwuid(int(uid)).pw_name} ({uid})"
+    except (ImportError, KeyError, ValueError):
+        return uid
+
+
+def occupied(endpoint: str, what: str) -> str:
+    """A sentence about whoever listens at an endpoint and is of no use there, and what to do about it."""
+    host, port = address(endpoint)
+    owner = _listener(port)
+    return (
+        f"{endpoint}: {owner or 'the process listening there'} {what}. End it"
+        f"{f' (or continue it, if it is stopped: kill -CONT {owner.split()[1]})' if owner else ''}, "
+        f"or set {ENDPOINT_VARIABLE}=tcp/{host}:OTHER_PORT"
+    )
+
+
+def _listener(port: int) -> str:
+    """`process PID (name)` of whoever listens on a TCP port, as far as this user may see it."""
+    import psutil
+
+    try:
+        for connection in psutil.net_connections("tcp"):
+            here = connection.laddr and connection.laddr.port == port
+            if here and connection.status == psutil.CONN_LISTEN and connection.pid:
+                return f"process {connection.pid} ({psutil.Process(connection.pid).name()})"
+    except psutil.Error:
+        return ""
+    return ""
+
+
+def host() -> zenoh.Session | None:
+    """Become the rendezvous: a router session on its port; None when the port is taken."""
+    try:
+        session = open_session(config("router", listen=rendezvous_endpoint()))
+    except TransportError:
+        return None
+    session.liveliness().declare_token(f"{TOKENS}/{session.info.zid()}/{user_id()}/{os.getpid()}")
+    return session
+
+
+def free_endpoint() -> str:
+    """An endpoint on a loopback port that nobody uses now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def establish() -> zenoh.Session | None:
+    """Make sure that there is a rendezvous: join what is there, else host it. Blocks for some milliseconds.
+
+    Returns:
+        The router session if this process is the rendezvous now, else None.
+
+    Raises:
+        TransportError: as `join`.
+    """
+    for _ in range(5):
+        session = join()
+        if session is not None:
+            close_session(session)
+            return None
+        router = host()
+        if router is not None:
+            return router
+    raise TransportError(occupied(rendezvous_endpoint(), "can neither be bound nor joined"))

@@ -1,0 +1,237 @@
+"""The network over Eclipse Zenoh, configured as rmw_zenoh's peers expect.
+
+Zenoh calls back on threads of its own. What runs there only appends to an inbox and rings its bell: a call into
+Zenoh, a log line or user code in a callback can stall every other stream of the process.
+
+Data comes through Zenoh's default callback thread, one per subscription, which takes many samples per turn of the
+interpreter's lock; requests, answers and tokens come directly (`indirect=False`), since the default would start a
+thread per declaration and per call.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from asyncio import AbstractEventLoop
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from graphflow.qos import Durability, Qos, Reliability
+from graphflow.transport.base import Answer, Bell, Inbox, Payload
+from graphflow.transport.config import QUERY_LIMIT_MS, close_session, config, open_session, rendezvous_endpoint
+
+logger = logging.getLogger("graphflow.transport")
+
+
+class _Declared:
+    """A Zenoh declaration, until closed."""
+
+    def __init__(self, *declarations: Any) -> None:
+        self._declarations = declarations
+
+    def close(self) -> None:
+        declarations, self._declarations = self._declarations, ()
+        for declaration in declarations:
+            try:
+                declaration.undeclare()
+            except zenoh.ZError as error:  # the session is closed already
+                logger.debug("undeclare: %s", error)
+
+
+class _ZenohSender(_Declared):
+    def __init__(self, publisher: Any) -> None:
+        super().__init__(publisher)
+        self._put = publisher.put
+
+    def put(self, payload: Payload, attachment: bytes) -> None:
+        self._put(payload, attachment=attachment)
+
+
+class _ZenohRequest:
+    """One query, answered at most once."""
+
+    __slots__ = ("_key", "_query")
+
+    def __init__(self, query: zenoh.Query, key: str) -> None:
+        self._query, self._key = query, key
+
+    @property
+    def payload(self) -> bytes:
+        payload = self._query.payload
+        return payload.to_bytes() if payload is not None else b""
+
+    @property
+    def attachment(self) -> bytes | None:
+        attachment = self._query.attachment
+        return attachment.to_bytes() if attachment is not None else None
+
+    def reply(self, payload: Payload, attachment: bytes) -> None:
+        with self._query as query:
+            query.reply(self._key, payload, attachment=attachment)
+
+    def reply_error(self, payload: bytes) -> None:
+        with self._query as query:
+            query.reply_err(payload)
+
+
+class _ZenohCaller(_Declared):
+    def __init__(self, querier: zenoh.Querier, bell: Bell) -> None:
+        super().__init__(querier)
+        self._querier, self._bell = querier, bell
+
+    def call(
+        self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
+    ) -> Callable[[], None]:
+        wanted = True
+
+        def deliver() -> None:
+            while inbox.items and wanted:
+                reply = inbox.items.popleft()
+                answered(None if reply is None else _answer(reply))
+
+        inbox = Inbox(self._bell, None, deliver)
+        token = zenoh.CancellationToken()
+        self._querier.get(
+            Callback(inbox.put, drop=lambda: inbox.put(None), indirect=False),
+            payload=payload,
+            attachment=attachment,
+            cancellation_token=token,
+        )
+
+        def give_up() -> None:
+            nonlocal wanted
+            wanted = False
+            token.cancel()  # type: ignore[no-untyped-call]
+
+        return give_up
+
+    def has_server(self) -> bool:
+        return bool(getattr(self._querier.matching_status, "matching", self._querier.matching_status))
+
+
+def _answer(reply: zenoh.Reply) -> Answer:
+    sample = reply.ok
+    if sample is None:
+        error = reply.err
+        return Answer(error.payload.to_bytes() if error is not None else b"", None, True)
+    attachment = sample.attachment
+    return Answer(sample.payload.to_bytes(), attachment.to_bytes() if attachment is not None else None, False)
+
+
+class ZenohSession:
+    """A node process's session: a peer on loopback that finds the others through the rendezvous.
+
+    Args:
+        loop: Where everything is delivered.
+        mode: `peer`, or `client` to have all traffic pass through the rendezvous.
+
+    Raises:
+        TransportError: Zenoh refused.
+    """
+
+    def __init__(self, loop: AbstractEventLoop, mode: str = "peer") -> None:
+        listen = "tcp/127.0.0.1:0" if mode == "peer" else None
+        self.raw = open_session(config(mode, connect=rendezvous_endpoint(), listen=listen))
+        self.zid = str(self.raw.info.zid())
+        self.bell = Bell(loop)
+        self._loop = loop
+
+    def open_sender(self, key: str, qos: Qos) -> _ZenohSender:
+        reliable = qos.reliability is Reliability.RELIABLE
+        # DROP even for reliable topics: with BLOCK one stopped receiver holds the sending loop for seconds.
+        options: dict[str, Any] = {
+            "congestion_control": zenoh.CongestionControl.DROP,
+            "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+        }
+        if qos.durability is Durability.VOLATILE:
+            return _ZenohSender(self.raw.declare_publisher(key, **options))
+        ext = _ext()
+        publisher = ext.declare_advanced_publisher(
+            self.raw,
+            key,
+            cache=ext.CacheConfig(max_samples=qos.depth),
+            publisher_detection=True,
+            sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
+            **options,
+        )
+        return _ZenohSender(publisher)
+
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> _Declared:
+        if qos.durability is Durability.VOLATILE:
+            return _Declared(self.raw.declare_subscriber(key, inbox.put))
+        ext = _ext()
+        reliable = qos.reliability is Reliability.RELIABLE
+        history = ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth)
+        return _Declared(
+            ext.declare_advanced_subscriber(
+                self.raw,
+                key,
+                inbox.put,
+                history=history,
+                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
+                subscriber_detection=True,
+            )
+        )
+
+    def open_server(self, key: str, inbox: Inbox) -> _Declared:
+        def arrived(query: zenoh.Query) -> None:
+            inbox.put(_ZenohRequest(query, key))
+
+        return _Declared(self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
+
+    def open_caller(self, key: str) -> _ZenohCaller:
+        querier = self.raw.declare_querier(
+            key,
+            target=zenoh.QueryTarget.ALL_COMPLETE,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=QUERY_LIMIT_MS / 1000,
+        )
+        return _ZenohCaller(querier, self.bell)
+
+    def announce(self, token: str) -> _Declared:
+        return _Declared(self.raw.liveliness().declare_token(token))
+
+    def watch(self, key: str, changed: Callable[[str, bool], None]) -> _Declared:
+        def deliver() -> None:
+            while inbox.items:
+                sample = inbox.items.popleft()
+                changed(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+
+        inbox = Inbox(self.bell, None, deliver)
+        subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
+        return _Declared(subscriber)
+
+    def watch_transports(self, closed: Callable[[str], None]) -> _Declared:
+        """Call `closed(zid)` on the loop whenever the connection to another session ends."""
+
+        def deliver() -> None:
+            while inbox.items:
+                event = inbox.items.popleft()
+                if event.kind == zenoh.SampleKind.DELETE:
+                    closed(str(event.transport.zid))
+
+        inbox = Inbox(self.bell, None, deliver)
+        listener = self.raw.info.declare_transport_events_listener(Callback(inbox.put, indirect=False))
+        return _Declared(listener)
+
+    def routers(self) -> list[str]:
+        """Ids of the routers this session is connected to."""
+        return [str(zid) for zid in self.raw.info.routers_zid()]
+
+    def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
+        attachment = arrival.attachment
+        return arrival.payload.to_bytes(), attachment.to_bytes() if attachment is not None else None
+
+    async def close(self) -> None:
+        await asyncio.to_thread(close_session, self.raw)
+        self.bell.close()
+
+
+def _ext() -> Any:
+    """Advanced pub/sub; only TRANSIENT_LOCAL endpoints need it."""
+    import zenoh.ext
+
+    return zenoh.ext
