@@ -1,0 +1,140 @@
+"""What `topic echo` does once it knows what to listen for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from graphflow.cli import exits, output
+from graphflow.cli.visiting import visit
+from graphflow.introspect.echo import block, csv, flow, plain, truncated
+from graphflow.msgs import registry
+from graphflow.qos import Durability, Qos, Reliability
+from graphflow.runtime.endpoints import MessageInfo, TopicSubscription
+from graphflow.runtime.node import Node
+from graphflow.wire.gid import gid_text
+from graphflow.wire.liveliness import Kind
+
+DISCOVERY = 0.2
+"""Seconds to wait for the topic's publishers to be known."""
+
+
+@dataclass
+class EchoOptions:
+    """The options of `topic echo`, by the names click gives them."""
+
+    once: bool = False
+    timeout: float | None = None
+    field: str | None = None
+    flow_style: bool = False
+    csv: bool = False
+    no_arr: bool = False
+    no_str: bool = False
+    full_length: bool = False
+    truncate_length: int = 128
+    include_message_info: bool = False
+    as_json: bool = False
+
+
+def run(topic: str, type_name: str, options: EchoOptions) -> int:
+    """Print messages until the end; returns the exit code."""
+    path = _field_path(options.field, type_name) if options.field else []
+
+    async def work(node: Node) -> int:
+        return await _echo(node, topic, type_name, options, path)
+
+    return visit(work)
+
+
+async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, path: list[str | int]) -> int:
+    await _known(node, topic)
+    type_: Any = registry.interface_class(type_name)
+    subscription: TopicSubscription[Any] = node.create_subscription(type_, topic, None, _matching_qos(node, topic))
+    try:
+        async with node.clock.timeout(options.timeout or float(10**9)):
+            message, info = await subscription.next_with_info()
+    except TimeoutError:
+        output.error(f"no message on {topic} within {options.timeout:g} s")
+        return exits.TIMEOUT
+    while True:
+        output.data(render(message, info, options, path))
+        if options.once:
+            return exits.OK
+        message, info = await subscription.next_with_info()
+
+
+async def _known(node: Node, topic: str) -> None:
+    """Give the graph a moment to tell of the topic's publishers, whose QoS decides ours."""
+    try:
+        async with node.clock.timeout(DISCOVERY):
+            await node.context.wait_for(lambda: bool(node.context.cache.endpoints(Kind.PUBLISHER, topic)))
+    except TimeoutError:
+        return
+
+
+def _matching_qos(node: Node, topic: str) -> Qos:
+    """A profile that fits all publishers there are: reliable, or latched, only if all of them are."""
+    offered = [e.qos for e in node.context.cache.endpoints(Kind.PUBLISHER, topic)]
+    reliable = all(q.reliability is Reliability.RELIABLE for q in offered)
+    latched = bool(offered) and all(q.durability is Durability.TRANSIENT_LOCAL for q in offered)
+    return Qos(
+        depth=100,
+        reliability=Reliability.RELIABLE if reliable else Reliability.BEST_EFFORT,
+        durability=Durability.TRANSIENT_LOCAL if latched else Durability.VOLATILE,
+    )
+
+
+def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str | int]) -> str:
+    """One message as text."""
+    value = message
+    for part in path:
+        try:
+            value = value[part] if isinstance(part, int) else getattr(value, part)
+        except IndexError:
+            return f"# this message has no element {options.field}\n---"
+    data = plain(value)
+    if options.as_json:
+        import json
+
+        return json.dumps(data)
+    data = _reduced(data, options)
+    if options.csv:
+        return csv(data)
+    head = ""
+    if options.include_message_info:
+        head = f"# sequence {info.sequence}, sent {info.source_ns / 1e9:.9f}, by {gid_text(info.gid)}\n"
+    if options.flow_style and isinstance(data, dict):
+        text = "\n".join(f"{k}: {flow(v)}" for k, v in data.items())
+    else:
+        text = block(data)
+    return f"{head}{text}\n---"
+
+
+def _reduced(data: Any, options: EchoOptions) -> Any:
+    if isinstance(data, dict):
+        return {k: _reduced(v, options) for k, v in data.items()}
+    if isinstance(data, list) and options.no_arr:
+        return f"<array of {len(data)}>"
+    if isinstance(data, str) and options.no_str:
+        return f"<string of {len(data)}>"
+    return truncated(data, None if options.full_length else options.truncate_length)
+
+
+def _field_path(text: str, type_name: str) -> list[str | int]:
+    """`a.b[0].c` as parts, checked against the type as far as it has named fields."""
+    from graphflow.names import did_you_mean
+
+    parts: list[str | int] = []
+    schema = registry.message_schema(type_name)
+    current: str | None = schema.name
+    for word in re.findall(r"[^.\[\]]+|\[\d+\]", text):
+        if word.startswith("["):
+            parts.append(int(word[1:-1]))
+            continue
+        fields = {f.name: f.type for f in registry.message_schema(current).fields} if current else {}
+        if word not in fields:
+            raise exits.UsageFault(f"{current or text} has no field {word!r}{did_you_mean(word, fields)}")
+        parts.append(word)
+        current = None if fields[word].is_primitive else fields[word].base
+    return parts

@@ -1,0 +1,30 @@
+"""Exit codes: 0 ok, 1 failed, 2 wrong usage or graph file, 3 nothing running, 4 timeout."""
+
+from __future__ import annotations
+
+from graphflow.errors import (
+    CallTimeout,
+    EncodeError,
+    GraphFileError,
+    GraphflowError,
+    InterfaceError,
+    InvalidName,
+    SupervisorError,
+)
+
+OK, FAILED, USAGE, NOT_RUNNING, TIMEOUT = range(5)
+
+
+class UsageFault(GraphflowError):
+    """The words on the command line are wrong."""
+
+
+def exit_code(error: GraphflowError) -> int:
+    """What a command that raised `error` ends with."""
+    if isinstance(error, SupervisorError):
+        return error.exit_code
+    if isinstance(error, CallTimeout):
+        return TIMEOUT
+    if isinstance(error, (GraphFileError, UsageFault, InterfaceError, InvalidName, EncodeError)):
+        return USAGE
+    return FAILED

@@ -1,0 +1,75 @@
+"""`graphflow plan` and `graphflow check`: graph files without running them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.exits import UsageFault
+from graphflow.names import did_you_mean
+
+
+def find_graph(text: str) -> Path:
+    """The file that `up NAME` means: a path, or the name of a graph that comes with graphflow.
+
+    Raises:
+        UsageFault: There is neither.
+    """
+    path = Path(text)
+    if path.is_file():
+        return path
+    from graphflow.graph.project import bundled_graphs
+
+    bundled = bundled_graphs()
+    if path.name == text and text.removesuffix(".yaml") in bundled:
+        found = bundled[text.removesuffix(".yaml")]
+        output.talk(f"{text}: the one that comes with graphflow, {found}")
+        return found
+    near = [str(p) for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
+    what = "is a folder" if path.is_dir() else "there is no such file"
+    raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled])}")
+
+
+@click.command()
+@click.argument("graph", metavar="GRAPH.yaml")
+@click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def plan(graph: str, args: tuple[str, ...], as_json: bool) -> None:
+    """Show exactly what a graph file would run, with the place each setting comes from. Imports nothing."""
+    path = find_graph(graph)
+    from graphflow.graph.resolve import load
+
+    resolved = load(path, args)
+    if as_json:
+        output.as_json(resolved.to_json())
+    else:
+        output.lines(resolved.lines())
+
+
+@click.command()
+@click.argument("graph", metavar="GRAPH.yaml")
+@click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
+def check(graph: str, args: tuple[str, ...]) -> int:
+    """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started."""
+    path = find_graph(graph)
+    from graphflow.errors import GraphFileError
+    from graphflow.graph.check import check as check_plan
+    from graphflow.graph.resolve import load
+    from graphflow.supervisor.probe import probe
+    from graphflow.supervisor.worker import read_interfaces
+
+    try:
+        resolved = load(path, args)
+        found = read_interfaces(probe([n.class_path for n in resolved.nodes], resolved.root))
+        problems = check_plan(resolved, found)
+    except GraphFileError as error:
+        problems = list(error.problems)
+    for problem in sorted(problems):
+        output.talk(str(problem))
+    if problems:
+        output.talk(f"{len(problems)} problem{'s' if len(problems) > 1 else ''}")
+        return exits.USAGE
+    output.data(f"{path}: {len(resolved.nodes)} nodes, {len(resolved.steps)} steps, no problems")
+    return exits.OK

@@ -1,0 +1,212 @@
+"""`graphflow up`, `down`, `ps` and `logs`: graphs that run."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.files import find_graph
+from graphflow.errors import SupervisorError
+
+_graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+
+
+@click.command()
+@click.argument("graph", metavar="GRAPH.yaml|NAME")
+@click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
+@click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
+@click.option("-s", "--show-args", is_flag=True, help="Show the arguments of the file, and start nothing.")
+@click.option("--private", is_flag=True, help="On a port and in a domain of its own.")
+@click.option("--domain", type=click.IntRange(0), help="Domain id, before the file's own.")
+def up(graph: str, args: tuple[str, ...], detach: bool, show_args: bool, private: bool, domain: int | None) -> int:
+    """Start a graph from its file and show its logs. Ctrl-C stops it."""
+    path = find_graph(graph)
+    if show_args:
+        return _show_args(path)
+    if private:
+        domain = _go_private(domain)
+    if domain is None and os.environ.get("GRAPHFLOW_DOMAIN"):
+        from graphflow.domain import domain_id
+
+        domain = domain_id()
+    # From here to the fork nothing heavy may have been imported: the children share what this process has.
+    from graphflow.supervisor.launch import launch
+
+    report = launch(path, list(args), domain)
+    if not report["ok"]:
+        output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
+        return int(report["exit_code"])
+    from graphflow.cli.streaming import stream
+
+    return stream(report["run"], report["classes"], detach=detach)
+
+
+def _go_private(domain: int | None) -> int:
+    from random import SystemRandom
+
+    from graphflow.transport.config import ENDPOINT_VARIABLE
+    from graphflow.transport.rendezvous import free_endpoint
+
+    endpoint = free_endpoint()
+    chosen = domain if domain is not None else SystemRandom().randrange(1000, 1_000_000)
+    os.environ[ENDPOINT_VARIABLE] = endpoint
+    os.environ["GRAPHFLOW_DOMAIN"] = str(chosen)
+    output.talk(
+        f"private: in other terminals first type\n  export {ENDPOINT_VARIABLE}={endpoint} GRAPHFLOW_DOMAIN={chosen}"
+    )
+    return chosen
+
+
+def _show_args(path: Path) -> int:
+    from graphflow.graph import source
+    from graphflow.graph.project import shown
+
+    data = source.read(path.read_text(encoding="utf-8"), shown(path)).data
+    declared: Any = data.get("args", {}) if isinstance(data, dict) else {}
+    output.data("Arguments (pass arguments as '<name>:=<value>'):\n")
+    for name, spec in (declared or {}).items():
+        spec = spec if isinstance(spec, dict) else {}
+        unit = f" [{spec['unit']}]" if spec.get("unit") else ""
+        output.data(f"    '{name}':\n        {spec.get('doc') or 'no description given'}{unit}")
+        output.data(f"        (default: {spec['default']!r})\n" if "default" in spec else "")
+    if not declared:
+        output.data("    no arguments")
+    return exits.OK
+
+
+@click.command()
+@_graph
+@click.option("--all", "everything", is_flag=True, help="Every running graph.")
+@click.option("--now", is_flag=True, help="Kill, without time for cleanup.")
+def down(name: str | None, everything: bool, now: bool) -> int:
+    """Stop a running graph; returns when all its processes have ended."""
+    from graphflow.supervisor import rundir
+    from graphflow.supervisor.control import ControlClient
+
+    runs = rundir.running() if everything else [rundir.choose(name)]
+    if not runs:
+        raise SupervisorError("no graph is running", exit_code=exits.NOT_RUNNING)
+    code = exits.OK
+    for run in runs:
+        with ControlClient(run.socket) as client:
+            client.send(do="down", now=now)
+            for event in client.receive(timeout=60.0):
+                if event["event"] == "exited":
+                    output.talk(f"  {', '.join(event['nodes'])} ended")
+                elif event["event"] == "end":
+                    break
+        if not _gone(run):
+            output.error(f"the supervisor of {run.graph}, process {run.pid}, is still there")
+            code = exits.TIMEOUT
+        else:
+            output.data(f"graph {run.graph} is down")
+    return code
+
+
+def _gone(run: Any) -> bool:
+    """Wait for the supervisor itself to end."""
+    deadline = time.monotonic() + 10.0
+    while run.is_alive:
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+@click.command()
+@_graph
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def ps(name: str | None, as_json: bool) -> int:
+    """List the nodes of running graphs: state, process, how long."""
+    from graphflow.supervisor import rundir
+    from graphflow.supervisor.control import ControlClient
+
+    runs = [rundir.choose(name)] if name else rundir.running()
+    if not runs:
+        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exits.NOT_RUNNING)
+    rows = []
+    for run in runs:
+        with ControlClient(run.socket) as client:
+            client.send(do="ps")
+            answer = next(client.receive(), None)
+        for node in (answer or {}).get("nodes", []):
+            rows.append({"graph": run.graph, "domain": run.domain, **node})
+    if as_json:
+        output.as_json(rows)
+        return exits.OK
+    output.lines(_table(rows))
+    return exits.OK
+
+
+def _table(rows: list[dict[str, Any]]) -> list[str]:
+    head = ("GRAPH", "NODE", "STATE", "PID", "FOR", "CLASS")
+    now = time.time()
+    cells = [head] + [
+        (
+            row["graph"],
+            row["node"],
+            row["state"] + (f" ({row['detail']})" if row["detail"] else ""),
+            str(row["pid"] or "-"),
+            _ago(now - row["since"]),
+            row["class"],
+        )
+        for row in rows
+    ]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+
+
+def _ago(seconds: float) -> str:
+    whole = max(0, int(seconds))
+    if whole < 60:
+        return f"{whole}s"
+    if whole < 3600:
+        return f"{whole // 60}m{whole % 60:02d}s"
+    return f"{whole // 3600}h{whole % 3600 // 60:02d}m"
+
+
+@click.command()
+@click.argument("nodes", nargs=-1, metavar="[NODE]...")
+@click.option("-f", "--follow", is_flag=True, help="Go on as more is written. Ctrl-C ends it.")
+@click.option("-n", "--lines", type=click.IntRange(0), help="Only the last so many lines of each node.")
+@_graph
+def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | None) -> int:
+    """Show what the nodes of a graph have written, also after it has ended."""
+    from graphflow.cli.streaming import LogReader
+    from graphflow.names import did_you_mean
+    from graphflow.supervisor import rundir
+
+    try:
+        folder = Path(rundir.choose(name).logs)
+        alive = True
+    except SupervisorError as error:
+        if error.exit_code != exits.NOT_RUNNING:
+            raise
+        folder, alive = _latest(name, error), False
+    files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != "supervisor.log"}
+    wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
+    for node in wanted:
+        if node not in files:
+            raise exits.UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
+    reader = LogReader([files[n] for n in wanted], width=max(map(len, wanted), default=0))
+    reader.show(last=lines)
+    while follow and alive:
+        time.sleep(0.1)
+        reader.show()
+        alive = any(str(folder) == r.logs for r in rundir.running())
+    reader.show()
+    return exits.OK
+
+
+def _latest(name: str | None, error: SupervisorError) -> Path:
+    from graphflow.supervisor.rundir import log_root
+
+    found = [p for p in log_root().glob(f"{name or '*'}/latest") if p.is_dir()]
+    if not found:
+        raise error
+    return max(found, key=lambda p: p.stat().st_mtime).resolve()

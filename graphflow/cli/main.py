@@ -1,0 +1,99 @@
+"""`graphflow`, and `gf` for short: the verbs, and how a command ends."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
+
+import click
+
+from graphflow import __version__
+from graphflow.cli import exits, output
+from graphflow.errors import GraphflowError
+from graphflow.names import did_you_mean
+
+_VERBS = {
+    "up": ("graphs", "Start a graph from its file."),
+    "down": ("graphs", "Stop a running graph."),
+    "ps": ("graphs", "List the nodes of running graphs."),
+    "logs": ("graphs", "Show what the nodes of a graph have written."),
+    "plan": ("files", "Show exactly what a graph file would run."),
+    "check": ("files", "Report every mistake in a graph file."),
+    "run": ("run", "Run one node."),
+    "node": ("node", "List and describe nodes."),
+    "topic": ("topic", "List, describe, show and publish topics."),
+    "service": ("service", "List and call services."),
+    "param": ("param", "List, get and set parameters."),
+    "interface": ("interface", "Show message, service and action types."),
+}
+"""Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
+
+
+class _Verbs(click.Group):
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _VERBS:
+            return None
+        module = import_module(f"graphflow.cli.{_VERBS[cmd_name][0]}")
+        command: click.Command = getattr(module, cmd_name.replace("-", "_"))
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in _VERBS:
+            raise click.UsageError(f"no such command {args[0]!r}{did_you_mean(args[0], _VERBS)}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(verb, text) for verb, (_, text) in _VERBS.items()])
+
+
+@click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="graphflow")
+@click.option("--domain", type=click.IntRange(0), help="Domain id; else GRAPHFLOW_DOMAIN, ROS_DOMAIN_ID, or 0.")
+def cli(domain: int | None) -> None:
+    r"""Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
+
+    \b
+    Begin with:   graphflow up turtlesim
+    Then try:     graphflow topic list
+    """
+    if domain is not None:
+        os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Run a command and end the process with its exit code."""
+    sys.exit(_main(args))
+
+
+def _main(args: Sequence[str] | None) -> int:
+    try:
+        result = cli.main(args, standalone_mode=False)
+    except click.UsageError as error:
+        error.show()
+        return exits.USAGE
+    except click.ClickException as error:
+        error.show()
+        return exits.FAILED
+    except (KeyboardInterrupt, click.Abort):
+        return exits.OK
+    except BrokenPipeError:
+        # The reader, `head` perhaps, has had enough. Keep the interpreter from flushing into the broken pipe.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return exits.OK
+    except GraphflowError as error:
+        output.error(str(error))
+        return exits.exit_code(error)
+    return result if isinstance(result, int) else exits.OK
+
+
+if __name__ == "__main__":
+    main()

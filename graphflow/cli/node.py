@@ -1,0 +1,94 @@
+"""`graphflow node list` and `node info`."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import click
+
+from graphflow.cli import output
+from graphflow.domain import domain_id
+from graphflow.introspect.view import View
+from graphflow.machines.cache import GraphCache
+from graphflow.names import is_hidden
+from graphflow.wire.liveliness import Kind, qos_chunk
+
+_SECTIONS = (
+    ("Subscribers", Kind.SUBSCRIPTION),
+    ("Publishers", Kind.PUBLISHER),
+    ("Service Servers", Kind.SERVICE),
+    ("Service Clients", Kind.CLIENT),
+)
+_ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.SUBSCRIPTION))
+_FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
+
+
+@click.group()
+def node() -> None:
+    """List and describe nodes."""
+
+
+@node.command(name="list")
+@click.option("-a", "--all", "everything", is_flag=True, help="Hidden nodes too.")
+@click.option("-c", "--count-nodes", is_flag=True, help="Only how many.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def list_(everything: bool, count_nodes: bool, as_json: bool) -> None:
+    """List the names of all nodes."""
+    with View(domain_id()) as view:
+        names = view.cache.nodes(hidden=everything)
+    if as_json:
+        output.as_json(names)
+    elif count_nodes:
+        output.data(str(len(names)))
+    else:
+        output.lines(names)
+        _warn_of_twins(names)
+
+
+def _warn_of_twins(names: list[str]) -> None:
+    twins = [name for name, count in Counter(names).items() if count > 1]
+    if twins:
+        output.talk(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+            f"which can have unintended side effects: {', '.join(twins)}"
+        )
+
+
+@node.command()
+@click.argument("name", metavar="NODE")
+@click.option("--include-hidden", is_flag=True, help="Hidden topics, services and actions too.")
+@click.option("-v", "--verbose", is_flag=True, help="With the QoS of each endpoint.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
+    """Show a node's publishers, subscriptions, services and actions."""
+    with View(domain_id()) as view:
+        full = view.node(name)
+        cache = view.cache
+    if as_json:
+        output.as_json({"node": full, **_as_dict(cache, full, include_hidden)})
+        return
+    _warn_of_twins([n for n in cache.nodes() if n == full])
+    output.data(full)
+    for title, kind in _SECTIONS:
+        output.data(f"  {title}:")
+        for e in cache.endpoints(kind, node=full):
+            if include_hidden or not is_hidden(e.name):
+                qos = f"  (qos {qos_chunk(e.qos)}, depth {e.qos.depth})" if verbose else ""
+                output.data(f"    {e.name}: {e.type}{qos}")
+        if kind is Kind.CLIENT:
+            output.data("")
+    for title, kind in _ACTION_SECTIONS:
+        output.data(f"  {title}:")
+        for e in cache.endpoints(kind, node=full):
+            if e.name.endswith(_FEEDBACK):
+                output.data(f"    {e.name.removesuffix(_FEEDBACK)}: {e.type.removesuffix(_FEEDBACK_TYPE)}")
+    output.data("")
+
+
+def _as_dict(cache: GraphCache, name: str, hidden: bool) -> dict[str, dict[str, str]]:
+    return {
+        title.lower().replace(" ", "_"): {
+            e.name: e.type for e in cache.endpoints(kind, node=name) if hidden or not is_hidden(e.name)
+        }
+        for title, kind in _SECTIONS
+    }

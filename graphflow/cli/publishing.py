@@ -1,0 +1,69 @@
+"""What `topic pub` does once it has a message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from graphflow.cli import exits, output
+from graphflow.cli.visiting import visit
+from graphflow.msgs.base import Message
+from graphflow.runtime.node import Node
+from graphflow.wire.liveliness import Kind
+
+
+@dataclass
+class PubOptions:
+    """The options of `topic pub`, by the names click gives them."""
+
+    rate: float = 1.0
+    once: bool = False
+    times: int | None = None
+    print_every: int = 1
+    wait_matching_subscriptions: int | None = None
+    max_wait_time_secs: float | None = None
+    keep_alive: float = 0.1
+    node_name: str | None = None
+
+
+def run(topic: str, message: Message, options: PubOptions) -> int:
+    """Publish until the end; returns the exit code."""
+
+    async def work(node: Node) -> int:
+        return await _publish(node, topic, message, options)
+
+    return visit(work, options.node_name)
+
+
+async def _publish(node: Node, topic: str, message: Message, options: PubOptions) -> int:
+    times = 1 if options.once else options.times
+    publisher = node.create_publisher(type(message), topic)
+    needed = options.wait_matching_subscriptions
+    if needed is None:
+        needed = 1 if times else 0
+    if not await _wait_for_subscriptions(node, topic, needed, options.max_wait_time_secs):
+        output.error(f"{topic}: fewer than {needed} subscriptions after {options.max_wait_time_secs:g} s")
+        return exits.TIMEOUT
+    output.data("publisher: beginning loop")
+    async for n in node.clock.every(hz=options.rate):
+        if options.print_every and n % options.print_every == 0:
+            output.data(f"publishing #{n + 1}: {message!r}\n")
+        publisher.publish(message)
+        if times is not None and n + 1 >= times:
+            break
+    await node.clock.sleep(options.keep_alive)
+    return exits.OK
+
+
+async def _wait_for_subscriptions(node: Node, topic: str, needed: int, limit: float | None) -> bool:
+    def enough() -> bool:
+        return len(node.context.cache.endpoints(Kind.SUBSCRIPTION, topic)) >= needed
+
+    if not needed or enough():
+        return True
+    output.data(f"Waiting for at least {needed} matching subscription(s)...")
+    try:
+        async with node.clock.timeout(limit or float(10**9)):
+            await node.context.wait_for(enough)
+    except TimeoutError:
+        return False
+    return True

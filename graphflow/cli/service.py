@@ -1,0 +1,74 @@
+"""`graphflow service list` and `service call`."""
+
+from __future__ import annotations
+
+import time
+
+import click
+
+from graphflow.cli import output
+from graphflow.cli.types import agree
+from graphflow.cli.words import ValueCommand, message_values
+from graphflow.domain import domain_id
+from graphflow.introspect.view import View
+from graphflow.names import expand
+
+
+@click.group()
+def service() -> None:
+    """List and call services."""
+
+
+@service.command(name="list")
+@click.option("-t", "--show-types", is_flag=True, help="With their types.")
+@click.option("-c", "--count-services", is_flag=True, help="Only how many.")
+@click.option("--include-hidden-services", is_flag=True, help="Hidden services too.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def list_(show_types: bool, count_services: bool, include_hidden_services: bool, as_json: bool) -> None:
+    """List the names of all services."""
+    with View(domain_id()) as view:
+        services = view.cache.services(hidden=include_hidden_services)
+    if as_json:
+        output.as_json(services)
+    elif count_services:
+        output.data(str(len(services)))
+    else:
+        output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in services.items())
+
+
+@service.command(cls=ValueCommand)
+@click.argument("name", metavar="SERVICE")
+@click.argument("type_name", metavar="TYPE")
+@click.argument("values", nargs=-1)
+@click.option(
+    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call again and again, so many times a second."
+)
+@click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
+@click.option("--json", "as_json", is_flag=True, help="The response for programs.")
+def call(name: str, type_name: str, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool) -> None:
+    """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
+    from graphflow.introspect.echo import plain
+    from graphflow.msgs import registry
+    from graphflow.msgs.build import from_plain
+
+    full = expand(name, "/", "cli")
+    wanted = registry.full_name(type_name)
+    values_read = message_values(values)
+    with View(domain_id()) as view:
+        if full not in view.cache.services():
+            output.talk("waiting for service to become available...")
+            view.wait_for_service(full, min(timeout, 2.0))
+        actual = agree(wanted, view.service_type(full), full)
+        request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
+        while True:
+            started = time.monotonic()
+            if not as_json:
+                output.data(f"requester: making request: {request!r}\n")
+            response = view.call(full, actual, request, timeout)
+            if as_json:
+                output.as_json(plain(response))
+            else:
+                output.data(f"response:\n{response!r}\n")
+            if rate is None:
+                return
+            time.sleep(max(0.0, 1 / rate - (time.monotonic() - started)))

@@ -1,0 +1,163 @@
+"""What `up` shows while a graph comes up, runs and goes down; and log files, followed."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from graphflow.cli import exits, output
+from graphflow.supervisor.control import ControlClient
+
+_POLL = 0.1
+"""Seconds between two looks at the log files."""
+_COLOURS = (36, 33, 32, 35, 34, 31)
+
+
+class LogReader:
+    """Prints what is appended to log files, each line with the name of its node."""
+
+    def __init__(self, files: Iterable[Path], width: int) -> None:
+        self._files = dict.fromkeys(files, (0, b""))
+        self._width = width
+        self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
+        self._is_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+
+    def show(self, last: int | None = None) -> None:
+        """Print what is new; only the `last` lines of each file if given."""
+        for path, (offset, partial) in list(self._files.items()):
+            try:
+                with path.open("rb") as file:
+                    file.seek(offset)
+                    data = partial + file.read()
+            except FileNotFoundError:
+                continue
+            lines, _, rest = data.rpartition(b"\n")
+            self._files[path] = (offset + len(data) - len(partial), rest)
+            if lines:
+                texts = lines.decode(errors="replace").split("\n")
+                output.lines(
+                    self._prefixed(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
+                )
+
+    def _prefixed(self, path: Path, texts: list[str]) -> Iterable[str]:
+        name = path.stem.ljust(self._width)
+        head = f"\x1b[{self._colours[path]}m{name}\x1b[0m |" if self._is_terminal else f"{name} |"
+        return (f"{head} {text}" for text in texts)
+
+
+def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:
+    """Follow a graph from its start; returns the exit code of `up`."""
+    with ControlClient(run["socket"]) as client:
+        client.send(do="follow", lifeline=not detach)
+        return _Stream(run, classes, client, detach).run()
+
+
+class _Stream:
+    def __init__(self, run: dict[str, Any], classes: dict[str, str], client: ControlClient, detach: bool) -> None:
+        self._run, self._classes, self._client, self._detach = run, classes, client, detach
+        self._interrupts = 0
+        self._stop_sent = 0
+        self._nodes: list[dict[str, Any]] = []
+        self._logs: LogReader | None = None
+        self._began = time.monotonic()
+        self._failed: list[str] = []
+
+    def run(self) -> int:
+        self._nodes = self._list_nodes()
+        files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
+        self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0))
+        signal.signal(signal.SIGINT, self._interrupted)
+        signal.signal(signal.SIGTERM, self._interrupted)
+        while True:
+            select.select([self._client], [], [], _POLL)
+            events = self._client.pending()
+            if events is None:
+                return self._lost()
+            for event in events:
+                code = self._show(event)
+                if code is not None:
+                    return code
+            if not self._detach:
+                self._logs.show()
+            if self._interrupts > self._stop_sent:
+                self._stop_sent = self._interrupts
+                self._client.send(do="down", now=self._interrupts > 1, reason="Ctrl-C")
+
+    def _interrupted(self, *_: object) -> None:
+        self._interrupts += 1
+
+    def _list_nodes(self) -> list[dict[str, Any]]:
+        with ControlClient(self._run["socket"]) as other:
+            other.send(do="ps")
+            answer = next(other.receive(), {})
+        nodes: list[dict[str, Any]] = answer.get("nodes", [])
+        return nodes
+
+    def _lost(self) -> int:
+        assert self._logs is not None
+        self._logs.show()
+        output.error(f"the supervisor died; its log is {self._run['logs']}/supervisor.log")
+        return exits.FAILED
+
+    def _show(self, event: dict[str, Any]) -> int | None:
+        """Tell of one event; an exit code when it is the last."""
+        what = event["event"]
+        if what == "step":
+            mark = "done" if event["ok"] else "FAILED"
+            output.talk(f"step {event['step']} {mark}: {event['text']}")
+        elif what == "up":
+            self._greet(event["seconds"])
+            if self._detach:
+                return exits.OK
+        elif what == "stopping":
+            if self._logs is not None and not self._detach:
+                self._logs.show()
+            output.talk(f"stopping ({event['reason']}); Ctrl-C again kills")
+        elif what == "exited" and event["unexpected"]:
+            self._tell_death(event)
+        elif what == "error":
+            output.error(event["message"])
+        elif what == "end":
+            if self._logs is not None and not self._detach:
+                self._logs.show()
+            output.talk(f"graph {self._run['graph']} has ended")
+            return int(event["exit_code"])
+        return None
+
+    def _tell_death(self, event: dict[str, Any]) -> None:
+        if self._logs is not None and not self._detach:
+            self._logs.show()
+        names = ", ".join(event["nodes"])
+        reason = f": {event['error']}" if event["error"] else ""
+        output.error(f"{names} has died, process {event['pid']}, {event['how']}{reason}\n  its log: {event['log']}")
+
+    def _greet(self, seconds: float) -> None:
+        run = self._run
+        width = max(len(n["node"]) for n in self._nodes)
+        class_width = max(len(n["class"]) for n in self._nodes)
+        output.talk(f"graph {run['graph']} is up: {len(self._nodes)} nodes in domain {run['domain']}, {seconds:.2f} s")
+        for node in self._nodes:
+            place = self._classes.get(node["class"], "")
+            output.talk(f"  {node['node']:{width}}  {node['class']:{class_width}}  {_shown(place)}")
+        output.talk("")
+        output.talk("In another terminal:")
+        output.talk("  graphflow topic list              what the nodes say to each other")
+        output.talk(f"  graphflow node info {self._nodes[0]['node']:<14}".ljust(36) + "what a node does")
+        output.talk(f"  graphflow param list {self._nodes[0]['node']:<13}".ljust(36) + "what can be set")
+        output.talk("  graphflow ps                      how the nodes are")
+        output.talk(f"Logs are in {run['logs']}")
+        output.talk("Stop with: graphflow down" if self._detach else "Stop with Ctrl-C.")
+        output.talk("")
+
+
+def _shown(place: str) -> str:
+    from graphflow.graph.project import shown
+
+    path, colon, line = place.partition(":")
+    return f"{shown(Path(path))}{colon}{line}" if path else ""

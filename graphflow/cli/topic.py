@@ -1,0 +1,209 @@
+"""`graphflow topic list`, `info`, `echo` and `pub`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.words import ValueCommand, message_values
+from graphflow.domain import domain_id
+from graphflow.errors import CallError
+from graphflow.introspect.view import View
+from graphflow.names import did_you_mean, expand, is_hidden
+from graphflow.qos import INFINITE_NS
+from graphflow.wire.gid import gid_text
+from graphflow.wire.liveliness import Entity, Kind
+
+if TYPE_CHECKING:
+    from graphflow.cli.echoing import EchoOptions
+
+
+@click.group()
+def topic() -> None:
+    """List, describe, show and publish topics."""
+
+
+@topic.command(name="list")
+@click.option("-t", "--show-types", is_flag=True, help="With their types.")
+@click.option("-c", "--count-topics", is_flag=True, help="Only how many.")
+@click.option("-v", "--verbose", is_flag=True, help="With the number of publishers and subscribers.")
+@click.option("--include-hidden-topics", is_flag=True, help="Hidden topics too.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def list_(show_types: bool, count_topics: bool, verbose: bool, include_hidden_topics: bool, as_json: bool) -> None:
+    """List the names of all topics."""
+    with View(domain_id()) as view:
+        cache = view.cache
+    topics = cache.topics(hidden=include_hidden_topics)
+    if as_json:
+        output.as_json(topics)
+    elif count_topics:
+        output.data(str(len(topics)))
+    elif verbose:
+        for title, kind, word in (
+            ("Published topics:", Kind.PUBLISHER, "publisher"),
+            ("Subscribed topics:", Kind.SUBSCRIPTION, "subscriber"),
+        ):
+            output.data(title)
+            for name, types in topics.items():
+                count = len(cache.endpoints(kind, name))
+                if count:
+                    output.data(f" * {name} [{', '.join(types)}] {count} {word}{'s' if count > 1 else ''}")
+            output.data("")
+    else:
+        output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in topics.items())
+
+
+@topic.command()
+@click.argument("name", metavar="TOPIC")
+@click.option("-v", "--verbose", is_flag=True, help="With every endpoint: node, QoS, GID, type hash.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def info(name: str, verbose: bool, as_json: bool) -> int:
+    """Show a topic's type, publishers and subscriptions."""
+    full = expand(name, "/", "cli")
+    with View(domain_id()) as view:
+        cache = view.cache
+    types = cache.topics(hidden=True).get(full)
+    if types is None:
+        raise CallError(f"Unknown topic '{full}'{did_you_mean(full, cache.topics())}")
+    publishers, subscriptions = cache.endpoints(Kind.PUBLISHER, full), cache.endpoints(Kind.SUBSCRIPTION, full)
+    if as_json:
+        endpoints = {"publishers": publishers, "subscriptions": subscriptions}
+        output.as_json({"name": full, "types": types, **{k: [_row(e) for e in v] for k, v in endpoints.items()}})
+        return exits.OK
+    output.data(f"Type: {types[0]}" if len(types) == 1 else f"Types: {', '.join(types)}")
+    for title, endpoints_of_kind in (("Publisher count", publishers), ("Subscription count", subscriptions)):
+        output.data(f"{chr(10) if verbose else ''}{title}: {len(endpoints_of_kind)}")
+        if verbose:
+            output.lines(f"\n{_described(e)}" for e in endpoints_of_kind)
+    return exits.OK
+
+
+def _row(e: Entity) -> dict[str, object]:
+    return {
+        "node": e.node_name,
+        "type": e.type,
+        "hash": e.hash,
+        "gid": gid_text(e.gid),
+        "qos": {
+            "reliability": e.qos.reliability.name,
+            "durability": e.qos.durability.name,
+            "history": e.qos.history.name,
+            "depth": e.qos.depth,
+        },
+    }
+
+
+def _described(e: Entity) -> str:
+    def span(ns: int) -> str:
+        return "Infinite" if ns == INFINITE_NS else f"{ns} nanoseconds"
+
+    kind = "PUBLISHER" if e.kind is Kind.PUBLISHER else "SUBSCRIPTION"
+    return "\n".join(
+        [
+            f"Node name: {e.node}",
+            f"Node namespace: {e.namespace}",
+            f"Topic type: {e.type}",
+            f"Topic type hash: {e.hash}",
+            f"Endpoint type: {kind}",
+            f"GID: {gid_text(e.gid)}",
+            "QoS profile:",
+            f"  Reliability: {e.qos.reliability.name}",
+            f"  History (Depth): {e.qos.history.name} ({e.qos.depth})",
+            f"  Durability: {e.qos.durability.name}",
+            f"  Lifespan: {span(e.qos.lifespan_ns)}",
+            f"  Deadline: {span(e.qos.deadline_ns)}",
+            f"  Liveliness: {e.qos.liveliness.name}",
+            f"  Liveliness lease duration: {span(e.qos.lease_ns)}",
+        ]
+    )
+
+
+@topic.command()
+@click.argument("name", metavar="TOPIC")
+@click.argument("type_name", metavar="[TYPE]", required=False)
+@click.option("--once", is_flag=True, help="End after the first message.")
+@click.option("--timeout", type=click.FloatRange(0, min_open=True), help="Seconds to wait for the first message.")
+@click.option("--field", help="Only this part, as in linear.x or ranges[0].")
+@click.option("--flow-style", is_flag=True, help="Each field on one line.")
+@click.option("--csv", is_flag=True, help="Values separated by commas.")
+@click.option("--no-arr", is_flag=True, help="Without the elements of arrays.")
+@click.option("--no-str", is_flag=True, help="Without the text of strings.")
+@click.option("-f", "--full-length", is_flag=True, help="Long arrays and strings whole.")
+@click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Else cut here.")
+@click.option("-i", "--include-message-info", is_flag=True, help="With sequence number, time and sender.")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object a line.")
+def echo(name: str, type_name: str | None, **options: object) -> int:
+    """Show the messages of a topic as they come. Ctrl-C ends it."""
+    from graphflow.cli import echoing
+
+    full = expand(name, "/", "cli")
+    chosen: EchoOptions = echoing.EchoOptions(**options)  # type: ignore[arg-type]  # click made them of these types
+    return echoing.run(full, _echo_type(full, type_name), chosen)
+
+
+def _echo_type(full: str, given: str | None) -> str:
+    """The type to listen for: the one in the graph, else the given one."""
+    from graphflow.cli.types import agree
+    from graphflow.errors import SupervisorError
+    from graphflow.msgs import registry
+
+    wanted = registry.full_name(given) if given else None
+    try:
+        with View(domain_id()) as view:
+            topics = view.cache.topics(hidden=True)
+    except SupervisorError:
+        if wanted is None:
+            raise
+        topics = {}
+    types = topics.get(full, [])
+    if wanted is None and not types:
+        visible = [t for t in topics if not is_hidden(t)]
+        raise CallError(
+            f"topic {full} does not appear to be published yet{did_you_mean(full, visible)}"
+            f"; to wait for it give its type: graphflow topic echo {full} TYPE"
+        )
+    if not types:
+        output.talk(f"WARNING: topic [{full}] does not appear to be published yet")
+        assert wanted is not None
+        return wanted
+    if len(types) > 1 and wanted is None:
+        raise exits.UsageFault(f"{full} has several types: {', '.join(types)}; say which")
+    return agree(wanted, types[0], full) if wanted is not None and wanted not in types else (wanted or types[0])
+
+
+@topic.command(cls=ValueCommand)
+@click.argument("name", metavar="TOPIC")
+@click.argument("type_name", metavar="TYPE")
+@click.argument("values", nargs=-1)
+@click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Hz.")
+@click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
+@click.option("-t", "--times", type=click.IntRange(1), help="Publish so many messages and end.")
+@click.option("-p", "--print", "print_every", type=click.IntRange(0), default=1, help="Print every N-th message only.")
+@click.option(
+    "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="First wait for so many. [1 with -1 or -t]"
+)
+@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Give up that waiting after.")
+@click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
+@click.option("-n", "--node-name", help="Name of the publishing node.")
+def pub(name: str, type_name: str, values: tuple[str, ...], **options: object) -> int:
+    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; it need not be quoted."""
+    from graphflow.cli import publishing
+    from graphflow.cli.types import agree
+    from graphflow.errors import SupervisorError
+    from graphflow.msgs import registry
+    from graphflow.msgs.build import from_plain
+
+    full = expand(name, "/", "cli")
+    wanted = registry.full_name(type_name)
+    try:
+        with View(domain_id()) as view:
+            known = view.cache.topics(hidden=True).get(full, [])
+    except SupervisorError:  # the first of all: others may come
+        known = []
+    if known and wanted not in known:
+        wanted = agree(wanted, known[0], full)
+    message = from_plain(registry.interface_class(wanted), message_values(values))
+    chosen = publishing.PubOptions(**options)  # type: ignore[arg-type]  # click made them of these types
+    return publishing.run(full, message, chosen)

@@ -1,0 +1,37 @@
+"""Commands that take part in the graph for a while: a hidden node, until Ctrl-C or the end."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Awaitable, Callable
+
+from graphflow.runtime.context import Context
+from graphflow.runtime.node import Node
+from graphflow.runtime.run import catch_signals
+
+
+def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None) -> int:
+    """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0."""
+    return asyncio.run(_visit(work, name or f"_graphflow_{os.getpid()}"))
+
+
+async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
+    stop = asyncio.Event()
+    catch_signals(stop)
+    context = await Context.open()
+    node = Node(name, start_parameter_services=False, enable_rosout=False)
+    try:
+        await node.start(context)
+        task = asyncio.ensure_future(work(node))
+        stopped = asyncio.ensure_future(stop.wait())
+        await asyncio.wait([task, stopped], return_when=asyncio.FIRST_COMPLETED)
+        stopped.cancel()
+        if task.done():
+            return task.result()
+        task.cancel()
+        await asyncio.wait([task])
+        return 0
+    finally:
+        await node.stop()
+        await context.close()

@@ -1,0 +1,208 @@
+"""The control socket: lines of JSON between a supervisor and its doors.
+
+A door sends one request and reads lines until the supervisor closes the connection:
+
+    {"do": "ps"}                        -> {"event": "ps", "nodes": [...]}
+    {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
+    {"do": "follow", "lifeline": true}  -> what has happened so far, then events as they come
+
+A `follow` with a lifeline ties the graph's life to the connection: when it breaks, the graph goes down.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Protocol, Self
+
+from graphflow.errors import SupervisorError
+
+CONNECT_LIMIT = 5.0
+
+
+class Commands(Protocol):
+    """What the socket lets a door ask of a supervisor."""
+
+    def describe(self) -> list[dict[str, Any]]: ...
+
+    def begin_stop(self, *, now: bool, reason: str) -> None: ...
+
+    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]: ...
+
+
+class ControlServer:
+    """The supervisor's side."""
+
+    def __init__(self, commands: Commands) -> None:
+        self._commands = commands
+        self._server: asyncio.Server | None = None
+        self._connections: set[asyncio.Task[None]] = set()
+
+    async def open(self, path: Path) -> None:
+        """Listen at `path`, for this user only."""
+        path.unlink(missing_ok=True)
+        mask = os.umask(0o177)
+        try:
+            self._server = await asyncio.start_unix_server(self._accept, path)
+        finally:
+            os.umask(mask)
+
+    async def close(self) -> None:
+        """Stop listening, and let open connections send what is waiting."""
+        if self._server is not None:
+            self._server.close()
+        for connection in list(self._connections):
+            connection.cancel()
+        await asyncio.gather(*self._connections, return_exceptions=True)
+
+    async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        self._connections.add(task)
+        try:
+            if _peer_uid(writer.get_extra_info("socket")) in (None, os.getuid()):
+                await self._serve(reader, writer)
+        except (ConnectionError, asyncio.IncompleteReadError):
+            return
+        finally:
+            self._connections.discard(task)
+            writer.close()
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        try:
+            request = json.loads(await reader.readline())
+            what = request["do"]
+        except (ValueError, KeyError, TypeError):
+            _write(writer, {"event": "error", "message": "not a request"})
+            return
+        if what == "ps":
+            _write(writer, {"event": "ps", "nodes": self._commands.describe()})
+        elif what == "down":
+            await self._down(writer, now=bool(request.get("now")))
+        elif what == "follow":
+            await self._follow(reader, writer, lifeline=bool(request.get("lifeline")))
+        else:
+            _write(writer, {"event": "error", "message": f"{what!r} is no request"})
+        await writer.drain()
+
+    async def _down(self, writer: asyncio.StreamWriter, *, now: bool) -> None:
+        ended = asyncio.Event()
+
+        def listener(event: dict[str, Any]) -> None:
+            _write(writer, event)
+            if event["event"] == "end":
+                ended.set()
+
+        stop = self._commands.subscribe(listener, replay=False)
+        try:
+            self._commands.begin_stop(now=now, reason="down")
+            await ended.wait()
+        finally:
+            stop()
+
+    async def _follow(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, lifeline: bool) -> None:
+        stop = self._commands.subscribe(lambda event: _write(writer, event), replay=True)
+        try:
+            while line := await reader.readline():
+                request = json.loads(line)
+                if request.get("do") == "down":
+                    self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
+            if lifeline:
+                self._commands.begin_stop(now=False, reason="its terminal went away")
+        finally:
+            stop()
+
+
+def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:
+    if not writer.is_closing():
+        writer.write(json.dumps(event).encode() + b"\n")
+
+
+def _peer_uid(connection: Any) -> int | None:
+    """The user at the other end, where the system tells."""
+    if not hasattr(socket, "SO_PEERCRED"):
+        return None
+    layout = struct.Struct("3i")
+    _, uid, _ = layout.unpack(connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, layout.size))
+    return int(uid)
+
+
+class ControlClient:
+    """A door's side; blocking."""
+
+    def __init__(self, path: str) -> None:
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.settimeout(CONNECT_LIMIT)
+        try:
+            self._socket.connect(path)
+        except OSError as error:
+            self._socket.close()
+            raise SupervisorError(f"the supervisor at {path} does not answer: {error.strerror}") from None
+        self._buffer = b""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
+
+    def fileno(self) -> int:
+        return self._socket.fileno()
+
+    def send(self, **request: Any) -> None:
+        """Send a request.
+
+        Raises:
+            SupervisorError: The supervisor is gone.
+        """
+        try:
+            self._socket.sendall(json.dumps(request).encode() + b"\n")
+        except OSError as error:
+            raise SupervisorError(f"the supervisor is gone: {error.strerror}") from None
+
+    def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[dict[str, Any]]:
+        """Events as they come, until the supervisor closes.
+
+        Args:
+            timeout: Seconds between two events; None for no limit.
+
+        Raises:
+            SupervisorError: Nothing came in time (exit 4).
+        """
+        self._socket.settimeout(timeout)
+        while True:
+            while b"\n" in self._buffer:
+                line, _, self._buffer = self._buffer.partition(b"\n")
+                yield json.loads(line)
+            try:
+                data = self._socket.recv(65536)
+            except TimeoutError:
+                raise SupervisorError("the supervisor does not answer", exit_code=4) from None
+            except ConnectionError:
+                return
+            if not data:
+                return
+            self._buffer += data
+
+    def pending(self) -> list[dict[str, Any]] | None:
+        """Events that have arrived, without waiting; None when the supervisor has closed."""
+        self._socket.setblocking(False)
+        try:
+            while True:
+                data = self._socket.recv(65536)
+                if not data:
+                    return None if not self._buffer else self._lines()
+                self._buffer += data
+        except BlockingIOError:
+            return self._lines()
+        except ConnectionError:
+            return None
+
+    def _lines(self) -> list[dict[str, Any]]:
+        *lines, self._buffer = self._buffer.split(b"\n")
+        return [json.loads(line) for line in lines]

@@ -1,0 +1,260 @@
+"""The preload process: it has imported everything a node needs, and forks workers that then start in milliseconds.
+
+It is forked from the supervisor before that opens a Zenoh session, never opens one itself and keeps to one thread,
+so that forking it is safe. It is the workers' parent: it reaps them and tells the supervisor how each ended.
+
+The supervisor sends requests as lines of JSON over a socket pair and gets lines back:
+
+    {"do": "probe", "classes": [...], "root": ...}           -> {"event": "probed", "interfaces": {...}}
+    {"do": "spawn", "process": ..., "job": {...}, "log": ..., "env": {...}}
+                                                             -> {"event": "spawned", "process": ..., "pid": ...}
+                                              and, at its end, {"event": "exited", "process": ..., "status": ...}
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import selectors
+import signal
+import socket
+import subprocess
+import sys
+import time
+from typing import Any
+
+PROBE_LIMIT = 5.0
+"""Seconds that importing all classes of a project may take."""
+_FRESH = ("PYTHON", "LD_", "MALLOC_")
+"""Variables with these prefixes act only on a fresh interpreter."""
+_WARM = (
+    *(f"rcl_interfaces/srv/{name}" for name in ("GetParameters", "SetParameters", "ListParameters")),
+    *(f"rcl_interfaces/srv/{name}" for name in ("DescribeParameters", "GetParameterTypes", "SetParametersAtomically")),
+)
+
+
+def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
+    """Fork the preload process. To be called while this process has one thread and no Zenoh session.
+
+    Args:
+        keep: Descriptors that the preload process must not keep.
+
+    Returns:
+        The socket to it, the reading end of the workers' status pipe, and its process id.
+    """
+    mine, its = socket.socketpair()
+    status_read, status_write = os.pipe()
+    pid = os.fork()
+    if pid == 0:
+        try:
+            mine.close()
+            os.close(status_read)
+            for fd in keep:
+                os.close(fd)
+            _Preload(its, status_write).run()
+        except BaseException:
+            import traceback
+
+            traceback.print_exc()
+        finally:
+            os._exit(1)
+    its.close()
+    os.close(status_write)
+    return mine, status_read, pid
+
+
+class _Preload:
+    def __init__(self, channel: socket.socket, status: int) -> None:
+        self._channel, self._status = channel, status
+        self._workers: dict[int, str] = {}
+        self._probe: tuple[int, int, float] | None = None
+        self._buffer = b""
+
+    def run(self) -> None:
+        """Serve requests until the supervisor closes its end."""
+        from graphflow.supervisor.worker import die_with_parent
+
+        die_with_parent()
+        self._warm_up()
+        wake_read, wake_write = os.pipe()
+        for fd in (wake_read, wake_write):
+            os.set_blocking(fd, False)
+        signal.set_wakeup_fd(wake_write, warn_on_full_buffer=False)
+        signal.signal(signal.SIGCHLD, lambda *_: None)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_IGN)
+        selector = selectors.DefaultSelector()
+        selector.register(self._channel, selectors.EVENT_READ)
+        selector.register(wake_read, selectors.EVENT_READ)
+        while True:
+            for key, _ in selector.select():
+                if key.fileobj is self._channel:
+                    data = self._channel.recv(65536)
+                    if not data:
+                        os._exit(0)
+                    self._buffer += data
+                else:
+                    os.read(wake_read, 4096)
+            self._serve()
+            self._reap()
+
+    def _warm_up(self) -> None:
+        """Import and compile what every node needs, then tune memory for many forks."""
+        os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a second thread would make forking unsafe
+        import asyncio  # noqa: F401
+
+        import graphflow.runtime.run
+        import graphflow.supervisor.worker  # noqa: F401
+        from graphflow.msgs import registry
+
+        for name in _WARM:
+            service = registry.service_schema(name)
+            registry.hash_of(name)
+            registry.interface_class(name)
+            registry.codec(service.request.name)
+            registry.codec(service.response.name)
+        registry.codec("rcl_interfaces/msg/Log")
+        registry.hash_of("rcl_interfaces/msg/Log")
+        _tune_malloc()
+        gc.collect()
+        gc.freeze()
+
+    def _serve(self) -> None:
+        while b"\n" in self._buffer:
+            line, _, self._buffer = self._buffer.partition(b"\n")
+            request = json.loads(line)
+            if request["do"] == "probe":
+                self._answer({"event": "probed", "interfaces": self._probe_classes(request)})
+            else:
+                self._spawn(request)
+
+    def _answer(self, event: dict[str, Any]) -> None:
+        self._channel.sendall(json.dumps(event).encode() + b"\n")
+
+    def _probe_classes(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Import classes in a child of its own, so that what they do stays there."""
+        read, write = os.pipe()
+        pid = os.fork()
+        if pid == 0:
+            try:
+                self._channel.close()
+                os.close(read)
+                answer_probe(request, write)
+            finally:
+                os._exit(0)
+        os.close(write)
+        data, done = b"", False
+        deadline = time.monotonic() + PROBE_LIMIT
+        with selectors.DefaultSelector() as selector:
+            selector.register(read, selectors.EVENT_READ)
+            while not done and (left := deadline - time.monotonic()) > 0:
+                if selector.select(left):
+                    chunk = os.read(read, 65536)
+                    data += chunk
+                    done = not chunk
+        os.close(read)
+        if not done:
+            os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+        return probe_result(data, done, request["classes"])
+
+    def _spawn(self, request: dict[str, Any]) -> None:
+        fresh = any(name.startswith(_FRESH) for name in request["env"])
+        pid = self._spawn_fresh(request) if fresh else os.fork()
+        if pid == 0:
+            try:
+                self._channel.close()
+                self._be_worker(request)
+            except BaseException:
+                import traceback
+
+                traceback.print_exc()
+            finally:
+                os._exit(70)
+        self._workers[pid] = request["process"]
+        self._answer({"event": "spawned", "process": request["process"], "pid": pid})
+
+    def _be_worker(self, request: dict[str, Any]) -> None:
+        from graphflow.supervisor import worker
+
+        worker.become(request["log"], request["env"])
+        _reseed()
+        worker.main(request["job"], self._status)
+
+    def _spawn_fresh(self, request: dict[str, Any]) -> int:
+        """A worker in a new interpreter, for environments that a running one cannot take on."""
+        os.set_inheritable(self._status, True)
+        with open(request["log"], "ab") as out:
+            child = subprocess.Popen(
+                [sys.executable, "-m", "graphflow.supervisor.worker", json.dumps(request["job"]), str(self._status)],
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=out,
+                env={**os.environ, **request["env"]},
+                pass_fds=[self._status],
+                start_new_session=True,
+            )
+        os.set_inheritable(self._status, False)
+        child.returncode = 0  # it is reaped below with the others
+        return child.pid
+
+    def _reap(self) -> None:
+        while self._workers:
+            try:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                return
+            if pid == 0:
+                return
+            process = self._workers.pop(pid, None)
+            if process is not None:
+                code = os.waitstatus_to_exitcode(status)
+                self._answer({"event": "exited", "process": process, "status": code})
+
+
+def answer_probe(request: dict[str, Any], write: int) -> None:
+    """In the probing child: import the classes and write their Interfaces."""
+    from graphflow.supervisor.worker import interfaces
+
+    sys.path.append(request["root"])
+    null = os.open(os.devnull, os.O_RDWR)
+    for fd in (0, 1, 2):  # what a module prints while it is imported is nobody's business
+        os.dup2(null, fd)
+    data = json.dumps(interfaces(request["classes"])).encode()
+    while data:
+        data = data[os.write(write, data) :]
+
+
+def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
+    """What a probing child wrote, or why it wrote nothing."""
+    if not done:
+        why = f"importing it takes longer than {PROBE_LIMIT:.0f} s; do the work in the node, not while importing"
+        return {path: {"problem": why} for path in classes}
+    if not data:
+        return {path: {"problem": "the process that imported it died"} for path in classes}
+    result: dict[str, Any] = json.loads(data)
+    return result
+
+
+def _reseed() -> None:
+    """Give a forked worker random numbers of its own."""
+    import random
+
+    random.seed()
+    numpy_random = sys.modules.get("numpy.random")
+    if numpy_random is not None:
+        numpy_random.seed()
+
+
+def _tune_malloc() -> None:
+    """Keep freed megabytes in the process: without this a received image costs a page fault per 4 kB."""
+    import ctypes
+
+    m_trim_threshold, m_mmap_threshold = -1, -3
+    try:
+        mallopt = ctypes.CDLL(None).mallopt
+    except (OSError, AttributeError):  # not glibc
+        return
+    mallopt(m_mmap_threshold, 32 << 20)
+    mallopt(m_trim_threshold, 256 << 20)

@@ -1,0 +1,227 @@
+"""Where a running graph leaves its traces: the run directory, the run file, the logs.
+
+    $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock, lock      (0700)
+    $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, supervisor.log; `latest` points to the newest
+
+Without XDG_RUNTIME_DIR a private folder under the temporary directory is used; ROS_LOG_DIR moves the logs.
+A graph runs when its run file names a process that lives and was started when the file says.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from graphflow.errors import SupervisorError
+
+SOCKET_PATH_LIMIT = 100
+"""Bytes that a Unix socket's path may have, with some left for the C string."""
+
+
+def runtime_root() -> Path:
+    """The folder of all this user's run directories, made if need be.
+
+    Raises:
+        SupervisorError: It cannot be made, or it is somebody else's.
+    """
+    given = os.environ.get("XDG_RUNTIME_DIR")
+    root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{os.getuid()}"
+    try:
+        root.mkdir(mode=0o700, parents=True, exist_ok=True)
+        owner = root.stat().st_uid
+    except OSError as error:
+        raise SupervisorError(
+            f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder of yours that can be written"
+        ) from None
+    if owner != os.getuid():
+        raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
+    return root
+
+
+def log_root() -> Path:
+    """The folder of all logs."""
+    if os.environ.get("ROS_LOG_DIR"):
+        return Path(os.environ["ROS_LOG_DIR"])
+    state = os.environ.get("XDG_STATE_HOME")
+    return (Path(state) if state else Path.home() / ".local" / "state") / "graphflow"
+
+
+def new_run_id() -> str:
+    """A name for a run that sorts by time."""
+    return f"{time.strftime('%Y-%m-%d-%H-%M-%S')}-{os.getpid()}"
+
+
+def open_logs(graph: str, run_id: str) -> Path:
+    """Make a run's log folder and point `latest` to it.
+
+    Raises:
+        SupervisorError: It cannot be made.
+    """
+    folder = log_root() / graph / run_id
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        link = folder.parent / "latest"
+        fresh = folder.parent / f".latest-{os.getpid()}"
+        fresh.unlink(missing_ok=True)
+        fresh.symlink_to(run_id)
+        fresh.replace(link)
+    except OSError as error:
+        raise SupervisorError(f"{folder}: {error.strerror}; set ROS_LOG_DIR to a folder that can be written") from None
+    return folder
+
+
+def log_file(folder: Path, node: str) -> Path:
+    """The log of one node: `/turtle1/follower` logs to `turtle1.follower.log`."""
+    return folder / f"{node.strip('/').replace('/', '.')}.log"
+
+
+def start_time(pid: int) -> float | None:
+    """When a living process was started, in some fixed unit; None when it does not live."""
+    try:
+        text = Path(f"/proc/{pid}/stat").read_text()
+        fields = text.rpartition(")")[2].split()
+        return None if fields[0] == "Z" else float(fields[19])
+    except FileNotFoundError:
+        if Path("/proc/self/stat").exists():
+            return None
+    except (OSError, IndexError, ValueError):
+        return None
+    import psutil
+
+    try:
+        return float(psutil.Process(pid).create_time())
+    except psutil.Error:
+        return None
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run file's content."""
+
+    run_id: str
+    graph: str
+    domain: int
+    pid: int
+    started: float
+    """`start_time` of the supervisor."""
+    began: float
+    """When, in seconds since 1970."""
+    file: str
+    socket: str
+    logs: str
+    endpoint: str
+    plan_hash: str
+
+    @property
+    def is_alive(self) -> bool:
+        return start_time(self.pid) == self.started
+
+
+class RunDirectory:
+    """The run directory of one graph in one domain, held by its supervisor."""
+
+    def __init__(self, domain: int, graph: str) -> None:
+        self.path = runtime_root() / str(domain) / graph
+        self._lock: int | None = None
+
+    def claim(self) -> None:
+        """Take the directory for this process.
+
+        Raises:
+            SupervisorError: The graph runs already, or the directory cannot be made.
+        """
+        import fcntl
+
+        try:
+            self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            self._lock = os.open(self.path / "lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        except OSError as error:
+            raise SupervisorError(f"{self.path}: {error.strerror}") from None
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(self._lock)
+            self._lock = None
+            run = read_run(self.path / "run.json")
+            since = f" since {time.strftime('%H:%M:%S', time.localtime(run.began))}, process {run.pid}" if run else ""
+            raise SupervisorError(
+                f"graph {self.path.name} is running already (domain {self.path.parent.name}{since}); "
+                f"stop it with: graphflow down --graph {self.path.name}"
+            ) from None
+
+    @property
+    def socket(self) -> Path:
+        """Where the control socket goes: inside, or in a short place when the path is too long for a socket."""
+        inside = self.path / "control.sock"
+        if len(os.fsencode(inside)) <= SOCKET_PATH_LIMIT:
+            return inside
+        digest = hashlib.sha256(os.fsencode(inside)).hexdigest()[:16]
+        folder = Path(tempfile.gettempdir()) / f"graphflow-{os.getuid()}"
+        folder.mkdir(mode=0o700, exist_ok=True)
+        if folder.stat().st_uid != os.getuid():
+            raise SupervisorError(f"{folder} belongs to another user; set XDG_RUNTIME_DIR to a shorter path")
+        return folder / f"{digest}.sock"
+
+    def write(self, run: Run) -> None:
+        """Write the run file, whole or not at all."""
+        fresh = self.path / "run.json.new"
+        fresh.write_text(json.dumps(asdict(run), indent=1))
+        fresh.replace(self.path / "run.json")
+
+    def release(self) -> None:
+        """Remove what `claim` and `write` left."""
+        for name in ("run.json", "run.json.new", "control.sock", "lock"):
+            (self.path / name).unlink(missing_ok=True)
+        self.socket.unlink(missing_ok=True)
+        for folder in (self.path, self.path.parent):
+            try:
+                folder.rmdir()
+            except OSError:  # another graph of the domain is using it
+                break
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+
+def read_run(path: Path) -> Run | None:
+    """A run file's content; None when it is not there or not one."""
+    try:
+        data: Any = json.loads(path.read_text())
+        return Run(**data)
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def running() -> list[Run]:
+    """Every graph of this user that runs now, by name."""
+    found = [read_run(path) for path in sorted(runtime_root().glob("*/*/run.json"))]
+    return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
+
+
+def choose(name: str | None) -> Run:
+    """The running graph that is meant.
+
+    Raises:
+        SupervisorError: None runs (exit 3), or several do and `name` does not tell which (exit 2).
+    """
+    from graphflow.names import did_you_mean
+
+    runs = running()
+    if not runs:
+        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exit_code=3)
+    if name is not None:
+        named = [r for r in runs if r.graph == name]
+        if not named:
+            names = [r.graph for r in runs]
+            raise SupervisorError(f"graph {name!r} is not running{did_you_mean(name, names)}", exit_code=3)
+        runs = named
+    if len(runs) > 1:
+        listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
+        raise SupervisorError(f"several graphs are running: {listing}; say which with --graph NAME", exit_code=2)
+    return runs[0]

@@ -1,0 +1,316 @@
+"""The supervisor: carries out what `machines.process` decides, for every process of one graph, and runs its steps."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import os
+import signal
+import time
+from collections.abc import Callable
+from typing import Any
+
+from graphflow.errors import GraphflowError
+from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
+from graphflow.machines.process import ALARMS, Action, Event, Exit, Order, State, step
+from graphflow.runtime.context import Context
+from graphflow.supervisor.channel import Lines
+from graphflow.supervisor.rundir import log_file
+from graphflow.supervisor.steps import StepRunner
+
+logger = logging.getLogger("graphflow.supervisor")
+
+
+class Process:
+    """One process of the graph, as the supervisor sees it."""
+
+    def __init__(self, name: str, nodes: list[PlannedNode], log: str) -> None:
+        self.name = name
+        self.nodes = nodes
+        self.log = log
+        self.state = State.PENDING
+        self.pid: int | None = None
+        self.exit: Exit | None = None
+        self.since = time.time()
+        """When it entered its state, in seconds since 1970."""
+        self.waiting_for = {n.name for n in nodes}
+        """Nodes that are not ready yet."""
+        self.error = ""
+        self.stop_asked = False
+        self.alarm: asyncio.TimerHandle | None = None
+
+
+class Supervisor:
+    """One running graph.
+
+    Args:
+        spawn: Asks for a process; `spawned` and later `exited` are called when it has happened.
+        logs: The folder of the nodes' logs.
+    """
+
+    def __init__(self, plan: Plan, context: Context, preload: Lines, logs: Any, step_types: dict[str, str]) -> None:
+        self.plan = plan
+        self.exit_code = 0
+        self.ended = asyncio.Event()
+        self._context = context
+        self._preload = preload
+        self._steps = StepRunner(context, step_types)
+        self._processes = {
+            name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
+        }
+        self._process_of = {n.name: p for p in self._processes.values() for n in p.nodes}
+        self._done: set[str] = set()
+        """Processes that are ready and steps that are finished, by name."""
+        self._step_tasks: dict[str, asyncio.Task[None]] = {}
+        self._order = self._make_order()
+        self._stopping = False
+        self._layers: list[list[str]] = []
+        self._began = time.monotonic()
+        self._is_up = False
+        self._history: list[dict[str, Any]] = []
+        self._listeners: list[Callable[[dict[str, Any]], None]] = []
+
+    def _make_order(self) -> Order:
+        def holder(name: str) -> str:
+            return self._process_of[name].name if name in self._process_of else f"step {name}"
+
+        after: dict[str, frozenset[str]] = {}
+        for process in self._processes.values():
+            needs = {holder(a) for node in process.nodes for a in node.after}
+            after[process.name] = frozenset(needs - {process.name})
+        for planned in self.plan.steps:
+            after[f"step {planned.name}"] = frozenset(holder(a) for a in planned.after)
+        return Order(after)
+
+    # what doors may ask
+
+    def describe(self) -> list[dict[str, Any]]:
+        """One row a node, for `ps`."""
+        return [
+            {
+                "node": node.name,
+                "state": self._state_word(process),
+                "pid": process.pid,
+                "since": process.since,
+                "process": node.process,
+                "class": node.class_path,
+                "log": process.log,
+                "detail": process.error or (str(process.exit) if process.exit and process.exit.failed else ""),
+            }
+            for process in self._processes.values()
+            for node in process.nodes
+        ]
+
+    @staticmethod
+    def _state_word(process: Process) -> str:
+        if process.state is State.ENDED and process.exit is not None and process.exit.failed and not process.stop_asked:
+            return "failed"
+        return process.state.value
+
+    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]:
+        """Have events told, those of the past first if `replay`; returns what ends that."""
+        if replay:
+            for event in self._history:
+                listener(event)
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def begin_stop(self, *, now: bool, reason: str) -> None:
+        """Stop everything, last started first; `now` sends SIGKILL. Asking again is harmless."""
+        if not self._stopping:
+            self._stopping = True
+            self._tell(event="stopping", reason=reason)
+            for task in self._step_tasks.values():
+                task.cancel()
+            living = [p.name for p in self._processes.values() if p.state is not State.ENDED]
+            self._layers = self._order.stop_layers(living)
+        if now:
+            for process in self._processes.values():
+                process.stop_asked = True
+                self._happen(process, Event.KILL)
+        self._stop_next_layer()
+
+    # events from below
+
+    async def run(self) -> int:
+        """Bring the graph up and keep it until it has ended; returns its exit code."""
+        self._start_ready_ones()
+        await self.ended.wait()
+        for task in self._step_tasks.values():
+            task.cancel()
+        await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
+        await self._steps.close()
+        self._tell(event="end", exit_code=self.exit_code)
+        return self.exit_code
+
+    def heard(self, event: dict[str, Any]) -> None:
+        """Something the preload process or a worker said."""
+        process = self._processes.get(event.get("process", ""))
+        if process is None:
+            return
+        what = event["event"]
+        if what == "spawned":
+            process.pid = event["pid"]
+            if process.stop_asked:  # it was asked to stop before it had a pid to send a signal to
+                self._signal(process, signal.SIGTERM)
+        elif what == "ready":
+            process.waiting_for.discard(event["node"])
+            self._tell(event="ready", node=event["node"], pid=process.pid)
+            if not process.waiting_for:
+                self._happen(process, Event.READY)
+                self._finished(process.name)
+        elif what == "failed":
+            process.error = event["error"]
+        elif what == "exited":
+            process.exit = Exit.of_status(event["status"])
+            self._happen(process, Event.EXIT)
+
+    def preload_lost(self) -> None:
+        """The preload process died, and all workers with it."""
+        if not self.ended.is_set():
+            logger.error("the preload process died; all nodes went with it")
+            self.exit_code = 1
+            self._tell(event="error", message="the process that starts nodes died, and the nodes with it")
+            for process in self._processes.values():
+                if process.state is not State.ENDED:
+                    process.exit = process.exit or Exit(signal=signal.SIGKILL)
+                    process.state = State.ENDED
+            self.ended.set()
+
+    # decisions carried out
+
+    def _start_ready_ones(self) -> None:
+        if self._stopping:
+            return
+        for name in self._order.startable(self._done):
+            if name in self._processes:
+                self._happen(self._processes[name], Event.GO)
+            elif name not in self._step_tasks:
+                planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
+                self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
+        if not self._is_up and len(self._done) == len(self._processes) + len(self.plan.steps):
+            self._is_up = True
+            self._tell(event="up", seconds=time.monotonic() - self._began)
+
+    def _finished(self, name: str) -> None:
+        self._done.add(name)
+        self._start_ready_ones()
+
+    async def _run_step(self, planned: PlannedStep) -> None:
+        try:
+            answer = await self._steps.run(planned)
+        except GraphflowError as error:
+            logger.error("step %s: %s", planned.name, error)
+            self._tell(event="step", step=planned.name, ok=False, text=f"{planned.call}: {error}")
+            self._fail(f"step {planned.name} failed")
+            return
+        self._tell(event="step", step=planned.name, ok=True, text=f"{planned.call} -> {answer}")
+        self._finished(f"step {planned.name}")
+
+    def _fail(self, reason: str) -> None:
+        self.exit_code = 1
+        self.begin_stop(now=False, reason=reason)
+
+    def _happen(self, process: Process, event: Event) -> None:
+        was = process.state
+        process.state, actions = step(was, event)
+        if process.state is not was:
+            process.since = time.time()
+            if process.alarm is not None:
+                process.alarm.cancel()
+                process.alarm = None
+            if process.state in ALARMS:
+                loop = self._context.loop
+                process.alarm = loop.call_later(ALARMS[process.state], self._happen, process, Event.LATE)
+        for action in actions:
+            self._act(process, action)
+        if process.state is State.ENDED and was is not State.ENDED:
+            self._process_ended(process, was)
+
+    def _act(self, process: Process, action: Action) -> None:
+        if action is Action.SPAWN:
+            self._spawn(process)
+        elif action is Action.TERMINATE:
+            self._signal(process, signal.SIGTERM)
+        elif action is Action.KILL:
+            self._signal(process, signal.SIGKILL)
+        elif action is Action.GIVE_UP:
+            missing = ", ".join(sorted(process.waiting_for))
+            process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
+            self._fail(f"{process.name} did not get ready")
+
+    def _spawn(self, process: Process) -> None:
+        plan = self.plan
+        planned = {n["name"]: n for n in plan.to_json()["nodes"]}
+        env: dict[str, str] = {}
+        for node in process.nodes:
+            env.update(node.env)
+        job = {
+            "process": process.name,
+            "nodes": [planned[n.name] for n in process.nodes],
+            "root": plan.root,
+            "domain": self._context.domain,
+            "mode": "peer" if len(self._processes) <= MESH_LIMIT else "client",
+        }
+        self._tell(event="starting", process=process.name)
+        self._preload.send(do="spawn", process=process.name, job=job, log=process.log, env=env)
+
+    def _signal(self, process: Process, number: signal.Signals) -> None:
+        if process.pid is None:
+            return
+        try:
+            os.killpg(process.pid, number)
+        except ProcessLookupError:  # it has ended, or has not made its session yet
+            try:
+                os.kill(process.pid, number)
+            except ProcessLookupError:
+                return
+
+    def _process_ended(self, process: Process, was: State) -> None:
+        failed = process.exit is not None and process.exit.failed
+        asked = process.stop_asked or was is State.STOPPING
+        if process.exit is not None:
+            self._tell(
+                event="exited",
+                process=process.name,
+                nodes=[n.name for n in process.nodes],
+                pid=process.pid,
+                how=str(process.exit),
+                unexpected=failed and not asked,
+                error=process.error,
+                log=process.log,
+            )
+        if failed and not asked:
+            self.exit_code = 1
+            if was is State.STARTING:
+                self.begin_stop(now=False, reason=f"{process.name} did not start")
+        if self._stopping:
+            self._stop_next_layer()
+        elif all(p.state is State.ENDED for p in self._processes.values()):
+            self.ended.set()
+
+    def _stop_next_layer(self) -> None:
+        while self._layers and all(self._processes_ended(name) for name in self._layers[0]):
+            self._layers.pop(0)
+        if self._layers:
+            for name in self._layers[0]:
+                process = self._processes[name]
+                if not process.stop_asked:
+                    process.stop_asked = True
+                    self._happen(process, Event.STOP)
+        if all(p.state is State.ENDED for p in self._processes.values()):
+            self.ended.set()
+
+    def _processes_ended(self, name: str) -> bool:
+        return self._processes[name].state is State.ENDED
+
+    def _tell(self, **event: Any) -> None:
+        self._history.append(event)
+        for listener in list(self._listeners):
+            listener(event)
+        logger.info("%s", json.dumps(event))
+
+
+MESH_LIMIT = 24
+"""Processes up to which each is a peer of every other; beyond, they are clients of the rendezvous."""
