@@ -1,0 +1,25 @@
+"""A turtle in a circle, the first exercise of every course: two parameters, a publisher and a timer.
+
+Whoever drives at v metres and turns at w radians a second goes round in a circle of v / w metres radius. The command
+is repeated because turtles, like real robots, stop when nobody has said anything for a second.
+"""
+
+import graphflow
+from graphflow import Node, Param, Publisher, timer
+from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+
+
+class DrawCircle(Node):
+    """Drive turtle1 in a circle."""
+
+    linear = Param(2.0, unit="m/s", doc="Speed along the circle.")
+    angular = Param(1.8, unit="rad/s", doc="Turning speed; more than 0 is to the left.")
+    cmd_vel = Publisher(Twist, "turtle1/cmd_vel")
+
+    @timer(hz=10.0)
+    async def drive(self) -> None:
+        self.cmd_vel.publish(Twist(linear=Vector3(x=self.linear), angular=Vector3(z=self.angular)))
+
+
+if __name__ == "__main__":
+    graphflow.run(DrawCircle)

@@ -1,0 +1,17 @@
+"""The listener of every ROS 2 tutorial: a subscription."""
+
+import graphflow
+from graphflow import Node, subscription
+from graphflow.msgs.std_msgs.msg import String
+
+
+class Listener(Node):
+    """Write down everything said on `chatter`."""
+
+    @subscription(String, "chatter")
+    async def heard(self, message: String) -> None:
+        self.log.info("I heard: [%s]", message.data)
+
+
+if __name__ == "__main__":
+    graphflow.run(Listener)

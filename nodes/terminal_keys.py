@@ -1,0 +1,84 @@
+"""Keys as they are pressed: a terminal's bytes, and the terminal itself.
+
+A terminal sends a letter as itself and an arrow as several bytes, `ESC [ A`, which may arrive in pieces. Normally it
+sends nothing before Return is pressed; `keyboard` changes that for the length of a block. Reading goes by the event
+loop: it says when there is something to read, so nothing blocks and nobody polls.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import termios
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+HANGUP = "hangup"
+"""The key that is pressed last: the terminal is gone."""
+_NAMES = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
+# ECMA-48, 5.4: a control sequence is ESC [, parameters, intermediates and a final byte. ESC O is what a keypad
+# in application mode sends instead.
+_SEQUENCE = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*|O)([@-~])")
+_BEGUN = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*|O)?\Z")
+
+
+def decode_keys(pressed: bytes) -> tuple[list[str], bytes]:
+    """Read keys from what a terminal sent.
+
+    Returns:
+        The keys: `up`, `down`, `left`, `right`, `escape`, or the character; keys of no name are left out. And the bytes
+        of a key that is not complete: put them before what comes next.
+    """
+    keys: list[str] = []
+    at = 0
+    while at < len(pressed):
+        if sequence := _SEQUENCE.match(pressed, at):
+            keys += [_NAMES[sequence[1]]] if sequence[1] in _NAMES else []
+            at = sequence.end()
+        elif _BEGUN.match(pressed, at):
+            break
+        else:
+            keys += ["escape"] if pressed[at] == 0x1B else [chr(pressed[at])] if pressed[at] < 0x80 else []
+            at += 1
+    return keys, pressed[at:]
+
+
+@contextmanager
+def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
+    """The keys pressed on a terminal, each at once and unseen, for the length of the block.
+
+    However the block ends, the terminal is afterwards as it was. Ctrl-C stays Ctrl-C.
+
+    Args:
+        terminal: Its file descriptor.
+
+    Raises:
+        termios.error: It is no terminal.
+    """
+    keys: asyncio.Queue[str] = asyncio.Queue()
+    loop = asyncio.get_running_loop()
+    begun = b""
+
+    def readable() -> None:
+        nonlocal begun
+        try:
+            received = os.read(terminal, 1024)
+        except OSError:
+            received = b""
+        if not received:
+            loop.remove_reader(terminal)
+            keys.put_nowait(HANGUP)
+        pressed, begun = decode_keys(begun + received)
+        for key in pressed:
+            keys.put_nowait(key)
+
+    before = termios.tcgetattr(terminal)
+    try:
+        tty.setcbreak(terminal)
+        loop.add_reader(terminal, readable)
+        yield keys
+    finally:
+        loop.remove_reader(terminal)
+        termios.tcsetattr(terminal, termios.TCSADRAIN, before)

@@ -1,0 +1,161 @@
+"""The world of turtlesim, without a node: turtles, the velocities they were told, the walls around them.
+
+A turtle is a unicycle: it moves along its nose and turns on the spot. Time goes in ticks of 16 ms. Whoever owns the
+world calls `step` once a tick and says what time it is, which matters only to old commands: after a second without
+a new one a turtle stops. `nodes/turtlesim.py` puts all this on the network.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from nodes.turtle_canvas import Canvas, Pen, Position
+
+TICK = 0.016
+"""Seconds between two steps: 62.5 Hz."""
+SIZE = 11.088889122009277
+"""Metres from wall to wall: 499 pixels of 45 to the metre, rounded to float32 as turtlesim does."""
+COMMAND_LIFE_NS = 1_000_000_000
+"""How long a velocity command holds."""
+LIMIT = 1e5
+"""No turtle is further away or faster, in metres, radians and seconds."""
+
+
+class NameTaken(Exception):
+    """There is a turtle of that name."""
+
+
+@dataclass
+class Turtle:
+    """Where a turtle is, how it moves and what it draws with. Metres and radians; theta 0 looks along x."""
+
+    name: str
+    x: float
+    y: float
+    theta: float = 0.0
+    number: int = 0
+    """Counts the turtles since the last reset; decides what colour it is."""
+    pen: Pen | None = field(default_factory=Pen)
+    """None while it is lifted."""
+    forward: float = 0.0
+    sideways: float = 0.0
+    turning: float = 0.0
+    commanded_ns: int = 0
+
+    @property
+    def position(self) -> Position:
+        return self.x, self.y
+
+    @property
+    def speed(self) -> float:
+        return math.hypot(self.forward, self.sideways)
+
+    def command(self, forward: float, sideways: float, turning: float, now_ns: int) -> None:
+        """Move with these velocities (m/s, m/s to the left, rad/s) from the next step on.
+
+        Raises:
+            ValueError: One is no number, or beyond `LIMIT`.
+        """
+        check_numbers(forward, sideways, turning)
+        self.forward, self.sideways, self.turning, self.commanded_ns = forward, sideways, turning, now_ns
+
+    def move(self, seconds: float) -> None:
+        """Follow the velocities for a moment; turning comes first."""
+        self.theta = normalize(self.theta + self.turning * seconds)
+        cos, sin = math.cos(self.theta), math.sin(self.theta)
+        self.x += (cos * self.forward - sin * self.sideways) * seconds
+        self.y += (sin * self.forward + cos * self.sideways) * seconds
+
+
+class World:
+    """Turtles by name, and what they have drawn."""
+
+    def __init__(self) -> None:
+        self.turtles: dict[str, Turtle] = {}
+        self.canvas = Canvas()
+        self._numbered = 0
+        self._spawned = 0
+
+    def free_name(self) -> str:
+        """`turtle1`, `turtle2`, ...: the next that is free. A number is used once, even if its turtle is gone."""
+        while True:
+            self._numbered += 1
+            if (name := f"turtle{self._numbered}") not in self.turtles:
+                return name
+
+    def spawn(self, name: str, x: float, y: float, theta: float) -> Turtle:
+        """Add a turtle.
+
+        Raises:
+            NameTaken: There is one of that name.
+            ValueError: A coordinate is no number, or beyond `LIMIT`.
+        """
+        check_numbers(x, y, theta)
+        if name in self.turtles:
+            raise NameTaken(name)
+        turtle = Turtle(name, x, y, theta, number=self._spawned)
+        self.turtles[name] = turtle
+        self._spawned += 1
+        return turtle
+
+    def kill(self, name: str) -> None:
+        """Take a turtle away. What it drew stays.
+
+        Raises:
+            KeyError: There is none of that name.
+        """
+        del self.turtles[name]
+
+    def step(self, turtle: Turtle, now_ns: int) -> Position | None:
+        """Let one tick pass for a turtle.
+
+        Returns:
+            None, or where it would be now were it not for a wall.
+        """
+        if now_ns - turtle.commanded_ns > COMMAND_LIFE_NS:
+            turtle.forward = turtle.sideways = turtle.turning = 0.0
+        before = turtle.position
+        turtle.move(TICK)
+        beyond = turtle.position
+        turtle.x, turtle.y = (min(max(v, 0.0), SIZE) for v in beyond)
+        self._draw(turtle, before)
+        return None if turtle.position == beyond else beyond
+
+    def teleport(self, turtle: Turtle, x: float, y: float, theta: float) -> None:
+        """Put a turtle elsewhere; its pen draws the straight line there.
+
+        Raises:
+            ValueError: A coordinate is no number, or beyond `LIMIT`.
+        """
+        check_numbers(x, y, theta)
+        before = turtle.position
+        turtle.x, turtle.y, turtle.theta = x, y, theta
+        self._draw(turtle, before)
+
+    def jump(self, turtle: Turtle, distance: float, turn: float) -> None:
+        """Turn a turtle, then put it `distance` ahead. Errors as `teleport`."""
+        check_numbers(distance, turn)
+        theta = turtle.theta + turn
+        x, y = turtle.x + distance * math.cos(theta), turtle.y + distance * math.sin(theta)
+        self.teleport(turtle, x, y, theta)
+
+    def clear(self) -> None:
+        """Wipe the canvas."""
+        self.canvas = Canvas()
+
+    def _draw(self, turtle: Turtle, before: Position) -> None:
+        if turtle.pen is not None and turtle.position != before:
+            self.canvas.draw(turtle.name, turtle.pen, before, turtle.position)
+
+
+def check_numbers(*values: float) -> None:
+    """Raise ValueError unless a turtle can live with these numbers."""
+    for value in values:
+        if not abs(value) < LIMIT:  # nor is that true of a NaN
+            raise ValueError(f"{value} is nothing a turtle can do: give a number between {-LIMIT:g} and {LIMIT:g}")
+
+
+def normalize(angle: float) -> float:
+    """The same angle from -pi up to, but not, pi."""
+    return angle - math.tau * math.floor((angle + math.pi) / math.tau)

@@ -1,0 +1,185 @@
+"""The turtle simulator of every ROS 2 course: names that come and go with the turtles.
+
+A node that knows its topics and services in advance declares them on its class. This one cannot: each turtle has
+topics and services of its own, so they are made when it hatches, with the `create_*` methods on which declarations
+rest too, and closed when it is killed. What turtles do is in `turtle_world.py`, which knows nothing of nodes.
+
+There is no window. Ask for a picture, an SVG file in the answer's `message`, whenever you want one:
+
+    graphflow service call /turtlesim/snapshot std_srvs/srv/Trigger
+
+Source: turtlesim 1.8.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import graphflow
+from graphflow import Node, Param, service, task, timer
+from graphflow.errors import InvalidName
+from graphflow.msgs.geometry_msgs.msg import Twist
+from graphflow.msgs.std_srvs.srv import Empty, Trigger
+from graphflow.msgs.turtlesim.msg import Color, Pose
+from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from nodes.turtle_canvas import Colour, Pen
+from nodes.turtle_picture import svg
+from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World
+
+
+class TurtleSim(Node):
+    """Turtles that drive where `<turtle>/cmd_vel` says and draw a line behind them."""
+
+    node_name = "turtlesim"
+    dynamic_names = (
+        "*/cmd_vel",
+        "*/pose",
+        "*/color_sensor",
+        "*/set_pen",
+        "*/teleport_absolute",
+        "*/teleport_relative",
+    )
+
+    background_r = Param(69, ge=0, le=255, doc="Red part of the background colour.")
+    background_g = Param(86, ge=0, le=255, doc="Green part of the background colour.")
+    background_b = Param(255, ge=0, le=255, doc="Blue part of the background colour.")
+    holonomic = Param(False, doc="Whether turtles also move sideways, as linear.y says.")
+
+    def __init__(self, name: str | None = None, **options: Any) -> None:
+        super().__init__(name, **options)
+        self.world = World()
+        self.reins: dict[str, Reins] = {}
+        self.hatch_first()
+
+    @property
+    def background(self) -> Colour:
+        return self.background_r, self.background_g, self.background_b
+
+    @task
+    async def greet(self) -> None:
+        self.log.info("Starting turtlesim with node name %s", self.full_name)
+        for turtle in self.world.turtles.values():
+            self.announce(turtle)
+
+    @timer(TICK)
+    async def update(self) -> None:
+        now_ns = self.clock.monotonic_ns()
+        for reins in self.reins.values():
+            beyond = self.world.step(reins.turtle, now_ns)
+            if beyond is not None:
+                self.log.warning("Oh no! I hit the wall! (Clamping from [x=%f, y=%f])", *beyond)
+            reins.publish()
+
+    @service(Spawn, "spawn")
+    async def spawn_turtle(self, request: Spawn.Request) -> Spawn.Response:
+        name = request.name or self.world.free_name()
+        try:
+            turtle = self.hatch(name, request.x, request.y, request.theta)
+        except NameTaken:
+            self.log.error("A turtle named [%s] already exists", name)
+        except InvalidName as error:
+            self.log.error("A turtle cannot be named [%s]: %s", name, error)
+        else:
+            self.announce(turtle)
+            return Spawn.Response(name=name)
+        return Spawn.Response()
+
+    @service(Kill, "kill")
+    async def kill_turtle(self, request: Kill.Request) -> None:
+        if request.name in self.reins:
+            self.remove(request.name)
+        else:
+            self.log.error("Tried to kill turtle [%s], which does not exist", request.name)
+
+    @service(Empty, "clear")
+    async def clear_drawing(self, _: Empty.Request) -> None:
+        self.log.info("Clearing turtlesim.")
+        self.world.clear()
+
+    @service(Empty, "reset")
+    async def begin_again(self, _: Empty.Request) -> None:
+        self.log.info("Resetting turtlesim.")
+        for name in list(self.reins):
+            self.remove(name)
+        self.world = World()
+        self.announce(self.hatch_first())
+
+    @service(Trigger, "~/snapshot")
+    async def snapshot(self, _: Trigger.Request) -> Trigger.Response:
+        return Trigger.Response(success=True, message=svg(self.world, self.background))
+
+    def hatch(self, name: str, x: float, y: float, theta: float) -> Turtle:
+        """Add a turtle and its topics and services.
+
+        Raises:
+            NameTaken: There is one of that name.
+            InvalidName: No topic can be called that.
+            ValueError: A coordinate is not one.
+        """
+        turtle = self.world.spawn(name, x, y, theta)
+        try:
+            self.reins[name] = Reins(self, turtle)
+        except InvalidName:
+            self.world.kill(name)
+            raise
+        return turtle
+
+    def hatch_first(self) -> Turtle:
+        """Put turtle1 in the middle."""
+        return self.hatch(self.world.free_name(), SIZE / 2, SIZE / 2, 0.0)
+
+    def announce(self, turtle: Turtle) -> None:
+        self.log.info("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", turtle.name, *turtle.position, turtle.theta)
+
+    def remove(self, name: str) -> None:
+        """Take a turtle away, its topics and services too."""
+        self.reins.pop(name).close()
+        self.world.kill(name)
+
+
+class Reins:
+    """The topics and services of one turtle. Their names are relative: the node's namespace and remaps apply."""
+
+    def __init__(self, node: TurtleSim, turtle: Turtle) -> None:
+        self.node, self.turtle = node, turtle
+        name = turtle.name
+        self.endpoints = (
+            # The longest name first: if it is legal, so are the others.
+            node.create_service(TeleportAbsolute, f"{name}/teleport_absolute", self.teleport_absolute),
+            node.create_service(TeleportRelative, f"{name}/teleport_relative", self.teleport_relative),
+            node.create_service(SetPen, f"{name}/set_pen", self.set_pen),
+            node.create_subscription(Twist, f"{name}/cmd_vel", self.command, 7),
+            pose := node.create_publisher(Pose, f"{name}/pose", 7),
+            color := node.create_publisher(Color, f"{name}/color_sensor", 7),
+        )
+        self.pose, self.color = pose, color
+
+    def close(self) -> None:
+        """Take them off the network."""
+        for endpoint in self.endpoints:
+            endpoint.close()
+
+    def publish(self) -> None:
+        """Say where the turtle is, and what colour is under it."""
+        t = self.turtle
+        self.pose.publish(Pose(x=t.x, y=t.y, theta=t.theta, linear_velocity=t.speed, angular_velocity=t.turning))
+        r, g, b = self.node.world.canvas.colour_at(t.position) or self.node.background
+        self.color.publish(Color(r=r, g=g, b=b))
+
+    def command(self, twist: Twist) -> None:
+        sideways = twist.linear.y if self.node.holonomic else 0.0
+        self.turtle.command(twist.linear.x, sideways, twist.angular.z, self.node.clock.monotonic_ns())
+
+    def set_pen(self, request: SetPen.Request) -> None:
+        colour = (request.r, request.g, request.b)
+        self.turtle.pen = None if request.off else Pen(colour, request.width or 1)
+
+    def teleport_absolute(self, request: TeleportAbsolute.Request) -> None:
+        self.node.world.teleport(self.turtle, request.x, request.y, request.theta)
+
+    def teleport_relative(self, request: TeleportRelative.Request) -> None:
+        self.node.world.jump(self.turtle, request.linear, request.angular)
+
+
+if __name__ == "__main__":
+    graphflow.run(TurtleSim)
