@@ -5,7 +5,9 @@ Checks, plans and listings speak this; nothing here refers to a class or a funct
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
+from fnmatch import fnmatchcase
 from typing import Any, Literal
 
 from graphflow.errors import ParameterError, Place
@@ -168,3 +170,10 @@ def type_of(value: Any) -> ParamType:
     raise ParameterError(
         f"{value!r} cannot be a parameter: use a bool, int, float, str, bytes, or a list of one of them"
     )
+
+
+def may_make(dynamic_names: bool | Sequence[str], full_name: str) -> bool:
+    """Whether a class that declares `dynamic_names` may make a topic or service called `full_name` at run time."""
+    if isinstance(dynamic_names, bool):
+        return dynamic_names
+    return any(fnmatchcase(full_name, pattern) for pattern in dynamic_names)

@@ -123,6 +123,8 @@ def expand(name: str, namespace: str, node: str) -> str:
         InvalidName: The result is not a legal name.
     """
     text = _SUBSTITUTION.sub(lambda m: _substitute(m.group(1), name, namespace, node), name)
+    if namespace == "/" and text.startswith("//"):  # {ns}/a at the root
+        text = text[1:]
     if text == "~":
         text = join(namespace, node)
     elif text.startswith("~/"):

@@ -49,6 +49,16 @@ class Qos:
     liveliness: Liveliness = Liveliness.AUTOMATIC
     lease_ns: int = INFINITE_NS
 
+    def __post_init__(self) -> None:
+        # rmw_zenoh adapts a requested profile likewise: no depth and no duration of 0 reaches the wire.
+        if self.depth < 0:
+            raise ValueError(f"a queue depth cannot be {self.depth}; give 1 or more")
+        if not self.depth:
+            object.__setattr__(self, "depth", DEFAULT_DEPTH)
+        for name in ("deadline_ns", "lifespan_ns", "lease_ns"):
+            if not getattr(self, name):
+                object.__setattr__(self, name, INFINITE_NS)
+
     @classmethod
     def of(cls, profile: Qos | int) -> Qos:
         """A profile as it is, or ROS 2's short form: a number is the depth of the default profile.
@@ -56,11 +66,7 @@ class Qos:
         Raises:
             ValueError: A negative depth.
         """
-        if isinstance(profile, Qos):
-            return profile
-        if profile < 0:
-            raise ValueError(f"a queue depth cannot be {profile}; give 1 or more")
-        return cls(depth=profile or DEFAULT_DEPTH)
+        return profile if isinstance(profile, Qos) else cls(depth=profile)
 
 
 DEFAULT = Qos()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import overload
 
 NANOSECONDS = 1_000_000_000
 """Nanoseconds in a second."""
@@ -13,13 +14,15 @@ def to_ns(seconds: float) -> int:
     return round(seconds * NANOSECONDS)
 
 
-class Duration(NamedTuple):
+@dataclass(frozen=True, order=True, slots=True)
+class Duration:
     """A span of time; may be negative. Fits builtin_interfaces/msg/Duration."""
 
     nanoseconds: int
 
     @classmethod
     def of(cls, seconds: float) -> Duration:
+        """The span of so many seconds."""
         return cls(to_ns(seconds))
 
     @property
@@ -36,8 +39,18 @@ class Duration(NamedTuple):
         """The rest, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
+    def __add__(self, other: Duration) -> Duration:
+        return Duration(self.nanoseconds + other.nanoseconds) if isinstance(other, Duration) else NotImplemented
 
-class Time(NamedTuple):
+    def __sub__(self, other: Duration) -> Duration:
+        return Duration(self.nanoseconds - other.nanoseconds) if isinstance(other, Duration) else NotImplemented
+
+    def __neg__(self) -> Duration:
+        return Duration(-self.nanoseconds)
+
+
+@dataclass(frozen=True, order=True, slots=True)
+class Time:
     """A point on a clock, in nanoseconds since its epoch. Fits builtin_interfaces/msg/Time.
 
     `Time - Time` is a `Duration`; `Time + Duration` and `Time - Duration` are a `Time`.
@@ -59,11 +72,14 @@ class Time(NamedTuple):
         """The rest, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
-    def __add__(self, other: object) -> Time:
-        if not isinstance(other, Duration):
-            return NotImplemented
-        return Time(self.nanoseconds + other.nanoseconds)
+    def __add__(self, other: Duration) -> Time:
+        return Time(self.nanoseconds + other.nanoseconds) if isinstance(other, Duration) else NotImplemented
 
-    def since(self, earlier: Time) -> Duration:
-        """How long after `earlier` this is."""
-        return Duration(self.nanoseconds - earlier.nanoseconds)
+    @overload
+    def __sub__(self, other: Time) -> Duration: ...
+    @overload
+    def __sub__(self, other: Duration) -> Time: ...
+    def __sub__(self, other: Time | Duration) -> Time | Duration:
+        if isinstance(other, Time):
+            return Duration(self.nanoseconds - other.nanoseconds)
+        return Time(self.nanoseconds - other.nanoseconds) if isinstance(other, Duration) else NotImplemented

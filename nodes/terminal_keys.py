@@ -13,7 +13,7 @@ import re
 import termios
 import tty
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 HANGUP = "hangup"
 """The key that is pressed last: the terminal is gone."""
@@ -81,4 +81,5 @@ def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
         yield keys
     finally:
         loop.remove_reader(terminal)
-        termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+        with suppress(termios.error):  # a terminal that is gone needs nothing back
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)

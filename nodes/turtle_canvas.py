@@ -21,8 +21,8 @@ PIXELS = 500
 """Width and height of turtlesim's window."""
 SCALE = 45.0
 """Pixels per metre: a turtle's image is 45 pixels high and stands for one metre."""
-TOLERANCE = 0.005
-"""Metres a stroke may pass beside where the turtle went: a quarter of a pixel."""
+TOLERANCE = 0.002
+"""Metres a stroke may pass beside where the turtle went: a tenth of a pixel."""
 MAX_POINTS = 10_000
 """Points in all strokes together: less than half a megabyte of memory, and of picture."""
 STROKE_POINTS = 250

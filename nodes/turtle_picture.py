@@ -21,7 +21,7 @@ COATS = (
 
 BODY = """
 <g fill="{skin}" stroke="#1d2b1f" stroke-width="0.8" stroke-linejoin="round">
-<path d="M-13 0 L-21 -2.6 Q-19 0 -21 2.6 Z"/>
+<path d="M-14 -2.6 L-22 0 L-14 2.6 Z"/>
 <ellipse cx="11" cy="-12.5" rx="6.8" ry="3.6" transform="rotate(-52 11 -12.5)"/>
 <ellipse cx="11" cy="12.5" rx="6.8" ry="3.6" transform="rotate(52 11 12.5)"/>
 <ellipse cx="-10.5" cy="-11.5" rx="5.8" ry="3.3" transform="rotate(48 -10.5 -11.5)"/>

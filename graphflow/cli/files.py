@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
 from pathlib import Path
 
 import click
@@ -69,7 +70,11 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     for problem in sorted(problems):
         output.talk(str(problem))
     if problems:
-        output.talk(f"{len(problems)} problem{'s' if len(problems) > 1 else ''}")
+        output.talk(_count(problems, "problem"))
         return exits.USAGE
-    output.data(f"{path}: {len(resolved.nodes)} nodes, {len(resolved.steps)} steps, no problems")
+    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, no problems")
     return exits.OK
+
+
+def _count(things: Sized, word: str) -> str:
+    return f"{len(things)} {word}{'' if len(things) == 1 else 's'}"

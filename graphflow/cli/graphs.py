@@ -66,7 +66,7 @@ def _show_args(path: Path) -> int:
     from graphflow.graph import source
     from graphflow.graph.project import shown
 
-    data = source.read(path.read_text(encoding="utf-8"), shown(path)).data
+    data = source.read_file(path, shown(path)).data
     declared: Any = data.get("args", {}) if isinstance(data, dict) else {}
     output.data("Arguments (pass arguments as '<name>:=<value>'):\n")
     for name, spec in (declared or {}).items():

@@ -59,12 +59,12 @@ class _Verbs(click.Group):
 @click.version_option(__version__, prog_name="graphflow")
 @click.option("--domain", type=click.IntRange(0), help="Domain id; else GRAPHFLOW_DOMAIN, ROS_DOMAIN_ID, or 0.")
 def cli(domain: int | None) -> None:
-    r"""Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
+    """Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
 
     \b
     Begin with:   graphflow up turtlesim
     Then try:     graphflow topic list
-    """
+    """  # noqa: D301 - click wants the character
     if domain is not None:
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
 

@@ -112,6 +112,9 @@ def read_value(text: str, type_: int) -> Any:
 
     Args:
         type_: A number of rcl_interfaces/msg/ParameterType.
+
+    Raises:
+        UsageFault: It is not YAML.
     """
     from graphflow.graph.source import parse_value
 
@@ -123,11 +126,16 @@ def read_value(text: str, type_: int) -> Any:
         return value if isinstance(value, str) else text
     if type_ == 1 and text.lower() in _WORDS:
         return _WORDS[text.lower()]
-    value = parse_value(text)
+    try:
+        value = parse_value(text)
+    except GraphflowError as error:
+        raise exits.UsageFault(str(error)) from None
     if type_ == 3 and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if type_ == 8 and isinstance(value, list):
         return [float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in value]
+    if type_ == 5 and isinstance(value, list) and all(type(v) is int and v in range(256) for v in value):
+        return bytes(value)
     return value
 
 

@@ -15,12 +15,12 @@ from graphflow.cli.exits import UsageFault
 @click.argument("class_path", metavar="MODULE:CLASS")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED)
 def run(class_path: str, words: tuple[str, ...]) -> None:
-    r"""Run one node: `graphflow run nodes.talker:Talker --ros-args -r chatter:=news -p rate:=2.0`.
+    """Run one node: `graphflow run nodes.talker:Talker --ros-args -r chatter:=news -p rate:=2.0`.
 
     \b
     -r from:=to     remap a name; __node:=NAME and __ns:=/NAMESPACE rename the node
     -p name:=value  set a parameter
-    """
+    """  # noqa: D301 - click wants the character
     from graphflow.errors import GraphflowError
     from graphflow.graph.project import demos_root, project_root
     from graphflow.runtime.args import parse_ros_args

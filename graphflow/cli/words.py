@@ -1,18 +1,23 @@
 """Splitting a command line into options and values, where values may look like options.
 
 `graphflow topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist {linear: {x: -2.0}} -1` comes from the shell as many words.
-A word is an option when it is written exactly as one of the command's options and stands outside of all brackets;
-everything else is a value, and the values of a message are joined again.
+A word is an option when it is written as one of the command's options (`-r10` too), stands outside of all brackets and
+not behind a field's colon; everything else is a value, and the values of a message are joined again.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
 import click
 
-_OPEN, _CLOSE = "{[", "}]"
+from graphflow.errors import GraphflowError
+
+_QUOTED = re.compile(r"""(?<!\w)("(?:\\.|[^"\\])*"|'[^']*')""")
+_TIGHT = re.compile(r"\w:\S")
+_WITH_NUMBER = re.compile(r"(-[A-Za-z])\d+(\.\d*)?\Z")
 
 
 def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[str]) -> list[str]:
@@ -24,25 +29,33 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
     """
     options: list[str] = []
     values: list[str] = []
-    depth = 0
     rest = list(words)
     while rest:
         word = rest.pop(0)
         name, equals, _ = word.partition("=")
-        if depth == 0 and (word in flags or (equals and name in valued)):
+        numbered = _WITH_NUMBER.match(word)
+        if _is_open(values):
+            values.append(word)
+        elif word in flags or (equals and name in valued) or (numbered and numbered[1] in valued):
             options.append(word)
-        elif depth == 0 and word in valued:
+        elif word in valued:
             options += [word, *rest[:1]]
             rest = rest[1:]
-        elif depth == 0 and word == "--":
+        elif word == "--":
             values += rest
             break
-        elif depth == 0 and word.startswith("--") and len(word) > 2:
+        elif word.startswith("--") and len(word) > 2:
             options.append(word)  # click says what is wrong with it
         else:
-            depth = max(0, depth + sum(word.count(c) for c in _OPEN) - sum(word.count(c) for c in _CLOSE))
             values.append(word)
     return [*options, "--", *values]
+
+
+def _is_open(values: list[str]) -> bool:
+    """Whether the next word belongs to these: a bracket is open, or a field waits for its value."""
+    text = _QUOTED.sub("", " ".join(values))
+    brackets = sum(text.count(c) for c in "{[") - sum(text.count(c) for c in "}]")
+    return brackets > 0 or text.endswith(":")
 
 
 class ValueCommand(click.Command):
@@ -61,8 +74,17 @@ def message_values(words: Sequence[str]) -> Any:
     """The values of a message from the words after its type; None for none.
 
     Raises:
-        GraphflowError: They are not YAML.
+        UsageFault: They are not YAML, or not a mapping for want of a space.
     """
+    from graphflow.cli.exits import UsageFault
     from graphflow.graph.source import parse_value
 
-    return parse_value(" ".join(words)) if words else None
+    text = " ".join(words)
+    try:
+        values = parse_value(text)
+    except GraphflowError as error:
+        raise UsageFault(str(error)) from None
+    keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
+    if any(_TIGHT.search(key) for key in keys):
+        raise UsageFault(f"{text!r}: write a space after each colon, and quotes around all, for example '{{x: 2.0}}'")
+    return values

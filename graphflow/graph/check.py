@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from fnmatch import fnmatchcase
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.interface import Endpoint, Interface
+from graphflow.interface import Endpoint, Interface, may_make
+from graphflow.msgs.base import Message
 from graphflow.names import Resolver, did_you_mean, expand, split
 
 ImportFault = Problem
@@ -28,7 +28,10 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
 def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
     interface = interfaces[node.class_path]
     if isinstance(interface, Problem):
-        yield Problem(node.class_place, f"{node.class_path}: {interface.message}{_at(interface.place)}")
+        module = node.class_path.partition(":")[0]
+        message = " ".join(interface.message.split())
+        head = "" if module in message else f"{node.class_path}: "
+        yield Problem(node.class_place, f"{head}{message}{_at(interface.place)}")
         return
     yield from _check_params(node, interface)
     yield from _check_remaps(node, interface)
@@ -59,18 +62,16 @@ def _class(interface: Interface) -> str:
 
 
 def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
-    if interface.dynamic_names is True:
-        return
     names = resolver(node)
-    namespace, name = split(node.name)
-    full = {expand(e.name, namespace, name): e.name for e in interface.endpoints}
+    full = {expand(e.name, names.namespace, names.name): e.name for e in interface.endpoints}
     for rule in node.remaps:
         match = expand(rule.match, names.namespace, names.name)
-        patterns = interface.dynamic_names or ()
-        if match not in full and not any(fnmatchcase(match, p) for p in patterns if isinstance(p, str)):
+        if match not in full and not may_make(interface.dynamic_names, match):
+            help_ = did_you_mean(rule.match, full.values())
             yield Problem(
                 rule.place,
-                f"{_class(interface)} has no topic or service {rule.match!r}{did_you_mean(rule.match, full.values())}",
+                f"{_class(interface)} has no topic or service {rule.match!r}{help_}"
+                + ("" if help_ else " (one that is made at run time belongs into the class's dynamic_names)"),
             )
 
 
@@ -103,14 +104,11 @@ def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | No
 
 def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     from graphflow.msgs import registry
-    from graphflow.msgs.build import from_plain
 
     type_ = step_type(step, plan, interfaces)
     if type_ is None:
         imported = [i for i in interfaces.values() if isinstance(i, Interface)]
-        patterns = [p for i in imported if not isinstance(i.dynamic_names, bool) for p in i.dynamic_names]
-        unsure = len(imported) < len(interfaces) or any(i.dynamic_names is True for i in imported)
-        if unsure or any(fnmatchcase(step.call, p) for p in patterns):
+        if len(imported) < len(interfaces) or any(may_make(i.dynamic_names, step.call) for i in imported):
             return
         offered = offered_services(plan, interfaces)
         yield Problem(
@@ -121,8 +119,18 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
         return
     try:
         request = registry.service_schema(registry.full_name(type_)).request
-        from_plain(registry.interface_class(request.name), step.request)
-    except EncodeError as error:
-        yield Problem(step.request_place, str(error))
+        message_class = registry.interface_class(request.name)
     except GraphflowError as error:
         yield Problem(step.call_place, str(error))
+        return
+    yield from _check_request(step, message_class)
+
+
+def _check_request(step: PlannedStep, message_class: type[Message]) -> Iterator[Problem]:
+    from graphflow.msgs.build import from_plain
+
+    for name, value in step.request.items():
+        try:
+            from_plain(message_class, {name: value})
+        except EncodeError as error:
+            yield Problem(step.field_places.get(name, step.request_place), str(error))

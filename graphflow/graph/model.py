@@ -5,7 +5,17 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool, StrictFloat, StrictInt, StrictStr
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StrictBool,
+    StrictFloat,
+    StrictInt,
+    StrictStr,
+    model_validator,
+)
 
 _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
@@ -22,6 +32,13 @@ def _service_type(text: str) -> str:
     return text
 
 
+def _graph_name(text: str) -> str:
+    # The name becomes a folder.
+    if not re.match(r"\w[\w.-]*\Z", text):
+        raise ValueError(f"{text!r} is no name for a graph; use letters, digits, _, - and .")
+    return text
+
+
 Scalar = StrictBool | StrictInt | StrictFloat | StrictStr
 ParamValue = Scalar | list[Scalar]
 EnvValue = StrictStr | StrictInt | StrictFloat
@@ -29,6 +46,17 @@ EnvValue = StrictStr | StrictInt | StrictFloat
 
 class _Model(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _drop_empty(cls, data: Any) -> Any:
+        """A key with nothing behind it, its lines commented out perhaps, is as good as absent."""
+        if data is None:
+            return {}
+        if not isinstance(data, dict):
+            return data
+        optional = {f.alias or name for name, f in cls.model_fields.items() if not f.is_required()}
+        return {k: v for k, v in data.items() if v is not None or k not in optional}
 
 
 class Arg(_Model):
@@ -65,7 +93,7 @@ class StepSpec(_Model):
 class GraphFile(_Model):
     """A whole file."""
 
-    name: StrictStr = ""
+    name: Annotated[StrictStr, AfterValidator(_graph_name)] | None = None
     domain: StrictInt | None = Field(None, ge=0)
     args: dict[str, Arg] = {}
     nodes: dict[str, NodeSpec]

@@ -59,6 +59,8 @@ class PlannedStep:
     call_place: Place
     request_place: Place
     request: dict[str, Any] = field(default_factory=dict)
+    field_places: dict[str, Place] = field(default_factory=dict)
+    """Where each field of the request was written."""
     type: str | None = None
     after: tuple[str, ...] = ()
     timeout: float = 10.0
@@ -139,4 +141,5 @@ def node_from_json(data: dict[str, Any]) -> PlannedNode:
 
 def _step(data: dict[str, Any]) -> PlannedStep:
     places = {k: Place(*data[k]) for k in ("place", "call_place", "request_place")}
-    return PlannedStep(**{**data, **places, "after": tuple(data["after"])})
+    fields = {name: Place(*place) for name, place in data["field_places"].items()}
+    return PlannedStep(**{**data, **places, "field_places": fields, "after": tuple(data["after"])})

@@ -16,7 +16,7 @@ from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import SubstitutionError, Substitutions
-from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
+from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
 
 _MODELS: dict[str, type[BaseModel]] = {"args": Arg, "nodes": NodeSpec, "steps": StepSpec}
 
@@ -32,14 +32,7 @@ def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = 
     Raises:
         GraphFileError: Every mistake that could be found.
     """
-    file = shown(path)
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise GraphFileError([Problem(Place(file), f"cannot be read: {error.strerror}")]) from None
-    except UnicodeDecodeError:
-        raise GraphFileError([Problem(Place(file), "is not UTF-8 text")]) from None
-    return resolve(source.read(text, file), path, given, env)
+    return resolve(source.read_file(path, shown(path)), path, given, env)
 
 
 class _Problems(list[Problem]):
@@ -55,7 +48,8 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     """Resolve what `source.read` found. Arguments and errors as `load`."""
     problems = _Problems()
     if not isinstance(src.data, dict):
-        problems.add(src.place(()), "a graph file is a mapping with the key 'nodes'")
+        what = "the file is empty; " if src.data is None else ""
+        problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{_example('nodes')}")
         problems.raise_any()
     args = _arguments(src, given, problems)
     substitutions = Substitutions(args, str(path.resolve().parent), env)
@@ -66,14 +60,14 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     assert model is not None
     nodes = _nodes(src, model, problems)
     steps = _steps(src, model, problems)
-    _order(src, model, nodes, steps, problems)
+    ordered_nodes, ordered_steps = _order(src, model, nodes, steps, problems)
     problems.raise_any()
     return Plan(
         name=model.name or path.stem,
         file=src.file,
         root=str(project_root(path)),
-        nodes=tuple(nodes),
-        steps=tuple(steps),
+        nodes=tuple(ordered_nodes),
+        steps=tuple(ordered_steps),
         args=args,
         domain=model.domain,
     )
@@ -89,29 +83,36 @@ def _arguments(src: Source, given: Sequence[str], problems: _Problems) -> dict[s
         if not arrow or not name:
             problems.add(Place("command line"), f"{word!r}: an argument is written name:=value")
         elif name not in declared:
-            problems.add(Place("command line"), f"there is no argument {name!r}{did_you_mean(name, declared)}")
+            help_ = did_you_mean(name, declared) or "; the file declares none under args:"
+            problems.add(Place("command line"), f"there is no argument {name!r}{help_}")
         else:
-            try:
-                values[name] = source.read(text, "command line").data
-            except GraphFileError:
-                values[name] = text
+            values[name] = _given(text, declared[name])
     for name, spec in declared.items():
         place = src.key_place(("args", name))
         has_default = isinstance(spec, dict) and "default" in spec
         if name not in values and has_default:
             values[name] = spec["default"]
         elif name not in values:
-            if isinstance(spec, dict) or spec is None:
-                problems.add(place, f"argument {name!r} has no default: give it as {name}:=VALUE")
-            else:
-                problems.add(place, f"write {name}: {{default: {spec}}}")
             values[name] = ""
+            # What is wrong with the declaration itself is told when it is validated.
+            if spec is None or (isinstance(spec, dict) and spec.keys() <= set(keys_of(Arg))):
+                problems.add(place, f"argument {name!r} has no default: give it as {name}:=VALUE")
         choices = spec.get("choices") if isinstance(spec, dict) else None
         if isinstance(choices, list) and choices and values[name] not in choices:
             problems.add(
                 place, f"argument {name!r} is {values[name]!r}, but must be one of {', '.join(map(str, choices))}"
             )
     return values
+
+
+def _given(text: str, spec: Any) -> Any:
+    """An argument's value from the command line: YAML, but text where the default is text."""
+    try:
+        value = source.read(text, "command line").data
+    except GraphFileError:
+        return text
+    wants_text = isinstance(spec, dict) and isinstance(spec.get("default"), str)
+    return text if wants_text and not isinstance(value, str) else value
 
 
 def _substituted(src: Source, substitutions: Substitutions, problems: _Problems) -> Source:
@@ -157,30 +158,55 @@ def _validated(src: Source, problems: _Problems) -> GraphFile | None:
     try:
         return GraphFile.model_validate(src.data)
     except ValidationError as error:
-        seen = set()
-        for fault in error.errors():
-            path = tuple(p for p in fault["loc"])
-            # Alternatives of a union report once each, under a last part that names the alternative.
-            while path and path not in src.places and path not in src.keys and fault["type"] != "missing":
-                path = path[:-1]
-            place, message = _fault(src, path, fault)
-            if (place, message) not in seen:
-                seen.add((place, message))
-                problems.add(place, message)
-        return None
+        faults = [(_written_path(src, fault), fault) for fault in error.errors()]
+    wanted: dict[source.Path, list[str]] = {}
+    paths = [path for path, _ in faults]
+    for path, fault in faults:
+        # Alternatives of a union report once each; the one that got furthest was meant.
+        if not any(other[: len(path)] == path and other != path for other in paths):
+            wanted.setdefault(path, []).append(_wanted(fault))
+    for path, fault in faults:
+        if fault["type"] == "missing":
+            if not _misspelt(str(path[-1]), path[:-1], faults):
+                problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing")
+        elif fault["type"] == "extra_forbidden":
+            problems.add(src.key_place(path), _unknown_key(path))
+        elif fault["type"] == "value_error":
+            problems.add(src.place(path), str(fault["ctx"]["error"]))
+        elif path in wanted:
+            problems.add(src.place(path), _wrong_type(path, wanted.pop(path), fault["input"]))
+    return None
 
 
-def _fault(src: Source, path: source.Path, fault: Any) -> tuple[Place, str]:
-    known = keys_of(_MODELS[str(path[0])]) if len(path) == 3 and path[0] in _MODELS else keys_of(GraphFile)
-    where = ".".join(str(p) for p in path)
-    kind = fault["type"]
-    if kind == "extra_forbidden":
-        return src.key_place(path), f"unknown key {str(path[-1])!r}{did_you_mean(str(path[-1]), known)}"
-    if kind == "missing":
-        return src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing"
-    if kind == "value_error":
-        return src.place(path), str(fault["ctx"]["error"])
-    wanted = {
+def _written_path(src: Source, fault: Any) -> source.Path:
+    """Where in the file a fault is, without the last parts that name an alternative of a union."""
+    path: source.Path = tuple(fault["loc"])
+    while path and path not in src.places and path not in src.keys and fault["type"] != "missing":
+        path = path[:-1]
+    return path
+
+
+def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
+    """Whether a missing key is there after all, with a typo that is reported anyway."""
+    unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
+    return any(nearest(word, _known_keys((*above, word))) == key for word in unknown)
+
+
+def _known_keys(path: source.Path) -> list[str]:
+    return keys_of(_MODELS[str(path[0])]) if len(path) == 3 and path[0] in _MODELS else keys_of(GraphFile)
+
+
+def _unknown_key(path: source.Path) -> str:
+    key, known = str(path[-1]), _known_keys(path)
+    head = key.partition(":")[0]
+    if head in known and head != key:
+        return f"unknown key {key!r}; write a space after '{head}:'"
+    return f"unknown key {key!r}{did_you_mean(key, known)}"
+
+
+def _wanted(fault: Any) -> str:
+    limits = fault.get("ctx", {})
+    words = {
         "dict_type": "a mapping",
         "model_type": "a mapping",
         "string_type": "text",
@@ -188,42 +214,92 @@ def _fault(src: Source, path: source.Path, fault: Any) -> tuple[Place, str]:
         "int_type": "a whole number",
         "float_type": "a number",
         "bool_type": "true or false",
-        "greater_than": f"more than {fault.get('ctx', {}).get('gt', '')}",
-        "greater_than_equal": f"{fault.get('ctx', {}).get('ge', '')} or more",
-    }.get(kind, fault["msg"])
-    return src.place(path), f"{where}: expected {wanted}, got {fault['input']!r}"
+        "greater_than": f"more than {limits.get('gt', 0):g}",
+        "greater_than_equal": f"{limits.get('ge', 0):g} or more",
+        "finite_number": "a finite number",
+    }
+    return words.get(fault["type"], str(fault["msg"]))
 
 
-def _nodes(src: Source, model: GraphFile, problems: _Problems) -> list[PlannedNode]:
-    nodes: list[PlannedNode] = []
+def _wrong_type(path: source.Path, wanted: list[str], value: Any) -> str:
+    if "a number" in wanted:
+        wanted = [w for w in wanted if w != "a whole number"]
+    where = ".".join(str(p) for p in path)
+    text = " or ".join(dict.fromkeys(wanted))
+    got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
+    if len(path) == 2 and ":" in str(path[1]):
+        return f"the name {path[1]!r} has a colon in it; write a space after the colon behind a key"
+    return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{_example(*path)}"
+
+
+_SHOWN = {None: "nothing", True: "true", False: "false"}
+_EXAMPLES: dict[source.Path, str] = {
+    ("args",): "args: {rate: {default: 1.0}}",
+    ("args", ""): "{default: 1.0}",
+    ("nodes",): "nodes: {/talker: {class: nodes.talker:Talker}}",
+    ("nodes", ""): "{class: nodes.talker:Talker}",
+    ("nodes", "", "params"): "params: {rate: 2.0}",
+    ("nodes", "", "remap"): "remap: {goal: /turtle1/pose}",
+    ("nodes", "", "env"): "env: {LANG: C}",
+    ("nodes", "", "after"): "after: /talker",
+    ("steps",): "steps: {spawn: {call: /spawn}}",
+    ("steps", ""): "{call: /spawn}",
+    ("steps", "", "request"): "request: {x: 1.0}",
+}
+
+
+def _example(*path: str | int) -> str:
+    shape = tuple("" if i == 1 else part for i, part in enumerate(path))
+    return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
+
+
+def _nodes(src: Source, model: GraphFile, problems: _Problems) -> dict[str, PlannedNode]:
+    """The nodes by their keys in the file."""
+    nodes: dict[str, PlannedNode] = {}
     taken: dict[str, Place] = {}
     for key, spec in model.nodes.items():
         place = src.key_place(("nodes", key))
-        try:
-            name = check_full_name(join(check_namespace(spec.namespace), key), "node name")
-        except InvalidName as error:
-            problems.add(place, str(error))
+        name = _node_name(src, key, spec, problems)
+        if name is None:
             continue
         if name in taken:
             problems.add(place, f"there are two nodes {name}; the other is in line {taken[name].line}")
         taken[name] = place
         base: source.Path = ("nodes", key)
-        nodes.append(
-            PlannedNode(
-                name=name,
-                class_path=spec.class_,
-                place=place,
-                class_place=src.place((*base, "class")),
-                params=_params(src, spec.params, (*base, "params"), problems),
-                remaps=_remaps(src, spec.remap, (*base, "remap"), name, problems),
-                process=spec.process,
-                env={k: str(v) for k, v in spec.env.items()},
-                after=_names(spec.after),
-            )
+        nodes[key] = PlannedNode(
+            name=name,
+            class_path=spec.class_,
+            place=place,
+            class_place=src.place((*base, "class")),
+            params=_params(src, spec.params, (*base, "params"), problems),
+            remaps=_remaps(src, spec.remap, (*base, "remap"), name, problems),
+            process=spec.process,
+            env={k: str(v) for k, v in spec.env.items()},
+            after=_names(spec.after),
         )
     if not model.nodes:
         problems.add(src.place(("nodes",)), "there is no node")
     return nodes
+
+
+def _node_name(src: Source, key: str, spec: NodeSpec, problems: _Problems) -> str | None:
+    """The full name of a node; None when it has none."""
+    place = src.key_place(("nodes", key))
+    try:
+        namespace = check_namespace(spec.namespace)
+    except InvalidName as error:
+        problems.add(src.place(("nodes", key, "namespace")), str(error))
+        return None
+    if key.startswith("/") and spec.namespace:
+        problems.add(
+            src.place(("nodes", key, "namespace")),
+            f"{key} is a full name, so its namespace would not count; call the node {split(key)[1]}, or remove this",
+        )
+    try:
+        return check_full_name(join(namespace, key), "node name")
+    except InvalidName as error:
+        problems.add(place, str(error))
+        return None
 
 
 def _params(src: Source, params: Mapping[str, Any], path: source.Path, problems: _Problems) -> dict[str, Setting]:
@@ -236,7 +312,12 @@ def _params(src: Source, params: Mapping[str, Any], path: source.Path, problems:
             if isinstance(value, dict):
                 walk(f"{prefix}{key}.", value, (*at, key))
             elif value is None:
-                problems.add(src.key_place((*at, key)), f"parameter {prefix + key!r} has no value")
+                problems.add(
+                    src.key_place((*at, key)), f"parameter {prefix + key!r} has no value; write '' for no text"
+                )
+            elif prefix + key in found:
+                first = found[prefix + key].place.line
+                problems.add(place, f"parameter {prefix + key!r} is given twice, first in line {first}; remove one")
             else:
                 found[prefix + key] = Setting(value, place)
 
@@ -253,7 +334,9 @@ def _remaps(
         place = src.key_place((*path, match))
         try:
             if match.startswith("__"):
-                raise InvalidName(f"{match!r}: name and namespace of a node are its key and `namespace:`")
+                raise InvalidName(
+                    f"{match!r} is no name to remap; a node's name is its key, its namespace stands under namespace:"
+                )
             expand(match, namespace, name)
             expand(replacement, namespace, name)
         except InvalidName as error:
@@ -280,6 +363,7 @@ def _steps(src: Source, model: GraphFile, problems: _Problems) -> list[PlannedSt
                 call_place=call_place,
                 request=spec.request,
                 request_place=src.place(("steps", name, "request")),
+                field_places={field: src.key_place(("steps", name, "request", field)) for field in spec.request},
                 type=spec.type,
                 after=_names(spec.after),
                 timeout=float(spec.timeout),
@@ -293,30 +377,39 @@ def _names(after: str | list[str]) -> tuple[str, ...]:
 
 
 def _order(
-    src: Source, model: GraphFile, nodes: list[PlannedNode], steps: list[PlannedStep], problems: _Problems
-) -> None:
+    src: Source,
+    model: GraphFile,
+    nodes: dict[str, PlannedNode],
+    steps: list[PlannedStep],
+    problems: _Problems,
+) -> tuple[list[PlannedNode], list[PlannedStep]]:
     """Replace keys by full names in every `after`; check that each names something and none waits for itself."""
-    full = {key: join(check_namespace(spec.namespace), key) for key, spec in model.nodes.items()}
-    key_of = {name: key for key, name in full.items()}
-    known = {*(n.name for n in nodes), *(s.name for s in steps)}
+    known = {*(n.name for n in nodes.values()), *(s.name for s in steps)}
+    reported = (model.nodes.keys() | model.steps.keys()) - nodes.keys() - known
 
     def resolved(after: tuple[str, ...], path: source.Path) -> tuple[str, ...]:
-        names = tuple(full.get(a, a) for a in after)
-        for written, name in zip(after, names, strict=True):
-            if name not in known:
+        names = []
+        for i, written in enumerate(after):
+            name = nodes[written].name if written in nodes else written
+            if name in known:
+                names.append(name)
+            elif written not in reported:
                 help_ = did_you_mean(written, known)
-                problems.add(src.place((*path, "after")), f"after: there is no node or step {written!r}{help_}")
-        return tuple(n for n in names if n in known)
+                problems.add(src.place((*path, "after", i)), f"after: there is no node or step {written!r}{help_}")
+        return tuple(names)
 
-    for i, node in enumerate(nodes):
-        nodes[i] = replace(node, after=resolved(node.after, ("nodes", key_of.get(node.name, node.name))))
-    for i, step in enumerate(steps):
-        steps[i] = replace(step, after=resolved(step.after, ("steps", step.name)))
-    items: list[PlannedNode | PlannedStep] = [*nodes, *steps]
+    for step in steps:
+        if step.name in nodes or step.name in (n.name for n in nodes.values()):
+            problems.add(step.place, f"a node is called {step.name!r} already; give the step another name")
+    ordered_nodes = [replace(n, after=resolved(n.after, ("nodes", key))) for key, n in nodes.items()]
+    ordered_steps = [replace(s, after=resolved(s.after, ("steps", s.name))) for s in steps]
+    items: list[PlannedNode | PlannedStep] = [*ordered_nodes, *ordered_steps]
     places = {item.name: item.place for item in items}
     cycle = find_cycle({item.name: item.after for item in items})
     if cycle:
-        problems.add(places[cycle[0]], f"waits for itself: {' after '.join([*cycle, cycle[0]])}")
+        ring = " after ".join([*cycle, cycle[0]])
+        problems.add(places[cycle[0]], f"waits for itself: {ring}; remove one of these after:")
+    return ordered_nodes, ordered_steps
 
 
 def find_cycle(edges: Mapping[str, Iterable[str]]) -> list[str]:

@@ -7,6 +7,7 @@ its place before anything is built: aliases, tags, duplicate keys, keys that are
 
 from __future__ import annotations
 
+import pathlib
 import re
 from typing import Any, NamedTuple
 
@@ -25,6 +26,7 @@ _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 _INT = re.compile(r"[-+]?[0-9]+\Z|0o[0-7]+\Z|0x[0-9a-fA-F]+\Z")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
+_UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SPECIAL: dict[str, Any] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -78,6 +80,26 @@ class _Frame(NamedTuple):
     path: Path
 
 
+def read_file(path: pathlib.Path, name: str) -> Source:
+    """Read a YAML file.
+
+    Args:
+        name: The file as messages show it.
+
+    Raises:
+        GraphFileError: As `read`; also when there is no such file, or it is no text.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise _error(Place(name), f"cannot be read: {error.strerror}") from None
+    try:
+        return read(data.decode("utf-8-sig"), name)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise _error(Place(name, line), "is not UTF-8 text; save the file with the encoding UTF-8") from None
+
+
 def read(text: str, file: str) -> Source:
     """Read one YAML document.
 
@@ -89,23 +111,44 @@ def read(text: str, file: str) -> Source:
     """
     if len(text.encode(errors="replace")) > MAX_BYTES:
         raise _error(Place(file), f"the file is larger than {MAX_BYTES:,} bytes")
+    unprintable = _UNPRINTABLE.search(text)
+    if unprintable:
+        before = text[: unprintable.start()]
+        place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
+        raise _error(place, f"the character U+{ord(unprintable[0]):04X} may not stand in a YAML file; delete it")
     try:
         return _build(text, file)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
         place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
-        raise _error(place, f"not valid YAML: {error.problem}{_indent_hint(text, error)}") from None
+        raise _error(place, f"not valid YAML: {error.problem}{_hint(text, error)}") from None
     except yaml.YAMLError as error:
         raise _error(Place(file), f"not valid YAML: {' '.join(str(error).split())}") from None
 
 
-def _indent_hint(text: str, error: yaml.MarkedYAMLError) -> str:
-    mark = error.problem_mark
+def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
+    """What to do about the parser's complaint, for the mistakes people make."""
+    mark: Any = error.problem_mark
+    start: Any = error.context_mark
+    problem, context = str(error.problem), str(error.context)
     lines = text.splitlines()
-    if mark and mark.line < len(lines) and "\t" in lines[mark.line]:
+    line = lines[mark.line] if mark and mark.line < len(lines) else ""
+    if "\t" in line[: mark.column + 1 if mark else 0]:
         return " (indent with spaces, not tabs)"
-    if mark and mark.line and "mapping values are not allowed" in str(error.problem):
-        return " (quote a text that has ': ' in it)"
+    if "${" in line:
+        return " (a substitution is written with round brackets, as in $(var x))"
+    if "mapping values are not allowed" in problem:
+        return " (quote a text that has ': ' in it; below a key indent with more spaces)"
+    if "cannot start any token" in problem and line:
+        return f" (quote a text that begins with {line[mark.column]})"
+    where = f"line {start.line + 1}, column {start.column + 1}" if start else ""
+    bracket = lines[start.line][start.column : start.column + 1] if start and start.line < len(lines) else ""
+    if bracket in ("{", "["):
+        return f" (the {bracket} in {where} is not closed, or a text behind it needs quotes)"
+    if "quoted scalar" in context and "unexpected end" in problem:
+        return f" (the quote in {where} is not closed)"
+    if "expected key" in problem:
+        return " (indent the keys of one mapping with the same number of spaces)"
     return ""
 
 
@@ -154,17 +197,18 @@ def _build(text: str, file: str) -> Source:
         elif isinstance(event, yaml.NodeEvent):
             count += 1
             if count > MAX_VALUES:
-                raise _error(place, f"more than {MAX_VALUES:,} values")
+                raise _error(place, f"the file has more than {MAX_VALUES:,} values")
             tag = getattr(event, "tag", None)
             if tag not in (None, "!", "tag:yaml.org,2002:str"):
-                raise _error(place, f"{tag}: tags are not used here; write a plain value")
+                written = tag.replace("tag:yaml.org,2002:", "!!")
+                raise _error(place, f"{written}: tags are not used here; write a plain value")
             waits_for_key = bool(stack) and isinstance(stack[-1].container, dict) and pending[-1] is None
             if waits_for_key:
                 key = _key(event, place)
                 container, above = stack[-1]
                 if key in container:
                     first = keys[(*above, key)]
-                    raise _error(place, f"the key {key!r} stands here twice; first in line {first.line}")
+                    raise _error(place, f"the key {key!r} stands here twice, first in line {first.line}; remove one")
                 keys[(*above, key)] = place
                 pending[-1] = key
                 continue
@@ -188,17 +232,17 @@ def _key(event: Any, place: Place) -> str:
     if not isinstance(event, yaml.ScalarEvent):
         raise _error(place, "a key must be a word, not a list or mapping")
     if not event.style and not isinstance(_scalar_value(event, place), str):
-        raise _error(place, f"the key {event.value!r} must be quoted, or it is no text")
+        raise _error(place, f"the key {event.value} is no text; write it in quotes: '{event.value}'")
     return str(event.value)
 
 
 def _scalar_value(event: Any, place: Place) -> Any:
-    if event.style or event.tag == "tag:yaml.org,2002:str":
+    if event.style or event.tag is not None:  # of the tags only ! and !!str come so far, and both say that it is text
         return event.value
     try:
         return scalar(event.value)
     except ValueError:
-        raise _error(place, f"{event.value[:20]}... has too many digits") from None
+        raise _error(place, f"{event.value[:20]}... has too many digits for a number; put a text in quotes") from None
 
 
 def parse_value(text: str) -> Any:

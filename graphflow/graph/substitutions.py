@@ -16,6 +16,7 @@ from typing import Any
 from graphflow.names import did_you_mean
 
 KNOWN = ("var", "env", "dirname", "find-pkg-share")
+MAX_DEPTH = 20
 
 
 class SubstitutionError(ValueError):
@@ -46,31 +47,33 @@ class Substitutions:
         """
         if not isinstance(value, str) or "$(" not in value:
             return value
-        parts = self._parts(value)
+        parts = self._parts(value, 1)
         if len(parts) == 1:
             return parts[0]
         return "".join(_text(part) for part in parts)
 
-    def _parts(self, text: str) -> list[Any]:
+    def _parts(self, text: str, depth: int) -> list[Any]:
+        if depth > MAX_DEPTH:
+            raise SubstitutionError(f"substitutions nested more than {MAX_DEPTH} deep")
         parts: list[Any] = []
         position = 0
         while (start := text.find("$(", position)) >= 0:
             if start > position:
                 parts.append(text[position:start])
             end = _closing(text, start)
-            parts.append(self._evaluate(text[start + 2 : end]))
+            parts.append(self._evaluate(text[start + 2 : end], depth))
             position = end + 1
         if position < len(text):
             parts.append(text[position:])
         return parts
 
-    def _evaluate(self, inside: str) -> Any:
-        words = _text(self.apply(inside)).split(None, 2)
+    def _evaluate(self, inside: str, depth: int) -> Any:
+        words = "".join(_text(part) for part in self._parts(inside, depth + 1)).split(None, 2)
         name = words[0] if words else ""
         functions: dict[str, Callable[[list[str]], Any]] = {
             "var": self._var,
             "env": self._environment,
-            "dirname": lambda _: self._folder,
+            "dirname": self._dirname,
             "find-pkg-share": self._share,
         }
         if name not in functions:
@@ -81,7 +84,8 @@ class Substitutions:
         if len(words) != 1:
             raise SubstitutionError("write $(var NAME)")
         if words[0] not in self._args:
-            raise SubstitutionError(f"there is no argument {words[0]!r}{did_you_mean(words[0], self._args)}")
+            help_ = did_you_mean(words[0], self._args) or "; declare it under args:"
+            raise SubstitutionError(f"there is no argument {words[0]!r}{help_}")
         self.used.add(words[0])
         return self._args[words[0]]
 
@@ -96,10 +100,18 @@ class Substitutions:
             )
         return " ".join(words[1:])
 
+    def _dirname(self, words: list[str]) -> str:
+        if words:
+            raise SubstitutionError("write $(dirname)")
+        return self._folder
+
     def _share(self, words: list[str]) -> str:
         if len(words) != 1:
             raise SubstitutionError("write $(find-pkg-share PACKAGE)")
-        spec = util.find_spec(words[0]) if words[0].isidentifier() else None
+        try:
+            spec = util.find_spec(words[0]) if words[0].isidentifier() else None
+        except ValueError:  # a module that was not imported in the usual way, such as __main__
+            spec = None
         folders = list(spec.submodule_search_locations or []) if spec else []
         if not folders:
             raise SubstitutionError(f"$(find-pkg-share {words[0]}): there is no installed package of that name")
@@ -113,10 +125,12 @@ def _closing(text: str, start: int) -> int:
         depth += {"(": 1, ")": -1}.get(text[i], 0)
         if depth == 0:
             return i
-    raise SubstitutionError(f"{text[start:]!r} has no closing )")
+    raise SubstitutionError(f"{text[start : start + 40]!r} has no closing )")
 
 
 def _text(value: Any) -> str:
+    if value is None:
+        return ""
     if isinstance(value, bool):
         return "true" if value else "false"
     return str(value)

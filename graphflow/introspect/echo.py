@@ -99,7 +99,8 @@ def _string(text: str) -> str:
     plain_safe = (
         text
         and text == text.strip()
-        and not any(c in text for c in '\n\t"\\#{}[],&*|>%@`')
+        and text.isprintable()
+        and not any(c in text for c in '"\\#{}[],&*|>%@`')
         and ": " not in text
         and not text.endswith(":")
         and text[0] not in "!?-'"

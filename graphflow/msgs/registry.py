@@ -193,6 +193,8 @@ def interface_class(name: str) -> type:
     """
     from graphflow.msgs import build
 
+    if name.endswith(("_SendGoal", "_GetResult")):
+        return build.service_class(service_schema(name))
     if "/msg/" in name or "_" in name.rpartition("/")[2]:
         return build.message_class(message_schema(name))
     found = interface(name)

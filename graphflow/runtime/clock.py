@@ -21,7 +21,11 @@ class Clock:
     """Time and waiting. Subclasses say what time it is and how to be called at one."""
 
     def now(self) -> Time:
-        """The time of day: nanoseconds since 1970."""
+        """The time of day."""
+        return Time(self.time_ns())
+
+    def time_ns(self) -> int:
+        """The time of day in nanoseconds since 1970."""
         raise NotImplementedError
 
     def monotonic_ns(self) -> int:
@@ -88,8 +92,8 @@ def period_ns(period: float | None, hz: float | None) -> int:
 class WallClock(Clock):
     """The system's clocks: time of day for stamps, the loop's monotonic clock for waiting."""
 
-    def now(self) -> Time:
-        return Time(time.time_ns())
+    def time_ns(self) -> int:
+        return time.time_ns()
 
     def monotonic_ns(self) -> int:
         return time.monotonic_ns()

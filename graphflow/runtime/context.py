@@ -62,7 +62,8 @@ class Context:
         context = cls(session, domain=domain)
         context._takeover = takeover
         takeover.guard(session, loop)
-        session.announce(f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}")
+        token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}"
+        context._declared.append(session.announce(token))
         return context
 
     def next_id(self) -> int:

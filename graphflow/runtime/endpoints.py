@@ -132,7 +132,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         payload = self._encode(message)
         self.published += 1
         entity = self._announced()
-        self._put(payload, attachment.pack(self.published, self.node.clock.now().nanoseconds, entity.gid))
+        self._put(payload, attachment.pack(self.published, self.node.clock.time_ns(), entity.gid))
 
     def get_subscription_count(self) -> int:
         """Subscriptions in the graph that get these messages."""
@@ -331,7 +331,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             request.reply_error(json.dumps({"type": kind, "message": text}).encode())
             return
         asked = attachment.unpack(request.attachment)
-        now = self.node.clock.now().nanoseconds
+        now = self.node.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
 
     def close(self) -> None:
@@ -441,7 +441,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if not future.done():
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
-        beside = attachment.pack(sequence, self.node.clock.now().nanoseconds, entity.gid)
+        beside = attachment.pack(sequence, self.node.clock.time_ns(), entity.gid)
         give_up = caller.call(payload, beside, answered)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:

@@ -9,10 +9,10 @@ from collections.abc import Callable, Coroutine, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.errors import ClosedError, DeclarationError, GraphflowError
-from graphflow.interface import Interface
+from graphflow.interface import Interface, may_make
 from graphflow.machines.group import GroupState
 from graphflow.msgs.base import Message, Request, Response, Service
-from graphflow.names import Remap, Resolver, did_you_mean
+from graphflow.names import Remap, Resolver, did_you_mean, expand
 from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare
 from graphflow.runtime.clock import Clock
@@ -87,6 +87,8 @@ class Node:
         rules = [r if isinstance(r, Remap) else Remap.parse(r) for r in remap]
         self.names = Resolver(name or declare.default_name(type(self)), namespace, rules)
         self.id = 0
+        self.failure: BaseException | None = None
+        """The error that ended the node, until somebody has waited for it."""
         self.log = node_logger(self.full_name)
         """The node's logger; what it says goes to the console and to /rosout."""
         self.parameters = Parameters({**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}})
@@ -242,8 +244,9 @@ class Node:
         """
         if not self._made:
             raise DeclarationError(f"{type(self).__name__}.__init__ must call super().__init__(...)")
-        if self._context is not None:
-            raise GraphflowError(f"node {self.full_name} is running already")
+        if self._ended is not None:
+            state = "is running already" if self.is_running else "has been stopped; make a new one"
+            raise ClosedError(f"node {self.full_name} {state}")
         unused = self.parameters.unused_overrides()
         if unused:
             raise GraphflowError(f"node {self.full_name}: " + "; ".join(unused))
@@ -266,10 +269,10 @@ class Node:
 
     def warn_unused_remaps(self) -> None:
         """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""
-        if self.dynamic_names is True:
-            return
         known = [r.given for r in self.names.derivations.values()]
         for rule in self.names.unused():
+            if may_make(self.dynamic_names, expand(rule.match, self.namespace, self.name)):
+                continue
             self.log.warning("the remap %s matches no name of this node%s", rule, did_you_mean(rule.match, known))
 
     def shutdown(self) -> None:
@@ -280,7 +283,10 @@ class Node:
     async def wait_ended(self) -> None:
         """Wait until the node ends itself by `shutdown`, or fails; raises the error it failed with."""
         assert self._ended is not None
-        await asyncio.shield(self._ended)
+        try:
+            await asyncio.shield(self._ended)
+        finally:
+            self.failure = None
 
     async def stop(self) -> None:
         """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything."""
@@ -312,9 +318,15 @@ class Node:
 
     def handler_failed(self, label: str, error: BaseException) -> None:
         """Report an error of a timer or subscription; the node goes on."""
-        if isinstance(error, CancelledError):
-            return
-        self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=error)
+        if not isinstance(error, CancelledError):
+            self._report(label, error)
+
+    def _report(self, label: str, error: BaseException) -> None:
+        """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
+        if isinstance(error, GraphflowError):
+            self.log.error("%s: %s", label, error)
+        else:
+            self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=error)
 
     # for its endpoints
 
@@ -402,8 +414,10 @@ class Node:
         if self._ended is not None and not self._ended.done():
             error = task.exception()
             assert error is not None
-            self.log.error("task %s: %s: %s", task.get_name(), type(error).__name__, error, exc_info=error)
+            self._report(f"task {task.get_name()}", error)
+            self.failure = error
             self._ended.set_exception(error)
+            self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
 
 
 def _label(callback: Callable[..., Any] | None, otherwise: str) -> str:

@@ -203,6 +203,7 @@ class _Launch:
         try:
             preload = Lines(self.channel, lambda e: supervisor.heard(e), lambda: supervisor.preload_lost())
             workers = Lines(self.status, lambda e: supervisor.heard(e), lambda: None)
+            preload.send(do="log", path=str(logs / "supervisor.log"))
             supervisor = Supervisor(self.plan, context, preload, logs, self.step_types)
             control = ControlServer(supervisor)
             await control.open(directory.socket)

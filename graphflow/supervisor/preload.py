@@ -6,6 +6,7 @@ so that forking it is safe. It is the workers' parent: it reaps them and tells t
 The supervisor sends requests as lines of JSON over a socket pair and gets lines back:
 
     {"do": "probe", "classes": [...], "root": ...}           -> {"event": "probed", "interfaces": {...}}
+    {"do": "log", "path": ...}                               (where its own errors go from now on)
     {"do": "spawn", "process": ..., "job": {...}, "log": ..., "env": {...}}
                                                              -> {"event": "spawned", "process": ..., "pid": ...}
                                               and, at its end, {"event": "exited", "process": ..., "status": ...}
@@ -76,6 +77,8 @@ class _Preload:
         from graphflow.supervisor.worker import die_with_parent
 
         die_with_parent()
+        # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
+        self._speak_to(os.devnull)
         self._warm_up()
         wake_read, wake_write = os.pipe()
         for fd in (wake_read, wake_write):
@@ -126,8 +129,16 @@ class _Preload:
             request = json.loads(line)
             if request["do"] == "probe":
                 self._answer({"event": "probed", "interfaces": self._probe_classes(request)})
+            elif request["do"] == "log":
+                self._speak_to(request["path"])
             else:
                 self._spawn(request)
+
+    def _speak_to(self, path: str) -> None:
+        out = os.open(path, os.O_RDWR | os.O_APPEND)
+        for fd in (0, 1, 2) if path == os.devnull else (2,):
+            os.dup2(out, fd)
+        os.close(out)
 
     def _answer(self, event: dict[str, Any]) -> None:
         self._channel.sendall(json.dumps(event).encode() + b"\n")

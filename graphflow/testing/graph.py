@@ -102,6 +102,9 @@ class Graph:
             await node.stop()
         for context in self._contexts:
             await context.close()
+        for node in self.nodes:
+            if node.failure is not None:
+                raise node.failure
 
     def _test_node(self) -> Node:
         if self._tester is None:

@@ -126,6 +126,7 @@ class Bell:
         self._loop = loop
         self._rung: deque[Inbox] = deque()
         self._pending = False
+        self._closed = False
         self._wake = loop.call_soon_threadsafe if threads else loop.call_soon
         self._fd: int | None = None
         if threads and hasattr(os, "eventfd"):
@@ -135,11 +136,12 @@ class Bell:
     def ring(self, inbox: Inbox) -> None:
         """Have the loop attend to `inbox`. From any thread."""
         self._rung.append(inbox)
-        if self._pending:
+        if self._pending or self._closed:
             return
         self._pending = True
-        if self._fd is not None:
-            os.eventfd_write(self._fd, 1)
+        fd = self._fd
+        if fd is not None:
+            os.eventfd_write(fd, 1)
         elif not self._loop.is_closed():
             self._wake(self._attend)
 
@@ -151,12 +153,16 @@ class Bell:
     def _attend(self) -> None:
         self._pending = False
         rung = self._rung
-        while rung:
-            rung.popleft().attend()
+        while rung and not self._closed:
+            inbox = rung.popleft()
+            try:
+                inbox.attend()
+            except Exception as error:  # one inbox's trouble is not the others'
+                self._loop.call_exception_handler({"message": f"{inbox.ready} failed", "exception": error})
 
     def close(self) -> None:
-        """Stop waking the loop; rings from now on are lost."""
-        self._pending = True
+        """Stop waking the loop; rings not yet answered are lost."""
+        self._closed = True
         if self._fd is not None:
             self._loop.remove_reader(self._fd)
             os.close(self._fd)

@@ -141,7 +141,9 @@ class MemorySession:
         self._declared: list[_Declared] = []
 
     def open_sender(self, key: str, qos: Qos) -> _Sender:
-        return _Sender(self._network, key, qos)
+        sender = _Sender(self._network, key, qos)
+        self._keep(_Declared(sender.close))
+        return sender
 
     def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> _Declared:
         if qos.durability is Durability.TRANSIENT_LOCAL:

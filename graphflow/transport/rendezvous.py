@@ -112,14 +112,25 @@ def _listener(port: int) -> str:
     return ""
 
 
-def host() -> zenoh.Session | None:
+class Router:
+    """The rendezvous, hosted by this process until closed."""
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._session = session
+        name = f"{TOKENS}/{session.info.zid()}/{user_id()}/{os.getpid()}"
+        self._token = session.liveliness().declare_token(name)
+
+    def close(self) -> None:
+        """Stop being the rendezvous. Blocks for as long as closing takes."""
+        close_session(self._session)
+
+
+def host() -> Router | None:
     """Become the rendezvous: a router session on its port; None when the port is taken."""
     try:
-        session = open_session(config("router", listen=rendezvous_endpoint()))
+        return Router(open_session(config("router", listen=rendezvous_endpoint())))
     except TransportError:
         return None
-    session.liveliness().declare_token(f"{TOKENS}/{session.info.zid()}/{user_id()}/{os.getpid()}")
-    return session
 
 
 def free_endpoint() -> str:
@@ -129,11 +140,11 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
-def establish() -> zenoh.Session | None:
+def establish() -> Router | None:
     """Make sure that there is a rendezvous: join what is there, else host it. Blocks for some milliseconds.
 
     Returns:
-        The router session if this process is the rendezvous now, else None.
+        The router, if this process is the rendezvous now, else None.
 
     Raises:
         TransportError: as `join`.

@@ -7,10 +7,8 @@ import logging
 import random
 from collections.abc import Callable
 
-import zenoh
-
-from graphflow.transport.config import close_session, rendezvous_endpoint
-from graphflow.transport.rendezvous import host, occupied
+from graphflow.transport.config import rendezvous_endpoint
+from graphflow.transport.rendezvous import Router, host, occupied
 from graphflow.transport.zenoh import ZenohSession
 
 logger = logging.getLogger("graphflow.rendezvous")
@@ -26,10 +24,10 @@ class Takeover:
         router: The rendezvous, if this process is it already.
     """
 
-    def __init__(self, router: zenoh.Session | None) -> None:
+    def __init__(self, router: Router | None) -> None:
         self._router = router
         self._retry: asyncio.TimerHandle | None = None
-        self._attempt: asyncio.Future[zenoh.Session | None] | None = None
+        self._attempt: asyncio.Future[Router | None] | None = None
         self._stop_watching: Callable[[], None] | None = None
         self._warned = False
 
@@ -52,7 +50,7 @@ class Takeover:
                 self._attempt = loop.run_in_executor(None, host)
                 self._attempt.add_done_callback(attempted)
 
-        def attempted(future: asyncio.Future[zenoh.Session | None]) -> None:
+        def attempted(future: asyncio.Future[Router | None]) -> None:
             self._attempt = None
             if future.cancelled():
                 return
@@ -85,5 +83,5 @@ class Takeover:
         if self._attempt is not None:
             self._router = await self._attempt
         if self._router is not None:
-            await asyncio.to_thread(close_session, self._router)
+            await asyncio.to_thread(self._router.close)
             self._router = None

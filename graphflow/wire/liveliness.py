@@ -144,7 +144,7 @@ def parse_qos(chunk: str) -> Qos:
 
     def number(field: int, part: int, default: int) -> int:
         try:
-            return int(fields[field][part])
+            return max(0, int(fields[field][part]))
         except (IndexError, ValueError):
             return default
 

@@ -33,7 +33,7 @@ async def until(condition: Callable[[], object]) -> None:
 
 
 async def test_arrows_are_commands(
-    graph: Graph, press: Callable[[bytes], int], capsys: pytest.CaptureFixture[str]
+    press: Callable[[bytes], int], graph: Graph, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """One press is one command of the scale's size; other keys are none."""
     await graph.start(TurtleTeleop(scale_angular=1.5))
@@ -53,7 +53,7 @@ async def test_arrows_are_commands(
 
 
 @pytest.mark.parametrize("key", [b"q", b"Q"])
-async def test_q_ends_it_and_gives_the_terminal_back(graph: Graph, press: Callable[[bytes], int], key: bytes) -> None:
+async def test_q_ends_it_and_gives_the_terminal_back(press: Callable[[bytes], int], graph: Graph, key: bytes) -> None:
     """Without an error."""
     before = termios.tcgetattr(sys.stdin)
     node = TurtleTeleop()
@@ -66,7 +66,7 @@ async def test_q_ends_it_and_gives_the_terminal_back(graph: Graph, press: Callab
     assert termios.tcgetattr(sys.stdin) == before
 
 
-async def test_stopping_it_gives_the_terminal_back(graph: Graph, press: Callable[[bytes], int]) -> None:
+async def test_stopping_it_gives_the_terminal_back(press: Callable[[bytes], int], graph: Graph) -> None:
     """As Ctrl-C does, while it waits for a key."""
     before = termios.tcgetattr(sys.stdin)
     node = TurtleTeleop()

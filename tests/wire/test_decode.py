@@ -21,8 +21,8 @@ def round_trip(name: str, **values: Any) -> Any:
 def test_a_decoded_message_is_of_its_class() -> None:
     """Decoding gives objects of the classes that are imported, nested ones too."""
     pose: Any = round_trip("geometry_msgs/msg/PoseStamped")
-    assert type(pose) is registry.interface_class("geometry_msgs/msg/PoseStamped")
     assert type(pose.header.stamp) is registry.interface_class("builtin_interfaces/msg/Time")
+    assert type(pose) is registry.interface_class("geometry_msgs/msg/PoseStamped")
 
 
 def test_scalars_are_pythons() -> None:

@@ -1,0 +1,115 @@
+"""How long a command takes: `up` until the first message, `topic list` as a whole process.
+
+Beside it, in the same rounds: two plain Python processes that talk over raw Zenoh, and a bare interpreter.
+
+Goals: first message of a graph of two nodes within 400 ms, `topic list` within 80 ms.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from benchmarks.rounds import compare, goal
+from graphflow.transport.rendezvous import free_endpoint
+
+GRAPH = Path(__file__).parents[1] / "graphs" / "talker_listener.yaml"
+GRAPHFLOW = [sys.executable, "-m", "graphflow.cli.main"]
+RAW_LISTENER = """
+import json, sys, time, zenoh
+c = {"mode": "peer", "listen": {"endpoints": [sys.argv[1]]}, "scouting": {"delay": 0, "multicast": {"enabled": False}}}
+s = zenoh.open(zenoh.Config.from_json5(json.dumps(c)))
+sub = s.declare_subscriber("a/b", lambda m: print(time.time(), flush=True))
+time.sleep(60)
+"""
+RAW_TALKER = """
+import json, sys, time, zenoh
+c = {"mode": "peer", "connect": {"endpoints": [sys.argv[1]], "retry": {"period_init_ms": 20, "period_max_ms": 200}},
+     "scouting": {"delay": 0, "multicast": {"enabled": False}}}
+s = zenoh.open(zenoh.Config.from_json5(json.dumps(c)))
+p = s.declare_publisher("a/b")
+while True:
+    p.put(b"hello")
+    time.sleep(0.001)
+"""
+
+
+def first_message() -> float:
+    """Milliseconds from the command until the listener has heard something, by the time in its log line."""
+    began = time.time()
+    up = subprocess.Popen([*GRAPHFLOW, "up", str(GRAPH), "rate:=1000"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    assert up.stdout is not None
+    for line in up.stdout:
+        heard = re.search(rb"\[INFO\] \[(\d+\.\d+)\] \[listener\]", line)
+        if heard:
+            up.terminate()
+            up.communicate(timeout=20)
+            return (float(heard[1]) - began) * 1000
+    raise AssertionError("the graph ended")
+
+
+def first_raw_message() -> float:
+    """The same for two scripts over raw Zenoh, which link to each other directly."""
+    endpoint = free_endpoint()
+    began = time.time()
+    listener = subprocess.Popen([sys.executable, "-c", RAW_LISTENER, endpoint], stdout=subprocess.PIPE)
+    talker = subprocess.Popen([sys.executable, "-c", RAW_TALKER, endpoint])
+    assert listener.stdout is not None
+    heard = float(listener.stdout.readline())
+    for process in (talker, listener):
+        process.kill()
+        process.wait()
+    listener.stdout.close()
+    return (heard - began) * 1000
+
+
+def whole(*command: str) -> float:
+    """Milliseconds of a whole process."""
+    began = time.perf_counter()
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return (time.perf_counter() - began) * 1000
+
+
+def main() -> None:
+    folder = tempfile.mkdtemp()
+    os.environ.update(
+        GRAPHFLOW_RENDEZVOUS=free_endpoint(),
+        GRAPHFLOW_DOMAIN=str(random.randrange(10_000, 1_000_000)),
+        XDG_RUNTIME_DIR=folder,
+        XDG_STATE_HOME=folder,
+    )
+    found = compare(
+        {"two scripts, raw zenoh": first_raw_message, "graphflow up, 2 nodes": first_message},
+        rounds=15,
+        unit="ms",
+        baseline="two scripts, raw zenoh",
+    )
+    goal("graphflow up to first message, ms", found["graphflow up, 2 nodes"][0], 400)
+
+    subprocess.run([*GRAPHFLOW, "up", "-d", str(GRAPH)], check=True, stderr=subprocess.DEVNULL)
+    try:
+        found = compare(
+            {
+                "python -c pass": lambda: whole(sys.executable, "-c", "pass"),
+                "python -c 'import click'": lambda: whole(sys.executable, "-c", "import click"),
+                "graphflow --version": lambda: whole(*GRAPHFLOW, "--version"),
+                "graphflow topic list": lambda: whole(*GRAPHFLOW, "topic", "list"),
+                "graphflow param get": lambda: whole(*GRAPHFLOW, "param", "get", "/talker", "rate"),
+            },
+            rounds=25,
+            unit="ms",
+            baseline="python -c pass",
+        )
+        goal("topic list, ms", found["graphflow topic list"][0], 80)
+    finally:
+        subprocess.run([*GRAPHFLOW, "down"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+if __name__ == "__main__":
+    main()

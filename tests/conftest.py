@@ -1,0 +1,144 @@
+"""What the tests with real processes share: a machine of their own."""
+
+from __future__ import annotations
+
+import os
+import random
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from graphflow.transport.rendezvous import free_endpoint
+
+PROJECT = Path(__file__).parents[1]
+LIMIT = 20.0
+"""Seconds that anything here may take before the test fails."""
+
+
+class Program:
+    """A command under way, with its output lines as they come."""
+
+    def __init__(self, process: subprocess.Popen[bytes]) -> None:
+        self.process = process
+        self.text = ""
+
+    @property
+    def pid(self) -> int:
+        return self.process.pid
+
+    def wait_for(self, what: str, limit: float = LIMIT) -> str:
+        """Read its output until `what` is in it; returns all that was read."""
+        deadline = time.monotonic() + limit
+        out = self.process.stdout
+        assert out is not None
+        while what not in self.text:
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([out], [], [], left)[0]:
+                raise AssertionError(f"no {what!r} within {limit} s in:\n{self.text}")
+            data = os.read(out.fileno(), 65536)
+            if not data:
+                raise AssertionError(f"it ended ({self.process.wait(LIMIT)}) without {what!r} in:\n{self.text}")
+            self.text += data.decode(errors="replace")
+        return self.text
+
+    def end(self, number: int = signal.SIGINT) -> int:
+        """Signal it, and wait for its end; returns the exit code."""
+        self.process.send_signal(number)
+        return self.wait()
+
+    def wait(self, limit: float = LIMIT) -> int:
+        """Wait for its end and read the rest of its output; returns the exit code."""
+        out, _ = self.process.communicate(timeout=limit)
+        self.text += out.decode(errors="replace")
+        return self.process.returncode
+
+
+class Machine:
+    """Commands in an environment of their own: rendezvous port, domain, run and log directories."""
+
+    def __init__(self, folder: Path) -> None:
+        self.domain = random.randrange(10_000, 1_000_000)
+        self.endpoint = free_endpoint()
+        self.run_directory = folder / "run"
+        self.run_directory.mkdir(mode=0o700)
+        self.env = {
+            **os.environ,
+            "GRAPHFLOW_RENDEZVOUS": self.endpoint,
+            "GRAPHFLOW_DOMAIN": str(self.domain),
+            "XDG_RUNTIME_DIR": str(self.run_directory),
+            "XDG_STATE_HOME": str(folder / "state"),
+            "PYTHONUNBUFFERED": "1",
+        }
+        self.env.pop("ROS_LOG_DIR", None)
+        self._programs: list[Program] = []
+
+    def start(self, *words: str, cwd: Path = PROJECT) -> Program:
+        """Start `graphflow WORDS`; stdout and stderr come together."""
+        return self.start_python("-m", "graphflow.cli.main", *words, cwd=cwd)
+
+    def start_python(self, *words: str, cwd: Path = PROJECT) -> Program:
+        process = subprocess.Popen(
+            [sys.executable, *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=self.env,
+            cwd=cwd,
+        )
+        program = Program(process)
+        self._programs.append(program)
+        return program
+
+    def run(self, *words: str, cwd: Path = PROJECT, code: int | None = 0) -> str:
+        """Run `graphflow WORDS` to its end; returns its output, and checks the exit code unless `code` is None."""
+        program = self.start(*words, cwd=cwd)
+        got = program.wait()
+        assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{program.text}"
+        return program.text
+
+    def until(self, condition: Callable[[], bool], what: str, limit: float = LIMIT) -> None:
+        """Wait until something outside holds."""
+        deadline = time.monotonic() + limit
+        while not condition():
+            assert time.monotonic() < deadline, f"not within {limit} s: {what}"
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        """End whatever is left, by its own process id."""
+        for run in self.run_directory.glob("graphflow/*/*/run.json"):
+            subprocess.run(
+                [sys.executable, "-m", "graphflow.cli.main", "down", "--all", "--now"],
+                env=self.env,
+                capture_output=True,
+                timeout=LIMIT,
+                check=False,
+            )
+            assert not run.exists(), "a graph outlived its test"
+        for program in self._programs:
+            if program.process.poll() is None:
+                program.process.kill()
+            program.process.wait(LIMIT)
+            if program.process.stdout is not None:
+                program.process.stdout.close()
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Iterator[Machine]:
+    """A machine of its own for real processes on loopback."""
+    made = Machine(tmp_path)
+    yield made
+    made.close()
+
+
+def alive(pid: int) -> bool:
+    """Whether a process lives; a zombie does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False

@@ -1,0 +1,180 @@
+"""The picture of the graph that tokens draw."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from graphflow.machines.cache import Change, GraphCache
+from graphflow.wire.liveliness import Entity, Kind, parse_token
+
+STRING = "std_msgs/msg/String"
+ADD = "example_interfaces/srv/AddTwoInts"
+
+
+def node(name: str, zid: str = "a", nid: int = 0, namespace: str = "/") -> Entity:
+    return Entity(0, zid, nid, nid, Kind.NODE, namespace, name)
+
+
+def endpoint(of: Entity, eid: int, kind: Kind, name: str, type_: str = STRING) -> Entity:
+    return Entity(0, of.zid, of.nid, eid, kind, of.namespace, of.node, name, type_, "RIHS01_0")
+
+
+TALKER = node("talker")
+CHATTER = endpoint(TALKER, 1, Kind.PUBLISHER, "/chatter")
+LISTENER = node("listener", "b", namespace="/robot")
+HEARD = endpoint(LISTENER, 1, Kind.SUBSCRIPTION, "/chatter")
+SERVER = endpoint(LISTENER, 2, Kind.SERVICE, "/add", ADD)
+GRAPH = [TALKER, CHATTER, LISTENER, HEARD, SERVER]
+
+
+def cache_of(*entities: Entity) -> GraphCache:
+    return GraphCache(e.token for e in entities)
+
+
+@given(st.permutations(GRAPH))
+def test_the_order_of_arrival_does_not_matter(order: list[Entity]) -> None:
+    """Whatever comes first, the picture is the same."""
+    cache = cache_of(*order)
+
+    assert cache.nodes() == ["/robot/listener", "/talker"]
+    assert cache.topics() == {"/chatter": [STRING]}
+    assert cache.services() == {"/add": [ADD]}
+    assert cache.endpoints(Kind.SUBSCRIPTION, "/chatter") == [HEARD]
+
+
+def test_a_token_changes_the_picture_once() -> None:
+    """A repeated token is no change, neither when it comes nor when it goes."""
+    cache = GraphCache()
+
+    assert cache.apply(CHATTER.token, alive=True) == [Change(CHATTER, True)]
+    assert cache.apply(CHATTER.token, alive=True) == []
+    assert CHATTER.token in cache
+    assert cache.apply(CHATTER.token, alive=False) == [Change(CHATTER, False)]
+    assert cache.apply(CHATTER.token, alive=False) == []
+    assert CHATTER.token not in cache
+
+
+@pytest.mark.parametrize("token", ["", "nonsense", "@ros2_lv/0/a/0/0/XX/%/%/talker", "@graphflow/0/proc/a/0/1"])
+def test_an_unknown_token_is_left_alone(token: str) -> None:
+    """What cannot be read as an entity is no entity, alive or not."""
+    cache = GraphCache()
+
+    assert cache.apply(token, alive=True) == []
+    assert cache.apply(token, alive=False) == []
+    assert list(cache) == []
+
+
+def test_the_end_of_a_node_ends_its_endpoints() -> None:
+    """A node's endpoints go with it and are reported, and those of others stay."""
+    cache = cache_of(*GRAPH)
+
+    changes = cache.apply(LISTENER.token, alive=False)
+
+    assert changes[0] == Change(LISTENER, False)
+    assert set(changes[1:]) == {Change(HEARD, False), Change(SERVER, False)}
+    assert set(cache) == {TALKER, CHATTER}
+    assert cache.apply(HEARD.token, alive=False) == []
+
+
+def test_a_node_is_known_from_its_endpoints() -> None:
+    """An endpoint whose node's token is still on its way shows the node."""
+    assert cache_of(CHATTER).nodes() == ["/talker"]
+
+
+def test_twins_are_two_nodes() -> None:
+    """Nodes that share a name appear as often as they are, and one's end leaves the other's endpoints."""
+    twin = node("talker", "b", 7)
+    other = endpoint(twin, 8, Kind.PUBLISHER, "/chatter")
+    cache = cache_of(TALKER, CHATTER, twin, other)
+
+    assert cache.nodes() == ["/talker", "/talker"]
+    assert cache.owners("/talker") == [TALKER, twin]
+
+    cache.apply(TALKER.token, alive=False)
+
+    assert cache.nodes() == ["/talker"]
+    assert cache.endpoints(Kind.PUBLISHER) == [other]
+
+
+def test_nodes_of_one_session_are_apart() -> None:
+    """The end of one node of a process leaves the other nodes of that process alone."""
+    second = node("second", "a", 5)
+    held = endpoint(second, 6, Kind.PUBLISHER, "/other")
+    cache = cache_of(TALKER, CHATTER, second, held)
+
+    cache.apply(TALKER.token, alive=False)
+
+    assert set(cache) == {second, held}
+
+
+def test_hidden_names_are_left_out_of_listings() -> None:
+    """A part that begins with an underscore hides topic, service and node, unless they are asked for."""
+    tool = node("_tool", "c")
+    hidden = endpoint(tool, 1, Kind.PUBLISHER, "/a/_b/c")
+    service = endpoint(tool, 2, Kind.SERVICE, "/_secret", ADD)
+    cache = cache_of(TALKER, CHATTER, tool, hidden, service)
+
+    assert cache.nodes(hidden=False) == ["/talker"]
+    assert cache.nodes() == ["/_tool", "/talker"]
+    assert cache.topics() == {"/chatter": [STRING]}
+    assert cache.topics(hidden=True) == {"/a/_b/c": [STRING], "/chatter": [STRING]}
+    assert cache.services() == {}
+    assert cache.services(hidden=True) == {"/_secret": [ADD]}
+
+
+def test_a_topic_has_all_the_types_it_is_used_with() -> None:
+    """Publishers and subscriptions count alike, each type once, sorted; clients name a service too."""
+    other = endpoint(LISTENER, 4, Kind.SUBSCRIPTION, "/chatter", "std_msgs/msg/Int32")
+    client = endpoint(TALKER, 5, Kind.CLIENT, "/add", ADD)
+    cache = cache_of(CHATTER, HEARD, other, client)
+
+    assert cache.topics() == {"/chatter": ["std_msgs/msg/Int32", STRING]}
+    assert cache.services() == {"/add": [ADD]}
+
+
+def test_endpoints_can_be_asked_for() -> None:
+    """By kind, by name, by node; sorted by name, node and type."""
+    second = endpoint(TALKER, 9, Kind.PUBLISHER, "/alpha")
+    cache = cache_of(CHATTER, second, HEARD, SERVER)
+
+    assert cache.endpoints(Kind.PUBLISHER) == [second, CHATTER]
+    assert cache.endpoints(Kind.PUBLISHER, "/chatter") == [CHATTER]
+    assert cache.endpoints(Kind.PUBLISHER, node="/robot/listener") == []
+    assert cache.endpoints(Kind.SERVICE, node="/robot/listener") == [SERVER]
+
+
+def test_actions_are_told_by_their_feedback() -> None:
+    """An action shows its own name and type, not those of the entities it is made of."""
+    feedback = endpoint(
+        TALKER, 3, Kind.PUBLISHER, "/fibonacci/_action/feedback", "example_interfaces/action/Fibonacci_FeedbackMessage"
+    )
+    status = endpoint(TALKER, 4, Kind.PUBLISHER, "/fibonacci/_action/status", "action_msgs/msg/GoalStatusArray")
+    cache = cache_of(TALKER, CHATTER, feedback, status)
+
+    assert cache.actions() == {"/fibonacci": ["example_interfaces/action/Fibonacci"]}
+    assert cache.topics() == {"/chatter": [STRING]}
+
+
+def test_repr_counts() -> None:
+    """What is printed says how much there is."""
+    assert repr(cache_of(*GRAPH)) == "<GraphCache 2 nodes, 5 tokens>"
+
+
+@given(st.lists(st.tuples(st.sampled_from(GRAPH), st.booleans()), max_size=30))
+def test_any_history_of_tokens(events: list[tuple[Entity, bool]]) -> None:
+    """After any history the picture is that of a plain model, and every change is reported once."""
+    cache, model = GraphCache(), dict[str, Entity]()
+    told: dict[Entity, bool] = {}
+    for entity, alive in events:
+        if alive:
+            model.setdefault(entity.token, entity)
+        elif model.pop(entity.token, None) is not None and entity.kind is Kind.NODE:
+            model = {t: e for t, e in model.items() if (e.zid, e.nid) != (entity.zid, entity.nid)}
+        for change in cache.apply(entity.token, alive=alive):
+            assert told.get(change.entity, False) is not change.alive
+            told[change.entity] = change.alive
+
+        assert set(cache) == set(model.values()) == {e for e, there in told.items() if there}
+    assert all(parse_token(e.token) == e for e in cache)

@@ -1,0 +1,311 @@
+"""Graphs that really run: processes, signals, logs, and what is left afterwards."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import Machine, Program, alive
+
+pytestmark = pytest.mark.real
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A user's own project: nodes that misbehave, each in one way."""
+    root = tmp_path / "lab"
+    (root / "nodes").mkdir(parents=True)
+    (root / "pyproject.toml").touch()
+    (root / "nodes" / "lab.py").write_text(
+        """
+import asyncio, os, signal, time
+from graphflow import Node, Param, service, task, timer
+from graphflow.msgs.std_srvs.srv import Trigger
+
+class Good(Node):
+    @service(Trigger, "~/ask")
+    async def ask(self, request: Trigger.Request) -> Trigger.Response:
+        return Trigger.Response(success=True, message=os.environ.get("COLOUR", ""))
+
+class Stubborn(Node):
+    @task
+    async def ignore(self) -> None:
+        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, lambda: self.log.warning("no"))
+
+class Crashes(Node):
+    @task
+    async def fall(self) -> None:
+        raise RuntimeError("the bridge is out")
+
+class Refuses(Node):
+    def __init__(self, name=None, **options):
+        super().__init__(name, **options)
+        raise ValueError("no camera")
+
+class Ends(Node):
+    @task
+    async def end(self) -> None:
+        self.log.info("done")
+        self.shutdown()
+
+class Fails(Node):
+    @service(Trigger, "fails")
+    async def fail(self, request: Trigger.Request) -> Trigger.Response:
+        raise OSError("the disk is full")
+"""
+    )
+    return root
+
+
+def write(project: Path, text: str, name: str = "lab.yaml") -> str:
+    (project / name).write_text(text)
+    return name
+
+
+def rows(machine: Machine) -> dict[str, dict[str, Any]]:
+    return {row["node"]: row for row in json.loads(machine.run("ps", "--json"))}
+
+
+def supervisor_of(machine: Machine) -> dict[str, Any]:
+    (file,) = machine.run_directory.glob("graphflow/*/*/run.json")
+    run: dict[str, Any] = json.loads(file.read_text())
+    return run
+
+
+def nothing_is_left(machine: Machine, pids: list[int]) -> None:
+    machine.until(lambda: not any(alive(pid) for pid in pids), "all processes are gone")
+    machine.until(lambda: not list(machine.run_directory.glob("graphflow/*/*")), "the run directory is removed")
+
+
+GOOD = "nodes:\n  /a: {class: nodes.lab:Good}\n  /b: {class: nodes.lab:Good, env: {COLOUR: red}}\n"
+
+
+def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None:
+    """The first command of the README: a greeting, log lines, Ctrl-C, exit code 0, nothing left."""
+    up = machine.start("up", "graphs/talker_listener.yaml", "rate:=20.0")
+    text = up.wait_for("I heard")
+    assert "graph talker_listener is up: 2 nodes" in text
+    assert "graphflow topic list" in text
+    assert "Stop with Ctrl-C" in text
+    pids = [row["pid"] for row in rows(machine).values()] + [supervisor_of(machine)["pid"]]
+
+    assert up.end(signal.SIGINT) == 0
+
+    assert "Traceback" not in up.text
+    assert "graph talker_listener has ended" in up.text
+    nothing_is_left(machine, pids)
+
+
+def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Path) -> None:
+    """`up -d` returns when the graph is up; `ps`, `logs` and `down` work from anywhere; `down` again says none runs."""
+    text = machine.run("up", "-d", write(project, GOOD), cwd=project)
+    assert "graph lab is up" in text
+    assert {name: row["state"] for name, row in rows(machine).items()} == {"/a": "ready", "/b": "ready"}
+    pids = [row["pid"] for row in rows(machine).values()] + [supervisor_of(machine)["pid"]]
+    assert "red" in machine.run("service", "call", "/b/ask", "std_srvs/srv/Trigger")
+
+    assert "graph lab is down" in machine.run("down")
+
+    nothing_is_left(machine, pids)
+    assert "no graph is running" in machine.run("down", code=3)
+    assert "no graph is running" in machine.run("ps", code=3)
+
+
+def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> None:
+    """The second says since when it runs and how to stop it; the first is not touched."""
+    file = write(project, GOOD)
+    machine.run("up", "-d", file, cwd=project)
+
+    text = machine.run("up", file, cwd=project, code=1)
+
+    assert "graph lab is running already" in text
+    assert "graphflow down --graph lab" in text
+    assert set(rows(machine)) == {"/a", "/b"}
+    machine.run("down")
+
+
+def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Machine, project: Path) -> None:
+    """The owner is named; two graphs with other names may run beside each other, and then `down` asks which."""
+    machine.run("up", "-d", write(project, GOOD), cwd=project)
+
+    text = machine.run("up", write(project, GOOD, "other.yaml"), cwd=project, code=1)
+    assert "already in domain" in text
+    assert f"process {rows(machine)['/a']['pid']}" in text
+
+    machine.run("up", "-d", write(project, "nodes:\n  /c: {class: nodes.lab:Good}\n", "third.yaml"), cwd=project)
+    assert "lab" in (text := machine.run("down", code=2))
+    assert "--graph NAME" in text
+    machine.run("down", "--graph", "third")
+    machine.run("down")
+
+
+@pytest.mark.parametrize("victim", ["supervisor", "preload", "terminal"])
+def test_kill_minus_9_leaves_nothing_behind(machine: Machine, project: Path, victim: str) -> None:
+    """Whoever of them dies: no node is left running, and the graph can be started again."""
+    file = write(project, GOOD)
+    up = machine.start("up", file, cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    nodes = [row["pid"] for row in rows(machine).values()]
+    supervisor = supervisor_of(machine)["pid"]
+    preload = int(Path(f"/proc/{nodes[0]}/stat").read_text().rpartition(")")[2].split()[1])
+    target = {"supervisor": supervisor, "preload": preload, "terminal": up.pid}[victim]
+
+    os.kill(target, signal.SIGKILL)
+
+    machine.until(lambda: not any(alive(pid) for pid in [*nodes, supervisor, preload]), "all processes are gone")
+    code = up.wait()
+    if victim != "terminal":
+        assert code == 1
+        assert "died" in up.text
+    machine.run("up", "-d", file, cwd=project)
+    machine.run("down")
+
+
+def test_a_node_that_is_killed_is_reported_and_the_others_go_on(machine: Machine, project: Path) -> None:
+    """The terminal and `ps` say what happened to it."""
+    up = machine.start("up", write(project, GOOD), cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    before = rows(machine)
+
+    os.kill(before["/a"]["pid"], signal.SIGKILL)
+
+    up.wait_for("/a has died")
+    assert "SIGKILL" in up.text
+    after = rows(machine)
+    assert after["/a"]["state"] == "failed"
+    assert after["/b"]["state"] == "ready"
+    assert up.end() == 1
+
+
+def test_a_node_that_ignores_sigterm_is_killed_and_a_second_ctrl_c_does_not_wait(
+    machine: Machine, project: Path
+) -> None:
+    """The ladder ends with SIGKILL; whoever is impatient presses again."""
+    up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.lab:Stubborn}\n"), cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    pid = rows(machine)["/s"]["pid"]
+
+    up.process.send_signal(signal.SIGINT)
+    up.wait_for("| [WARN]")
+    assert alive(pid)
+    assert up.end(signal.SIGINT) == 0
+
+    nothing_is_left(machine, [pid])
+
+
+def test_an_error_in_a_task_ends_the_node_with_its_traceback(machine: Machine, project: Path) -> None:
+    """When all nodes have ended the graph has, with code 1 if one failed."""
+    up = machine.start("up", write(project, "nodes:\n  /c: {class: nodes.lab:Crashes}\n"), cwd=project)
+
+    assert up.wait() == 1
+
+    assert "the bridge is out" in up.text
+    assert "Traceback" in up.text
+    assert "exit code 70" in up.text
+    assert "lab.py" in up.text
+
+
+def test_a_node_that_cannot_be_made_stops_the_start(machine: Machine, project: Path) -> None:
+    """The others are stopped again, the reason is told, the exit code is 1."""
+    text = "nodes:\n  /good: {class: nodes.lab:Good}\n  /bad: {class: nodes.lab:Refuses, after: /good}\n"
+    up = machine.start("up", write(project, text), cwd=project)
+
+    assert up.wait() == 1
+
+    assert "no camera" in up.text
+    nothing_is_left(machine, [])
+
+
+def test_a_graph_whose_nodes_all_end_by_themselves_has_ended_well(machine: Machine, project: Path) -> None:
+    """`shutdown` from within is no failure."""
+    up = machine.start("up", write(project, "nodes:\n  /e: {class: nodes.lab:Ends}\n"), cwd=project)
+    assert up.wait() == 0
+    assert "done" in up.text
+
+
+def test_nodes_that_share_a_process_share_its_pid_and_its_end(machine: Machine, project: Path) -> None:
+    """A crash ends the mates; nodes elsewhere go on."""
+    text = (
+        "nodes:\n  /a: {class: nodes.lab:Good, process: both}\n  /b: {class: nodes.lab:Good, process: both}\n"
+        "  /c: {class: nodes.lab:Good}\n"
+    )
+    machine.run("up", "-d", write(project, text), cwd=project)
+    found = rows(machine)
+    assert found["/a"]["pid"] == found["/b"]["pid"] != found["/c"]["pid"]
+
+    os.kill(found["/a"]["pid"], signal.SIGKILL)
+
+    machine.until(lambda: rows(machine)["/b"]["state"] == "failed", "both are seen to have ended")
+    assert rows(machine)["/c"]["state"] == "ready"
+    machine.run("down")
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [("/fails", "OSError: the disk is full"), ("/nowhere, type: std_srvs/srv/Trigger", "nobody offers the service")],
+)
+def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: str, expected: str) -> None:
+    """The step and the reason are told, everything is stopped again, the exit code is 1."""
+    text = f"nodes:\n  /f: {{class: nodes.lab:Fails}}\nsteps:\n  ask: {{after: /f, call: {call}, timeout: 1.0}}\n"
+    up = machine.start("up", write(project, text), cwd=project)
+
+    assert up.wait() == 1
+
+    assert "step ask FAILED" in up.text
+    assert expected in up.text
+    nothing_is_left(machine, [])
+
+
+def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project: Path) -> None:
+    """`env:` with PYTHON..., LD_... or MALLOC_... starts the node in an interpreter of its own."""
+    text = "nodes:\n  /a: {class: nodes.lab:Good, env: {PYTHONHASHSEED: 7, COLOUR: blue}}\n"
+    machine.run("up", "-d", write(project, text), cwd=project)
+    pid = rows(machine)["/a"]["pid"]
+    assert b"graphflow.supervisor.worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    assert "blue" in machine.run("service", "call", "/a/ask", "std_srvs/srv/Trigger")
+    machine.run("down")
+    nothing_is_left(machine, [pid])
+
+
+def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
+    """`logs` shows the latest run; a misspelt node is told which one was meant."""
+    machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
+    machine.until(lambda: "I heard" in machine.run("logs"), "something was logged")
+    machine.run("down")
+
+    assert "I heard" in machine.run("logs", "/listener", "-n", "3")
+    assert "did you mean 'talker'" in machine.run("logs", "talkr", code=2)
+
+
+def test_logs_follow(machine: Machine) -> None:
+    """`logs -f` goes on as more is written and ends with the graph."""
+    machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
+    follow: Program = machine.start("logs", "-f", "/listener")
+    follow.wait_for("I heard: [Hello World: 20]")
+    machine.run("down")
+    assert follow.wait() == 0
+
+
+def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> None:
+    """Otherwise forking it would be unsafe."""
+    machine.run("up", "-d", write(project, GOOD), cwd=project)
+    pid = rows(machine)["/a"]["pid"]
+    preload = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1]
+    assert len(list(Path(f"/proc/{preload}/task").iterdir())) == 1
+    machine.run("down")
+
+
+def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
+    machine: Machine, project: Path
+) -> None:
+    """The text names the folder and the variable that moves it."""
+    machine.env["ROS_LOG_DIR"] = "/proc/nowhere"
+    text = machine.run("up", write(project, GOOD), cwd=project, code=1)
+    assert "/proc/nowhere/lab" in text
+    assert "ROS_LOG_DIR" in text
+    nothing_is_left(machine, [])

@@ -1,0 +1,60 @@
+"""The public names: one list, told three times, and all of them there."""
+
+from __future__ import annotations
+
+import ast
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import graphflow
+
+TREE = ast.parse(Path(graphflow.__file__).read_text(encoding="utf-8"))
+
+
+def seen_by_the_type_checker() -> dict[str, str]:
+    """Name -> module, as imported under TYPE_CHECKING."""
+    (block,) = [n for n in TREE.body if isinstance(n, ast.If)]
+    assert ast.unparse(block.test) == "TYPE_CHECKING"
+    imports = [n for n in block.body if isinstance(n, ast.ImportFrom)]
+    assert len(imports) == len(block.body)
+    return {alias.asname or alias.name: str(n.module) for n in imports for alias in n.names}
+
+
+def imported_when_used() -> dict[str, str]:
+    """Name -> module, as imported at run time."""
+    return {name: home for home, names in graphflow._HOMES.items() for name in names}
+
+
+def test_the_three_lists_are_one() -> None:
+    """`__all__`, the names imported when used and those the type checker sees are the same, from the same modules."""
+    assert imported_when_used() == seen_by_the_type_checker()
+    assert sorted(imported_when_used()) == graphflow.__all__
+
+
+def test_no_name_is_listed_twice() -> None:
+    """A name has one home."""
+    listed = [name for names in graphflow._HOMES.values() for name in names]
+    assert len(listed) == len(set(listed))
+    assert len(graphflow.__all__) == len(set(graphflow.__all__))
+
+
+@pytest.mark.parametrize("name", graphflow.__all__)
+def test_every_name_is_there(name: str) -> None:
+    """A public name is what its home calls by that name."""
+    assert getattr(graphflow, name) is getattr(import_module(imported_when_used()[name]), name)
+
+
+def test_a_star_import_gives_all_of_them() -> None:
+    """`from graphflow import *` brings every public name."""
+    names: dict[str, object] = {}
+    exec("from graphflow import *", names)
+    assert set(graphflow.__all__) <= names.keys()
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    """A misspelt name is Python's usual error, for `hasattr` and for people."""
+    with pytest.raises(AttributeError, match="module 'graphflow' has no attribute 'Nod'"):
+        graphflow.Nod  # noqa: B018
+    assert not hasattr(graphflow, "_nothing")

@@ -1,0 +1,164 @@
+"""The house: which room may import which, and who knows which library."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "graphflow"
+
+CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "wire", "msgs", "machines", "graph")
+FLOORS = ("transport", "runtime", "introspect", "bag", "supervisor", "testing")
+DOORS = ("cli", "tui")
+ROOMS = (*CELLAR, *FLOORS, *DOORS)
+"""From the bottom up: a room imports itself and the rooms before it. No door imports another."""
+
+ONLY_IN = {"zenoh": ("transport",), "textual": ("tui",), "click": ("cli",)}
+"""Libraries that one room knows."""
+
+NOT_IN_CELLAR = (
+    *("asyncio", "threading", "concurrent", "multiprocessing", "socket", "selectors", "subprocess"),
+    *("time", "random", "logging"),
+)
+"""The cellar decides: it neither waits, nor looks at a clock, nor talks."""
+
+PRINTS = "cli/output.py"
+"""The only file that prints."""
+
+
+class Import(NamedTuple):
+    """One module named by an import statement, or by `import_module` with a literal name."""
+
+    line: int
+    module: str
+
+
+def imports(tree: ast.AST, package: str) -> Iterator[Import]:
+    """Every import of a file, those hidden inside functions too.
+
+    Args:
+        package: The package of the file, which relative imports start from.
+    """
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (Import(node.lineno, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = ".".join(package.split(".")[: len(package.split(".")) + 1 - node.level]) if node.level else ""
+            base = ".".join(part for part in (above, node.module) if part)
+            # `from graphflow import msgs` imports a room, `from graphflow.names import split` does not.
+            yield from (Import(node.lineno, f"{base}.{alias.name}") for alias in node.names)
+        elif isinstance(node, ast.Call) and _called(node) in ("import_module", "__import__"):
+            yield from (Import(node.lineno, str(a.value)) for a in node.args[:1] if isinstance(a, ast.Constant))
+
+
+def _called(call: ast.Call) -> str:
+    return call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
+
+
+def broken_rules(text: str, file: str) -> list[str]:
+    """What one file does against the rules of the house, each as `file:line: what`.
+
+    Args:
+        file: The file, relative to the package.
+    """
+    parts = Path(file).with_suffix("").parts
+    if parts == ("__init__",):  # the facade above all rooms; tests/test_exports.py holds it
+        return []
+    tree = ast.parse(text)
+    room = parts[0]
+    if room not in ROOMS:
+        return [f"{file}:1: {room!r} is no room of the house; add it to the table in {Path(__file__).name}"]
+    package = ".".join(("graphflow", *parts[:-1]))
+    found = [(i.line, fault) for i in imports(tree, package) if (fault := _fault(room, i.module))]
+    if file != PRINTS:
+        calls = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and _called(n) == "print"]
+        found += [(n.lineno, f"only {PRINTS} prints; use output.data or output.talk") for n in calls]
+    return [f"{file}:{line}: {fault}" for line, fault in sorted(found)]
+
+
+def _fault(room: str, module: str) -> str | None:
+    top, *rest = module.split(".")
+    if top != "graphflow":
+        if top in ONLY_IN and room not in ONLY_IN[top]:
+            return f"{room} imports {top}, which only {', '.join(ONLY_IN[top])} may know"
+        if room in CELLAR and top in NOT_IN_CELLAR:
+            return f"{room} is in the cellar and imports {top}; there is no waiting, clock or talk down there"
+        return None
+    other = rest[0] if rest else ""
+    if other not in ROOMS:
+        if room in DOORS and other == "__version__":
+            return None
+        return f"{room} imports {module}, the facade above it; import from where it is defined"
+    if other != room and room in DOORS and other in DOORS:
+        return f"the door {room} imports the door {other}"
+    if ROOMS.index(other) > ROOMS.index(room):
+        return f"{room} imports {other}, which is above it; imports only go down"
+    return None
+
+
+def test_every_import_goes_down() -> None:
+    """No file of the package breaks a rule of the house."""
+    faults = [
+        fault
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for fault in broken_rules(path.read_text(encoding="utf-8"), path.relative_to(PACKAGE).as_posix())
+    ]
+    assert not faults, "\n" + "\n".join(faults)
+
+
+def test_every_room_there_is_has_its_place() -> None:
+    """The table names every module and folder of the package, so that none escapes the rules."""
+    there = {p.stem for p in PACKAGE.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()}
+    assert there - {"__init__"} <= set(ROOMS)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "fault"),
+    [
+        ("names.py", "import graphflow.qos", "names imports qos, which is above it; imports only go down"),
+        ("wire/cdr.py", "from graphflow.msgs import registry", "wire imports msgs, which is above it"),
+        ("wire/cdr.py", "from graphflow import msgs", "wire imports msgs, which is above it"),
+        ("wire/cdr.py", "from ..msgs.base import Message", "wire imports msgs, which is above it"),
+        ("wire/__init__.py", "from ..msgs import base", "wire imports msgs, which is above it"),
+        ("graph/check.py", "def f():\n    from graphflow.runtime.node import Node", "graph imports runtime"),
+        ("graph/check.py", "import_module('graphflow.runtime.node')", "graph imports runtime"),
+        ("graph/check.py", "importlib.import_module('zenoh')", "graph imports zenoh, which only transport may know"),
+        ("runtime/node.py", "import zenoh.handlers", "runtime imports zenoh, which only transport may know"),
+        ("cli/main.py", "from textual import app", "cli imports textual, which only tui may know"),
+        ("tui/app.py", "import click", "tui imports click, which only cli may know"),
+        ("tui/app.py", "from graphflow.cli import output", "the door tui imports the door cli"),
+        ("cli/main.py", "from graphflow.tui import app", "the door cli imports the door tui"),
+        ("runtime/node.py", "from graphflow import Node", "runtime imports graphflow.Node, the facade above it"),
+        ("runtime/node.py", "import graphflow", "runtime imports graphflow, the facade above it"),
+        ("runtime/node.py", "print('hello')", "only cli/output.py prints"),
+        ("extras/new.py", "", "'extras' is no room of the house"),
+        *(
+            (f"machines/{i}.py", f"def f():\n    import {name}", f"machines is in the cellar and imports {name}")
+            for i, name in enumerate(NOT_IN_CELLAR)
+        ),
+    ],
+)
+def test_a_planted_violation_is_seen(file: str, text: str, fault: str) -> None:
+    """The check itself sees each kind of violation, and names file, line and rule."""
+    line = text.count("\n") + 1
+    (found,) = broken_rules(text, file)
+    assert found.startswith(f"{file}:{line}: {fault}")
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("cli/output.py", "print('hello')"),
+        ("cli/main.py", "from graphflow import __version__\nimport click\nfrom graphflow.runtime.node import Node"),
+        ("transport/zenoh.py", "import zenoh, asyncio\nfrom graphflow.wire import cdr"),
+        ("wire/cdr.py", "import struct\nfrom .schema import Field\nfrom graphflow.names import split"),
+        ("supervisor/launch.py", "import graphflow.supervisor.supervisor\nimport time"),
+    ],
+)
+def test_what_is_allowed_passes(file: str, text: str) -> None:
+    """Imports of the same room, of rooms below, and of one's own library are no violation."""
+    assert broken_rules(text, file) == []

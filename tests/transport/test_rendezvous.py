@@ -1,0 +1,111 @@
+"""What answers at the rendezvous's port is joined, or refused by name."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+import zenoh
+
+from graphflow.errors import SupervisorError, TransportError
+from graphflow.transport import rendezvous
+from graphflow.transport.client import Client
+from graphflow.transport.config import close_session
+
+pytestmark = pytest.mark.real
+
+
+@pytest.fixture
+def port(monkeypatch: pytest.MonkeyPatch) -> int:
+    """A rendezvous port of the test's own."""
+    endpoint = rendezvous.free_endpoint()
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", endpoint)
+    return rendezvous.address(endpoint)[1]
+
+
+@pytest.fixture
+def foreign_router(port: int) -> Iterator[zenoh.Session]:
+    """A Zenoh router that is not graphflow's, as rmw_zenohd is."""
+    config = {
+        "mode": "router",
+        "listen": {"endpoints": [f"tcp/127.0.0.1:{port}"]},
+        "scouting": {"delay": 0, "multicast": {"enabled": False}},
+    }
+    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))) as session:
+        yield session
+
+
+def test_a_free_port_is_vacant_and_can_be_hosted(port: int) -> None:
+    """Nobody is there; then this process is, and others join it."""
+    assert rendezvous.join() is None
+    router = rendezvous.establish()
+    assert router is not None
+    try:
+        assert rendezvous.host() is None
+        assert rendezvous.establish() is None
+        session = rendezvous.join()
+        assert session is not None
+        (reply,) = session.liveliness().get(f"{rendezvous.TOKENS}/**", timeout=5.0)
+        assert reply.ok is not None
+        assert str(reply.ok.key_expr).split("/")[3:] == [str(os.getuid()), str(os.getpid())]
+        close_session(session)
+    finally:
+        router.close()
+
+
+def test_a_zenoh_router_that_is_there_is_joined(foreign_router: zenoh.Session) -> None:
+    """rmw_zenohd serves as rendezvous."""
+    assert rendezvous.establish() is None
+
+
+def test_another_users_rendezvous_is_refused_by_name(foreign_router: zenoh.Session) -> None:
+    """Two users of one machine would otherwise drive each other's robots."""
+    zid = foreign_router.info.zid()
+    stranger = os.getuid() + 1
+    with foreign_router.liveliness().declare_token(f"{rendezvous.TOKENS}/{zid}/{stranger}/4242"):
+        with pytest.raises(TransportError, match=rf"belongs to user .*{stranger}.*process 4242.*--private"):
+            rendezvous.establish()
+        with pytest.raises(TransportError, match="belongs to user"):
+            Client()
+
+
+@pytest.mark.parametrize("greeting", [b"", b"SSH-2.0-OpenSSH_9.2\r\n"])
+def test_a_listener_that_is_no_zenoh_is_named(port: int, greeting: bytes) -> None:
+    """Whether it says nothing or something else, its process is named, and what to do."""
+    with socket.create_server(("127.0.0.1", port)) as server:
+        connections = []
+
+        def serve() -> None:
+            while True:
+                try:
+                    connection, _ = server.accept()
+                except OSError:
+                    return
+                connection.sendall(greeting)
+                connections.append(connection)
+
+        threading.Thread(target=serve, daemon=True).start()
+        with pytest.raises(TransportError, match=rf"process {os.getpid()} .*did not answer as Zenoh.*OTHER_PORT"):
+            rendezvous.establish()
+        server.shutdown(socket.SHUT_RDWR)
+        for connection in connections:
+            connection.close()
+
+
+@pytest.mark.parametrize("text", ["udp/127.0.0.1:7447", "tcp/127.0.0.1", "7447", "tcp/127.0.0.1:many"])
+def test_an_endpoint_that_is_none_is_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The text names the variable and shows the form."""
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", text)
+    with pytest.raises(TransportError, match=r"GRAPHFLOW_RENDEZVOUS=.*tcp/127\.0\.0\.1:7447"):
+        rendezvous.join()
+
+
+def test_a_command_says_when_nothing_is_running(port: int) -> None:
+    """And ends with code 3."""
+    with pytest.raises(SupervisorError, match="nothing is running") as caught:
+        Client()
+    assert caught.value.exit_code == 3

@@ -1,0 +1,88 @@
+"""Three terminals in any order find each other, whoever of them dies."""
+
+from __future__ import annotations
+
+import itertools
+import signal
+
+import psutil
+import pytest
+
+from graphflow.transport.rendezvous import address
+from tests.conftest import Machine, Program
+
+pytestmark = pytest.mark.real
+
+TALKER = ("nodes.talker:Talker", "-p", "rate:=20.0")
+LISTENER = ("nodes.listener:Listener",)
+CIRCLE = ("nodes.draw_circle:DrawCircle",)
+
+
+def nodes(machine: Machine) -> list[str]:
+    return machine.run("node", "list", code=None).split()
+
+
+def host(machine: Machine, programs: list[Program]) -> Program | None:
+    """Which of the programs is the rendezvous."""
+    _, port = address(machine.endpoint)
+    for program in programs:
+        if program.process.poll() is None:
+            for connection in psutil.Process(program.pid).net_connections("tcp"):
+                if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port:
+                    return program
+    return None
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations([TALKER, LISTENER, CIRCLE])))
+def test_terminals_in_any_order_see_each_other(machine: Machine, order: tuple[tuple[str, ...], ...]) -> None:
+    """No router, no multicast, no waiting: the listener hears the talker and a look shows all three."""
+    programs = {words: machine.start("run", *words) for words in order}
+
+    programs[LISTENER].wait_for("I heard")
+    machine.until(lambda: nodes(machine) == ["/draw_circle", "/listener", "/talker"], "all three are seen")
+
+
+def test_the_others_go_on_when_the_rendezvous_is_killed(machine: Machine) -> None:
+    """They keep talking, one of them takes over, and a newcomer finds everyone; twice in a row."""
+    programs = [machine.start("run", *words) for words in (CIRCLE, TALKER, LISTENER)]
+    programs[2].wait_for("I heard")
+    machine.until(lambda: host(machine, programs) is not None, "there is a rendezvous")
+
+    for name in ("first_newcomer", "second_newcomer"):
+        victim = host(machine, [*programs[:1], *programs[3:]]) or programs[0]
+        victim.process.kill()
+        victim.wait()
+        programs[2].text = ""
+        programs[2].wait_for("I heard")
+        machine.until(lambda: host(machine, programs) is not None, "somebody took over")
+        newcomer = machine.start("run", *LISTENER, "-r", f"__node:={name}")
+        programs.append(newcomer)
+        newcomer.wait_for("I heard")
+        expected = {"/talker", "/listener", f"/{name}"}
+        machine.until(lambda expected=expected: expected <= set(nodes(machine)), "all are seen")  # type: ignore[misc]
+
+
+def test_a_node_that_is_killed_disappears_at_once(machine: Machine) -> None:
+    """Its tokens go with its connection; no list shows a ghost."""
+    talker, listener = machine.start("run", *TALKER), machine.start("run", *LISTENER)
+    listener.wait_for("I heard")
+
+    talker.process.kill()
+    talker.wait()
+
+    machine.until(lambda: nodes(machine) == ["/listener"], "the talker is gone")
+
+
+def test_a_stopped_rendezvous_is_named(machine: Machine) -> None:
+    """Commands and nodes say which process does not answer, and how to continue it."""
+    talker = machine.start("run", *TALKER)
+    talker.wait_for("Publishing")
+    talker.process.send_signal(signal.SIGSTOP)
+    try:
+        for words in (("node", "list"), ("run", *LISTENER), ("up", "talker_listener")):
+            text = machine.run(*words, code=1)
+            assert f"process {talker.pid} (python" in text
+            assert f"kill -CONT {talker.pid}" in text
+    finally:
+        talker.process.send_signal(signal.SIGCONT)
+    machine.until(lambda: nodes(machine) == ["/talker"], "it answers again")

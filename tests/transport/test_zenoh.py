@@ -1,0 +1,135 @@
+"""What a running talker puts on the network, read by raw Zenoh beside it."""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from collections.abc import Iterator
+
+import pytest
+import zenoh
+
+from graphflow.wire.gid import gid
+from tests.conftest import LIMIT, Machine
+
+pytestmark = pytest.mark.real
+
+GET_PARAMETERS = "RIHS01_bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc"
+STRING = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+
+
+@pytest.fixture
+def raw(machine: Machine) -> Iterator[zenoh.Session]:
+    """A session that knows nothing of graphflow, at the machine's rendezvous."""
+    talker = machine.start("run", "nodes.talker:Talker", "-p", "rate:=50.0", "-r", "__ns:=/robot1")
+    talker.wait_for("Publishing")
+    config = {"mode": "client", "connect": {"endpoints": [machine.endpoint]}, "scouting": {"delay": 0}}
+    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))) as session:
+        yield session
+    assert talker.end() == 0
+
+
+def tokens(session: zenoh.Session, domain: int) -> list[str]:
+    found = session.liveliness().get(f"@ros2_lv/{domain}/**", timeout=5.0)
+    return sorted(str(r.ok.key_expr) for r in found if r.ok is not None)
+
+
+def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Session, machine: Machine) -> None:
+    """Tokens, data key, payload, attachment and GID, byte for byte."""
+    samples: list[zenoh.Sample] = []
+    key = f"{machine.domain}/robot1/chatter/std_msgs::msg::dds_::String_/{STRING}"
+    with raw.declare_subscriber(f"{machine.domain}/**", samples.append):
+        deadline = time.monotonic() + LIMIT
+        while len([s for s in samples if "chatter" in str(s.key_expr)]) < 3:
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+    said = [s for s in samples if "chatter" in str(s.key_expr)]
+
+    assert {str(s.key_expr) for s in said} == {key}
+    publisher = next(t for t in tokens(raw, machine.domain) if "/MP/" in t and "chatter" in t)
+    head, _, tail = publisher.partition("/MP/")
+    assert tail == f"%/%robot1/talker/%robot1%chatter/std_msgs::msg::dds_::String_/{STRING}/::,10:,:,:,,"
+    space, domain, zid, nid, eid = head.split("/")
+    assert (space, domain) == ("@ros2_lv", str(machine.domain))
+    assert zid == zid.lower()
+    assert not zid.startswith("0")
+    assert f"@ros2_lv/{domain}/{zid}/{nid}/{nid}/NN/%/%robot1/talker" in tokens(raw, machine.domain)
+    assert eid != nid
+
+    sequences = []
+    for sample in said:
+        payload = sample.payload.to_bytes()
+        assert payload[:4] == bytes.fromhex("00010000")
+        (length,) = struct.unpack_from("<I", payload, 4)
+        assert payload[8 : 8 + length].startswith(b"Hello World: ")
+        assert payload[8 + length - 1] == 0
+        assert str(sample.encoding) == "zenoh/bytes"
+        assert sample.attachment is not None
+        sequence, stamp, size, sender = struct.unpack("<qqB16s", sample.attachment.to_bytes())
+        assert size == 16
+        assert sender == gid(publisher)
+        assert abs(stamp - time.time_ns()) < 60e9
+        sequences.append(sequence)
+    assert sequences == list(range(sequences[0], sequences[0] + len(sequences)))
+
+
+def test_a_node_has_the_endpoints_every_ros_node_has(raw: zenoh.Session, machine: Machine) -> None:
+    """/rosout latched for ten seconds, and the six parameter services, with ROS 2's profiles and hashes."""
+    found = [t.split("/", 9) for t in tokens(raw, machine.domain)]
+    rest = {t[9].split("/")[0]: (t[5], t[9].split("/", 1)[1]) for t in found if len(t) > 9}
+
+    log = "rcl_interfaces::msg::dds_::Log_/RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac"
+    assert rest["%rosout"] == ("MP", f"{log}/:1:,1000:,:10,0:,,")
+    services = {name: kind for name, (kind, _) in rest.items() if kind == "SS"}
+    assert set(services) == {
+        f"%robot1%talker%{name}"
+        for name in (
+            "describe_parameters",
+            "get_parameter_types",
+            "get_parameters",
+            "list_parameters",
+            "set_parameters",
+            "set_parameters_atomically",
+        )
+    }
+    get = f"rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"
+    assert rest["%robot1%talker%get_parameters"] == ("SS", f"{get}/::,1000:,:,:,,")
+
+
+def test_a_foreign_client_is_answered_as_ros_2_answers(raw: zenoh.Session, machine: Machine) -> None:
+    """A query with rmw_zenoh's settings gets one reply: CDR, and its own sequence number and GID beside it."""
+    key = f"{machine.domain}/robot1/talker/get_parameters/rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"
+    mine = bytes(range(16))
+    querier = raw.declare_querier(
+        key, target=zenoh.QueryTarget.ALL_COMPLETE, consolidation=zenoh.ConsolidationMode.NONE, timeout=5.0
+    )
+    request = bytes.fromhex("00010000 01000000 05000000 72617465 00")
+    replies = list(querier.get(payload=request, attachment=struct.pack("<qqB16s", 41, 1, 16, mine)))
+
+    (reply,) = replies
+    assert reply.ok is not None
+    assert str(reply.ok.key_expr) == key
+    assert reply.ok.attachment is not None
+    sequence, stamp, size, client = struct.unpack("<qqB16s", reply.ok.attachment.to_bytes())
+    assert (sequence, size, client) == (41, 16, mine)
+    assert stamp > 1
+    payload = reply.ok.payload.to_bytes()
+    assert payload[4:9] == bytes.fromhex("01000000 03")
+    assert struct.pack("<d", 50.0) in payload
+
+
+def test_a_malformed_request_gets_an_error_and_the_service_goes_on(raw: zenoh.Session, machine: Machine) -> None:
+    """Whoever sends rubbish is told so; nothing else changes."""
+    key = f"{machine.domain}/robot1/talker/get_parameters/rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"
+    beside = struct.pack("<qqB16s", 1, 1, 16, bytes(16))
+    for payload, attachment in (
+        (b"\0\1", beside),
+        (b"", beside),
+        (bytes.fromhex("00010000ffffffff"), beside),
+        (b"x", b""),
+    ):
+        (reply,) = raw.get(key, payload=payload, attachment=attachment, timeout=5.0)
+        assert reply.err is not None
+        assert "DecodeError" in reply.err.payload.to_string()
+    assert "50.0" in machine.run("param", "get", "/robot1/talker", "rate")
