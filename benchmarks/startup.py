@@ -43,7 +43,9 @@ while True:
 def first_message() -> float:
     """Milliseconds from the command until the listener has heard something, by the time in its log line."""
     began = time.time()
-    up = subprocess.Popen([*GRAPHFLOW, "up", str(GRAPH), "rate:=1000"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    up = subprocess.Popen(
+        [*GRAPHFLOW, "up", str(GRAPH), "rate:=1000"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
     assert up.stdout is not None
     for line in up.stdout:
         heard = re.search(rb"\[INFO\] \[(\d+\.\d+)\] \[listener\]", line)

@@ -141,6 +141,23 @@ class RemoteError(CallError):
         self.type = type
         self.message = message
 
+    def to_payload(self) -> bytes:
+        """The error as a reply carries it: JSON with `type` and `message`."""
+        import json
+
+        return json.dumps({"type": self.type, "message": self.message}).encode()
+
+    @classmethod
+    def from_payload(cls, payload: bytes) -> RemoteError:
+        """Read an error reply; one of another form becomes the message."""
+        import json
+
+        try:
+            data = json.loads(payload)
+            return cls(str(data["type"]), str(data["message"]))
+        except (ValueError, KeyError, TypeError):
+            return cls("Error", payload[:200].decode(errors="replace"))
+
 
 class DeadlockError(CallError):
     """The call waits, directly or through others, for the caller itself."""

@@ -7,7 +7,6 @@ Source: ROS 2 design articles "Topic and Service name mapping" and "Static remap
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -26,6 +25,8 @@ MAX_LENGTH = 255
 
 def nearest(word: str, choices: Iterable[str]) -> str | None:
     """The choice most like `word`, or None when none is like it."""
+    import difflib  # only when somebody has erred
+
     found = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
     return found[0] if found else None
 

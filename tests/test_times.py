@@ -61,7 +61,7 @@ def test_the_span_between_two_times() -> None:
     assert Time(5) - Duration(7) == Time(-2)
     assert Duration(5) - Duration(7) == -Duration(2)
     assert Duration(5) + Duration(7) == Duration(12)
-    assert type(Time(7).since(Time(5))) is Duration
+    assert type(Time(7) - Time(5)) is Duration
 
 
 def test_times_are_ordered() -> None:

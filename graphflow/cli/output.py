@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterable
 from typing import Any
@@ -22,6 +21,8 @@ def lines(texts: Iterable[str]) -> None:
 
 def as_json(value: Any) -> None:
     """What was asked for, for programs."""
+    import json
+
     print(json.dumps(value, default=_plain), flush=True)
 
 

@@ -36,8 +36,18 @@ def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = 
 
 
 class _Problems(list[Problem]):
+    def __init__(self) -> None:
+        super().__init__()
+        self._unknown: set[Place] = set()
+
     def add(self, place: Place, message: str) -> None:
-        self.append(Problem(place, message))
+        if place not in self._unknown:
+            self.append(Problem(place, message))
+
+    def add_unknown(self, place: Place, message: str) -> None:
+        """Add a problem that leaves the value unknown: more complaints about it would only confuse."""
+        self.add(place, message)
+        self._unknown.add(place)
 
     def raise_any(self) -> None:
         if self:
@@ -123,7 +133,7 @@ def _substituted(src: Source, substitutions: Substitutions, problems: _Problems)
         try:
             return substitutions.apply(value)
         except SubstitutionError as error:
-            problems.add(place, str(error))
+            problems.add_unknown(place, str(error))
             return value
 
     def walk(value: Any, old: source.Path, new: source.Path) -> Any:
@@ -179,11 +189,12 @@ def _validated(src: Source, problems: _Problems) -> GraphFile | None:
 
 
 def _written_path(src: Source, fault: Any) -> source.Path:
-    """Where in the file a fault is, without the last parts that name an alternative of a union."""
-    path: source.Path = tuple(fault["loc"])
-    while path and path not in src.places and path not in src.keys and fault["type"] != "missing":
-        path = path[:-1]
-    return path
+    """Where in the file a fault is, without the parts that name an alternative of a union."""
+    path: source.Path = ()
+    for part in fault["loc"]:
+        if (*path, part) in src.places or (*path, part) in src.keys:
+            path = (*path, part)
+    return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
 
 
 def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
@@ -312,9 +323,7 @@ def _params(src: Source, params: Mapping[str, Any], path: source.Path, problems:
             if isinstance(value, dict):
                 walk(f"{prefix}{key}.", value, (*at, key))
             elif value is None:
-                problems.add(
-                    src.key_place((*at, key)), f"parameter {prefix + key!r} has no value; write '' for no text"
-                )
+                problems.add(src.key_place((*at, key)), f"parameter {prefix + key!r} has no value; an empty text is ''")
             elif prefix + key in found:
                 first = found[prefix + key].place.line
                 problems.add(place, f"parameter {prefix + key!r} is given twice, first in line {first}; remove one")
@@ -394,7 +403,7 @@ def _order(
             if name in known:
                 names.append(name)
             elif written not in reported:
-                help_ = did_you_mean(written, known)
+                help_ = did_you_mean(written, known | reported)
                 problems.add(src.place((*path, "after", i)), f"after: there is no node or step {written!r}{help_}")
         return tuple(names)
 

@@ -120,7 +120,11 @@ def read(text: str, file: str) -> Source:
         return _build(text, file)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
-        place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
+        lines = text.splitlines()
+        if mark and mark.line >= len(lines):  # the end of the text: point behind its last character
+            place = Place(file, len(lines), len(lines[-1]) + 1) if lines else Place(file, 1, 1)
+        else:
+            place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
         raise _error(place, f"not valid YAML: {error.problem}{_hint(text, error)}") from None
     except yaml.YAMLError as error:
         raise _error(Place(file), f"not valid YAML: {' '.join(str(error).split())}") from None

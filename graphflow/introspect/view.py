@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterable
 from types import TracebackType
@@ -119,8 +118,17 @@ class View:
         if reply is None:
             raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
         if reply.is_error:
-            raise _remote(reply.payload)
+            raise RemoteError.from_payload(reply.payload)
         return registry.codec(service.response.name).decode(reply.payload)
+
+    def owner(self, name: str) -> str:
+        """Whose the node `name` is: the process it lives in, as far as its tokens tell."""
+        zids = {e.zid for e in self.cache.owners(name)}
+        for token in self._client.tokens(f"@graphflow/{self.domain}/proc/**"):
+            parts = token.split("/")
+            if len(parts) == 6 and parts[3] in zids:
+                return f"process {parts[5]}{_command_of(int(parts[5]))}"
+        return f"session {', '.join(sorted(zids))}, not of graphflow"
 
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:
         for server in self.cache.endpoints(Kind.SERVICE, name):
@@ -131,16 +139,11 @@ class View:
         return f"{name}: the server went away before it answered"
 
 
-def _remote(payload: bytes) -> RemoteError:
-    try:
-        data = json.loads(payload)
-        return RemoteError(str(data["type"]), str(data["message"]))
-    except (ValueError, KeyError, TypeError):
-        return RemoteError("Error", payload[:200].decode(errors="replace"))
-
-
-def refuse_taken_names(names: Iterable[str], domain: int) -> None:
+def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename the node in the graph file") -> None:
     """Check that no node of the domain has one of `names`.
+
+    Args:
+        hint: How to give a node another name.
 
     Raises:
         SupervisorError: Some have; the text says whose they are.
@@ -154,24 +157,15 @@ def refuse_taken_names(names: Iterable[str], domain: int) -> None:
     with view:
         taken = sorted(set(names) & set(view.cache.nodes()))
         if taken:
-            owners = "; ".join(f"{name} ({_owner(view, name)})" for name in taken)
+            owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken)
             raise SupervisorError(
-                f"already in domain {domain}: {owners}. Stop what runs there, rename the node, or take another domain "
-                "with --domain N"
+                f"already in domain {domain}: {owners}. Stop what runs there, {hint}, or take another domain with "
+                "--domain N"
             )
 
 
-def _owner(view: View, name: str) -> str:
-    """Whose a node is: the graphflow process it lives in, as far as its tokens tell."""
-    zids = {e.zid for e in view.cache.owners(name)}
-    for token in view._client.tokens(f"@graphflow/{view.domain}/proc/**"):
-        parts = token.split("/")
-        if len(parts) == 6 and parts[3] in zids:
-            return f"process {parts[5]}{_graph_of(int(parts[5]))}"
-    return f"session {', '.join(sorted(zids))}, not of graphflow"
-
-
-def _graph_of(pid: int) -> str:
+def _command_of(pid: int) -> str:
+    """What a process was started as, where the system tells."""
     from pathlib import Path
 
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import AsyncIterator, Callable
@@ -328,7 +327,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 self.node.log.error("%s: %s", self._label, error, exc_info=error)
             kind = "Cancelled" if isinstance(error, CancelledError) else type(error).__name__
             text = "the server is stopping" if isinstance(error, CancelledError) else str(error)
-            request.reply_error(json.dumps({"type": kind, "message": text}).encode())
+            request.reply_error(RemoteError(kind, text).to_payload())
             return
         asked = attachment.unpack(request.attachment)
         now = self.node.clock.time_ns()
@@ -433,7 +432,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if answer is None:
                 future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
             elif answer.is_error:
-                future.set_exception(_remote_error(answer.payload))
+                future.set_exception(RemoteError.from_payload(answer.payload))
             elif _sequence_of(answer) == sequence:
                 future.set_result(answer)
 
@@ -459,14 +458,6 @@ def _sequence_of(answer: Answer) -> int | None:
         return attachment.unpack(answer.attachment or b"").sequence
     except DecodeError:
         return None
-
-
-def _remote_error(payload: bytes) -> Exception:
-    try:
-        data = json.loads(payload)
-        return RemoteError(str(data["type"]), str(data["message"]))
-    except (ValueError, KeyError, TypeError):
-        return RemoteError("Error", payload[:200].decode(errors="replace"))
 
 
 class TimerInfo(NamedTuple):

@@ -88,7 +88,9 @@ class Node:
         self.names = Resolver(name or declare.default_name(type(self)), namespace, rules)
         self.id = 0
         self.failure: BaseException | None = None
-        """The error that ended the node, until somebody has waited for it."""
+        """The error that ended the node."""
+        self.failure_taken = False
+        """Whether somebody has waited for that error."""
         self.log = node_logger(self.full_name)
         """The node's logger; what it says goes to the console and to /rosout."""
         self.parameters = Parameters({**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}})
@@ -286,7 +288,7 @@ class Node:
         try:
             await asyncio.shield(self._ended)
         finally:
-            self.failure = None
+            self.failure_taken = True
 
     async def stop(self) -> None:
         """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything."""

@@ -10,6 +10,8 @@ import sys
 import threading
 from typing import TYPE_CHECKING
 
+from graphflow.errors import GraphflowError
+from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
 from graphflow.runtime.endpoints import TopicPublisher
 from graphflow.times import Time
@@ -37,6 +39,18 @@ class ConsoleFormatter(logging.Formatter):
         if record.exc_info and record.exc_info[0] is not None:
             line += "\n" + self.formatException(record.exc_info)
         return line
+
+
+def log_level(word: str) -> int:
+    """A logging level by ROS 2's word: debug, info, warn, error or fatal.
+
+    Raises:
+        GraphflowError: It is none of them.
+    """
+    words = {"debug": 10, "info": 20, "warn": 30, "warning": 30, "error": 40, "fatal": 50}
+    if word.lower() not in words:
+        raise GraphflowError(f"{word!r} is no log level{did_you_mean(word.lower(), words)}")
+    return words[word.lower()]
 
 
 def setup_console(level: int = logging.INFO) -> None:

@@ -13,7 +13,7 @@ from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
-from graphflow.runtime.rosout import setup_console
+from graphflow.runtime.rosout import log_level, setup_console
 
 
 @asynccontextmanager
@@ -104,14 +104,28 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     setup_console()
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
-        made = [n if isinstance(n, Node) else make(n, ros) for n in nodes]
+        setup_console(log_level(ros.log_level))
+    except GraphflowError as error:
+        print_error(error)
+        raise SystemExit(2) from None
+    made: list[Node] = []
+    try:
+        made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
         asyncio.run(_run(made))
     except KeyboardInterrupt:
         return
-    except GraphflowError as error:
-        raise SystemExit(f"error: {error}") from None
-    except Exception:
+    except Exception as error:
+        if any(node.failure is error for node in made):  # the node has logged it
+            raise SystemExit(1) from None
+        if not isinstance(error, GraphflowError):
+            raise
+        print_error(error)
         raise SystemExit(1) from None
+
+
+def print_error(error: GraphflowError) -> None:
+    """Tell the person at the terminal."""
+    sys.stderr.write(f"error: {error}\n")
 
 
 def make(cls: type[Node], ros: RosArgs) -> Node:

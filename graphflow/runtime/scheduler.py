@@ -29,6 +29,7 @@ class Activity:
 
     Args:
         finished: Called once with (result, error) when the coroutine has ended, its `finally` blocks included.
+        context: Its context variables, for itself alone; without one, a copy of the caller's.
     """
 
     __slots__ = (
@@ -50,12 +51,13 @@ class Activity:
         coroutine: Coroutine[Any, Any, Any],
         name: str,
         finished: Callable[[Any, BaseException | None], None],
+        context: Context | None = None,
     ) -> None:
         self.name = name
         self._loop = loop
         self._coroutine: Coroutine[Any, Any, Any] | None = coroutine
         self._finished = finished
-        self._context: Context = copy_context()
+        self._context: Context = copy_context() if context is None else context
         self._fut_waiter: Any = None
         self._must_cancel = False
         self._cancel_message: Any = None
@@ -95,6 +97,7 @@ class Activity:
             return
         _leave_task(loop, self)  # type: ignore[arg-type]
         self._end(result, failure)
+        error = failure = None  # their tracebacks know this frame: no circle for the garbage collector
 
     def _wait_for(self, awaited: Any) -> None:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
@@ -120,7 +123,9 @@ class Activity:
 
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
-        self._finished(result, error)
+        finished = self._finished
+        del self._finished  # it may know this activity: likewise
+        finished(result, error)
 
     def _cancelled(self) -> CancelledError:
         return CancelledError() if self._cancel_message is None else CancelledError(self._cancel_message)
@@ -181,11 +186,13 @@ class Runner:
     __slots__ = (
         "_active",
         "_closed",
+        "_context",
         "_finished",
         "_group",
         "_idle",
         "_invoke",
         "_loop",
+        "_scheduled",
         "_waking",
         "items",
         "name",
@@ -207,8 +214,11 @@ class Runner:
         """Runs begun since the start."""
         self._loop, self._group = loop, group
         self._invoke, self._finished = invoke, finished
+        # Every run begins with the variables of where the handler was made, never with those of an earlier run.
+        self._context = copy_context()
         self._active: set[Activity] = set()
         self._waking = False
+        self._scheduled = False
         self._closed = False
         self._idle: asyncio.Future[None] | None = None
 
@@ -217,20 +227,34 @@ class Runner:
         """Runs that have begun and not ended."""
         return len(self._active)
 
+    @property
+    def closed(self) -> bool:
+        """Whether `cancel` has been called."""
+        return self._closed
+
     def wake(self) -> None:
         """There may be something in the queue: run what the group allows."""
-        if self._waking or self._closed:
+        if self._waking or self._closed or self._scheduled:
             return
+        limit = self._group.limit
         self._waking = True
         try:
             for _ in range(BURST):
-                if not self.items or not self._group.admit(self):
+                # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
+                if not self.items or (limit is not None and len(self._active) >= limit):
+                    return
+                if not self._group.admit(self):
                     return
                 self._run()
         finally:
             self._waking = False
         if self.items:
-            self._loop.call_soon(self.wake)
+            self._scheduled = True
+            self._loop.call_soon(self._go_on)
+
+    def _go_on(self) -> None:
+        self._scheduled = False
+        self.wake()
 
     def _granted(self) -> None:
         """A slot was handed over."""
@@ -243,16 +267,19 @@ class Runner:
     def _run(self) -> None:
         item = self.items.popleft()
         self.runs += 1
+        context = self._context.copy()
         try:
-            result = self._invoke(item)
-        except Exception as error:
+            result = context.run(self._invoke, item)
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as error:
             self._ended(None, item, None, error)
             return
         if not iscoroutine(result):
             self._ended(None, item, result, None)
             return
         activity = Activity(
-            self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error)
+            self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error), context
         )
         activity.start()
         if not activity.done():
@@ -263,10 +290,12 @@ class Runner:
             self._active.discard(activity)
         try:
             self._finished(item, result, error)
-        finally:
-            self._release()
-            self._look_idle()
-            self.wake()
+        except Exception as failure:
+            message = f"{self.name}: the end of a run could not be reported"
+            self._loop.call_exception_handler({"message": message, "exception": failure})
+        self._release()
+        self._look_idle()
+        self.wake()
 
     def _release(self) -> None:
         successor = self._group.release()
@@ -277,7 +306,8 @@ class Runner:
         """Begin no more runs and cancel those under way; the future is done when they have ended."""
         self._closed = True
         self._group.withdraw(self)
-        self._idle = self._loop.create_future()
+        if self._idle is None:
+            self._idle = self._loop.create_future()
         for activity in list(self._active):
             activity.cancel()
         self._look_idle()

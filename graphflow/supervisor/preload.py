@@ -226,9 +226,9 @@ class _Preload:
 
 def answer_probe(request: dict[str, Any], write: int) -> None:
     """In the probing child: import the classes and write their Interfaces."""
-    from graphflow.supervisor.worker import interfaces
+    from graphflow.supervisor.worker import add_root, interfaces
 
-    sys.path.append(request["root"])
+    add_root(request["root"])
     null = os.open(os.devnull, os.O_RDWR)
     for fd in (0, 1, 2):  # what a module prints while it is imported is nobody's business
         os.dup2(null, fd)

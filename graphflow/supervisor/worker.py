@@ -25,6 +25,17 @@ EXIT_CONFIGURATION = 78
 """A node could not be made: starting it again would not help."""
 
 
+def add_root(root: str) -> None:
+    """Let modules of the project at `root` be imported.
+
+    Before the installed packages, so that a project's own `nodes` is never shadowed; after the standard library, so
+    that a file that happens to be called `queue.py` breaks nothing.
+    """
+    if root not in sys.path:
+        installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
+        sys.path.insert(next(installed, len(sys.path)), root)
+
+
 def import_class(class_path: str) -> type[Node]:
     """The node class at `package.module:Class`.
 
@@ -124,7 +135,7 @@ def main(job: dict[str, Any], status: int) -> None:
     setup_console()
     code = 0
     try:
-        sys.path.append(job["root"])
+        add_root(job["root"])
         nodes = [make_node(node_from_json(data)) for data in job["nodes"]]
     except Exception as error:
         _log_failure(error)

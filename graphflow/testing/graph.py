@@ -103,7 +103,7 @@ class Graph:
         for context in self._contexts:
             await context.close()
         for node in self.nodes:
-            if node.failure is not None:
+            if node.failure is not None and not node.failure_taken:
                 raise node.failure
 
     def _test_node(self) -> Node:

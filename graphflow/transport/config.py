@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import threading
 from functools import cache
@@ -20,6 +19,27 @@ CLOSE_LIMIT = 2.0
 QUERY_LIMIT_MS = 600_000
 """As rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
 
+_CONFIG = """{
+  mode: "%(mode)s",
+  connect: {
+    endpoints: [%(connect)s],
+    retry: { period_init_ms: 20, period_max_ms: 200, period_increase_factor: 2 },
+  },
+  listen: { endpoints: [%(listen)s] },
+  // Without a delay of 0 opening takes half a second, even with multicast off.
+  scouting: { delay: 0, multicast: { enabled: false }, gossip: { enabled: true } },
+  // Advanced publishers, which keep messages for late joiners, order them by time stamp.
+  timestamping: { enabled: true },
+  queries_default_timeout: %(query_limit)d,
+  adminspace: { enabled: false },
+  transport: {
+    unicast: { open_timeout: 500, accept_timeout: 5000 },
+    link: { tx: { lease: 10000 } },
+    // Shared memory for publications only: zenoh#2628 affects queries.
+    shared_memory: { transport_optimization: { messages: ["put"] } },
+  },
+}"""
+
 
 def rendezvous_endpoint() -> str:
     """Where processes of this machine find each other."""
@@ -29,28 +49,13 @@ def rendezvous_endpoint() -> str:
 def config(mode: str, *, connect: str | None = None, listen: str | None = None) -> zenoh.Config:
     """A session configuration. Multicast is off and nothing listens beyond `listen`."""
     return zenoh.Config.from_json5(
-        json.dumps(
-            {
-                "mode": mode,
-                "connect": {
-                    "endpoints": [connect] if connect else [],
-                    "retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 2},
-                },
-                "listen": {"endpoints": [listen] if listen else []},
-                # Without a delay of 0 opening takes half a second, even with multicast off.
-                "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": True}},
-                # Advanced publishers, which keep messages for late joiners, order them by time stamp.
-                "timestamping": {"enabled": True},
-                "queries_default_timeout": QUERY_LIMIT_MS,
-                "adminspace": {"enabled": False},
-                "transport": {
-                    "unicast": {"open_timeout": 500, "accept_timeout": 5000},
-                    "link": {"tx": {"lease": 10_000}},
-                    # Shared memory for publications only: zenoh#2628 affects queries.
-                    "shared_memory": {"transport_optimization": {"messages": ["put"]}},
-                },
-            }
-        )
+        _CONFIG
+        % {
+            "mode": mode,
+            "connect": f'"{connect}"' if connect else "",
+            "listen": f'"{listen}"' if listen else "",
+            "query_limit": QUERY_LIMIT_MS,
+        }
     )
 
 
@@ -78,3 +83,25 @@ def close_session(session: zenoh.Session) -> None:
     closer = threading.Thread(target=session.close, name="zenoh-close", daemon=True)
     closer.start()
     closer.join(CLOSE_LIMIT)
+
+
+_to_close: list[zenoh.Session] = []
+
+
+def close_at_exit(session: zenoh.Session) -> None:
+    """Close `session` when the main thread has ended, if nobody has by then.
+
+    Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
+    So a thread of our own waits for the main thread, which is over the moment the interpreter begins to end.
+    """
+    if not _to_close:
+        threading.Thread(target=_close_after_main, name="graphflow-exit").start()
+    _to_close.append(session)
+
+
+def _close_after_main() -> None:
+    threading.main_thread().join()
+    while _to_close:
+        session = _to_close.pop()
+        if not session.is_closed():
+            close_session(session)

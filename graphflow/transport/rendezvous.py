@@ -8,7 +8,6 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
-import socket
 
 import zenoh
 
@@ -46,16 +45,12 @@ def join() -> zenoh.Session | None:
         TransportError: What listens is no Zenoh, does not answer, or belongs to another user.
     """
     endpoint = rendezvous_endpoint()
-    host, port = address(endpoint)
-    try:
-        socket.create_connection((host, port), ANSWER_LIMIT).close()
-    except ConnectionRefusedError:
-        return None
-    except OSError as error:
-        raise TransportError(occupied(endpoint, f"cannot be reached ({error})")) from None
+    address(endpoint)
     try:
         session = open_session(config("client", connect=endpoint))
     except TransportError:
+        if not _is_listening(endpoint):
+            return None
         raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s")) from None
     try:
         _refuse_strangers(session, endpoint)
@@ -63,6 +58,18 @@ def join() -> zenoh.Session | None:
         close_session(session)
         raise
     return session
+
+
+def _is_listening(endpoint: str) -> bool:
+    import socket  # only when something is wrong: importing it takes a tenth of a listing's time
+
+    try:
+        socket.create_connection(address(endpoint), ANSWER_LIMIT).close()
+    except ConnectionRefusedError:
+        return False
+    except OSError as error:
+        raise TransportError(occupied(endpoint, f"cannot be reached ({error})")) from None
+    return True
 
 
 def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
@@ -135,6 +142,8 @@ def host() -> Router | None:
 
 def free_endpoint() -> str:
     """An endpoint on a loopback port that nobody uses now."""
+    import socket
+
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"

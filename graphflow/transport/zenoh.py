@@ -21,7 +21,14 @@ from zenoh.handlers import Callback
 
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.transport.base import Answer, Bell, Inbox, Payload
-from graphflow.transport.config import QUERY_LIMIT_MS, close_session, config, open_session, rendezvous_endpoint
+from graphflow.transport.config import (
+    QUERY_LIMIT_MS,
+    close_at_exit,
+    close_session,
+    config,
+    open_session,
+    rendezvous_endpoint,
+)
 
 logger = logging.getLogger("graphflow.transport")
 
@@ -135,6 +142,7 @@ class ZenohSession:
     def __init__(self, loop: AbstractEventLoop, mode: str = "peer") -> None:
         listen = "tcp/127.0.0.1:0" if mode == "peer" else None
         self.raw = open_session(config(mode, connect=rendezvous_endpoint(), listen=listen))
+        close_at_exit(self.raw)
         self.zid = str(self.raw.info.zid())
         self.bell = Bell(loop)
         self._loop = loop

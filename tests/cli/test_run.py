@@ -1,0 +1,111 @@
+"""`graphflow run`: one node in a terminal."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_node_cleanly(machine: Machine, number: int) -> None:
+    """No traceback, exit code 0."""
+    node = machine.start("run", "nodes.talker:Talker", "--ros-args", "-p", "rate:=20.0")
+    node.wait_for("Hello World: 3")
+    assert node.end(number) == 0
+    assert "Traceback" not in node.text
+    assert "Error" not in node.text
+
+
+def test_a_script_that_runs_a_node_ends_as_cleanly(machine: Machine) -> None:
+    """`graphflow.run(Talker)` in a file of one's own is the same."""
+    node = machine.start_python("-m", "nodes.talker", "--ros-args", "-p", "rate:=20.0", "-r", "chatter:=/news")
+    node.wait_for("Hello World: 3")
+    assert "/news" in machine.run("topic", "list")
+    assert node.end() == 0
+    assert "Traceback" not in node.text
+
+
+def test_remaps_and_namespace_reach_the_graph(machine: Machine) -> None:
+    """As in the course: __ns, __node, a remap, a parameter, with or without --ros-args."""
+    node = machine.start("run", "nodes.talker:Talker", "__ns:=/robot", "__node:=voice", "chatter:=said", "-p", "rate:=20.0")
+    node.wait_for("Publishing")
+    assert machine.run("node", "list").split() == ["/robot/voice"]
+    assert "/robot/said [std_msgs/msg/String]" in machine.run("topic", "list", "-t")
+    assert node.end() == 0
+
+
+def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
+    """Two nodes of one name would answer each other's parameter calls."""
+    node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
+    node.wait_for("Publishing")
+    text = machine.run("run", "nodes.talker:Talker", code=1)
+    assert f"process {node.pid}" in text
+    assert "-r __node:=NAME" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "expected"),
+    [
+        (["nodes.talker"], 2, "write MODULE:CLASS"),
+        (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
+        (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
+        (["nodes.talker:Talker", "-p", "rtae:=2.0"], 1, "did you mean 'rate'?"),
+        (["nodes.talker:Talker", "-p", "rate:=fast"], 1, "parameter 'rate' is of type double, 'fast' is not"),
+        (["nodes.talker:Talker", "-p", "rate:=-1.0"], 1, "out of range"),
+        (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
+        (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
+        (["nodes.talker:Talker", "--log-level", "loud"], 2, "is no log level"),
+    ],
+)
+def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], code: int, expected: str) -> None:
+    """One sentence that helps, and no traceback."""
+    text = machine.run("run", *words, code=code)
+    assert expected in text
+    assert "Traceback" not in text
+    assert text.count("\n") == 1
+
+
+def test_an_error_of_the_users_own_code_shows_its_traceback(machine: Machine, tmp_path: Path) -> None:
+    """Whatever the user's code raises reaches the user."""
+    (tmp_path / "mine.py").write_text(
+        "from graphflow import Node\n\n\nclass Mine(Node):\n"
+        "    def __init__(self, name=None, **options):\n"
+        "        super().__init__(name, **options)\n"
+        "        raise LookupError('no such camera')\n"
+    )
+    text = machine.run("run", "mine:Mine", cwd=tmp_path, code=1)
+    assert "LookupError: no such camera" in text
+    assert "mine.py" in text
+
+
+def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> None:
+    """Outside of any project the nodes that come with graphflow are found, which is said."""
+    node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0", cwd=tmp_path)
+    node.wait_for("Publishing")
+    assert "comes with graphflow" in node.text
+    assert node.end() == 0
+
+
+def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) -> None:
+    """An uncaught exception ends a program that has subscribed: Zenoh's threads do not keep it alive."""
+    program = machine.start_python(
+        "-c",
+        "import asyncio\n"
+        "from graphflow import Context, Node\n"
+        "from graphflow.msgs.std_msgs.msg import String\n"
+        "async def main():\n"
+        "    context = await Context.open()\n"
+        "    node = Node('careless')\n"
+        "    node.create_subscription(String, 'x', print)\n"
+        "    await node.start(context)\n"
+        "    raise SystemExit(3)\n"
+        "asyncio.run(main())\n",
+    )
+    assert program.wait() == 3
+

@@ -1,0 +1,120 @@
+"""The grammar of a graph file: what is required, what it is by default, what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from graphflow.graph.model import TOP_KEYS, Arg, GraphFile, NodeSpec, StepSpec, keys_of
+
+
+def test_the_smallest_file() -> None:
+    """Nodes with their classes are all a file needs."""
+    file = GraphFile.model_validate({"nodes": {"a": {"class": "nodes.talker:Talker"}}})
+    assert file.nodes["a"] == NodeSpec.model_validate({"class": "nodes.talker:Talker"})
+    node = file.nodes["a"]
+    assert (node.namespace, node.params, node.remap, node.process, node.env, node.after) == ("", {}, {}, "", {}, [])
+    assert (file.name, file.domain, file.args, file.steps) == (None, None, {}, {})
+
+
+def test_keys_are_those_written_in_files() -> None:
+    """`class` is a key; Python's name for it is not."""
+    assert keys_of(NodeSpec) == ["class", "namespace", "params", "remap", "process", "env", "after"]
+    assert keys_of(StepSpec) == ["call", "type", "request", "after", "timeout"]
+    assert keys_of(Arg) == ["default", "doc", "unit", "choices"]
+    assert TOP_KEYS == ("name", "domain", "args", "nodes", "steps")
+    with pytest.raises(ValidationError):
+        NodeSpec.model_validate({"class_": "a:B"})
+
+
+@pytest.mark.parametrize("path", ["nodes.talker:Talker", "talker:T", "_a.b2.c:_D"])
+def test_class_paths(path: str) -> None:
+    """A class is named by module and name."""
+    assert NodeSpec.model_validate({"class": path}).class_ == path
+
+
+@pytest.mark.parametrize(
+    "path", ["Talker", "nodes.talker.Talker", "nodes/talker.py:Talker", "a:", ":B", "a:B\n", "a:B.C", ""]
+)
+def test_wrong_class_paths(path: str) -> None:
+    """Anything else shows how to write one."""
+    with pytest.raises(
+        ValidationError, match=r"is no class; write package\.module:Class, for example nodes\.talker:Talker"
+    ):
+        NodeSpec.model_validate({"class": path})
+
+
+@pytest.mark.parametrize("name", ["turtlesim/srv/Spawn", "std_srvs/Trigger"])
+def test_service_types(name: str) -> None:
+    """A step's type has ROS's long or short form."""
+    assert StepSpec.model_validate({"call": "/x", "type": name}).type == name
+
+
+@pytest.mark.parametrize("name", ["Spawn", "turtlesim/msg/Pose", "turtlesim.srv.Spawn", "a/srv/B\n", "A/srv/B", "a/b/"])
+def test_wrong_service_types(name: str) -> None:
+    """Anything else shows how to write one."""
+    with pytest.raises(ValidationError, match="is no service type; write package/srv/Name"):
+        StepSpec.model_validate({"call": "/x", "type": name})
+
+
+@pytest.mark.parametrize("name", ["a", "my-graph_2", "v1.2", "2nd"])
+def test_graph_names(name: str) -> None:
+    """A graph's name is a word, since folders are called by it."""
+    assert GraphFile.model_validate({"name": name, "nodes": {}}).name == name
+
+
+@pytest.mark.parametrize("name", ["", "../../etc", "a/b", "/a", ".hidden", "..", "a b", "a\n"])
+def test_graph_names_stay_in_their_folder(name: str) -> None:
+    """No name leads out of the folder of running graphs."""
+    with pytest.raises(ValidationError, match=r"is no name for a graph; use letters, digits, _, - and \."):
+        GraphFile.model_validate({"name": name, "nodes": {}})
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        ({}, "missing"),
+        ({"nodes": {}, "node": {}}, "extra_forbidden"),
+        ({"nodes": {}, "domain": -1}, "greater_than_equal"),
+        ({"nodes": {}, "domain": 1.0}, "int_type"),
+        ({"nodes": {}, "domain": "1"}, "int_type"),
+        ({"nodes": {}, "domain": True}, "int_type"),
+        ({"nodes": {}, "name": 3}, "string_type"),
+        ({"nodes": []}, "dict_type"),
+        ({"nodes": {"a": "x"}}, "model_type"),
+    ],
+)
+def test_nothing_is_converted(data: dict[str, Any], kind: str) -> None:
+    """Types are exact: a text is no number, a bool is no number, an unknown key is none of ours."""
+    with pytest.raises(ValidationError) as caught:
+        GraphFile.model_validate(data)
+    assert [e["type"] for e in caught.value.errors()] == [kind]
+
+
+def test_an_empty_section_is_an_absent_one() -> None:
+    """A key whose lines have all been commented out does not break the file."""
+    file = GraphFile.model_validate(
+        {
+            "name": None,
+            "args": {"rate": None},
+            "steps": None,
+            "nodes": {"a": {"class": "a:B", "params": None, "remap": None, "after": None, "env": None}},
+        }
+    )
+    assert file == GraphFile.model_validate({"args": {"rate": {}}, "nodes": {"a": {"class": "a:B"}}})
+
+
+@pytest.mark.parametrize("data", [{"nodes": None}, {"nodes": {"a": None}}, {"nodes": {"a": {"class": None}}}])
+def test_what_is_required_may_not_be_empty(data: Any) -> None:
+    """The exception are keys that a file cannot do without."""
+    with pytest.raises(ValidationError):
+        GraphFile.model_validate(data)
+
+
+@pytest.mark.parametrize("timeout", [0, -1.0, "soon", True, None.__class__])
+def test_a_timeout_is_more_than_nothing(timeout: Any) -> None:
+    """A step waits for some seconds."""
+    with pytest.raises(ValidationError):
+        StepSpec.model_validate({"call": "/x", "timeout": timeout})

@@ -1,0 +1,89 @@
+"""A plan: its text for people, its JSON for processes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import FrozenInstanceError, asdict
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import Place
+from graphflow.graph import source
+from graphflow.graph.plan import Plan, Rule, node_from_json
+from graphflow.graph.resolve import resolve
+from graphflow.names import Remap
+
+TEXT = """\
+domain: 5
+args: {gain: {default: 2}}
+nodes:
+  /sim: {class: a.b:Sim, process: one, env: {LANG: C}}
+  /t/chaser:
+    class: a.b:Chaser
+    process: one
+    params: {gain: $(var gain), deep: {list: [1, 2]}, name: é}
+    remap: {goal: /t/pose}
+    after: [/sim, spawn]
+  /alone: {class: a.b:Sim}
+steps:
+  spawn: {call: /spawn, request: {x: 1.5}, after: /sim, type: turtlesim/srv/Spawn}
+"""
+
+
+@pytest.fixture
+def plan() -> Plan:
+    return resolve(source.read(TEXT, "f.yaml"), Path("/nowhere/f.yaml"), [], {})
+
+
+def test_the_plan_as_text(plan: Plan) -> None:
+    """`graphflow plan` shows everything that would run, with the place of each setting."""
+    assert (
+        str(plan)
+        == """\
+graph f  (f.yaml; classes from /nowhere)
+domain 5
+  gain:=2
+/sim
+  class    a.b:Sim
+  process  one
+  env      LANG=C
+/t/chaser
+  class    a.b:Chaser
+  process  one
+  after    /sim, spawn
+  param    gain = 2  # f.yaml:8:20
+  param    deep.list = [1, 2]  # f.yaml:8:46
+  param    name = 'é'  # f.yaml:8:61
+  remap    goal -> /t/pose  # f.yaml:9:13
+/alone
+  class    a.b:Sim
+step spawn
+  after    /sim
+  call     /spawn {'x': 1.5}"""
+    )
+
+
+def test_json_gives_the_same_plan_back(plan: Plan) -> None:
+    """A plan, and each of its nodes, survives the way to another process."""
+    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan
+    assert [node_from_json(json.loads(json.dumps(asdict(n)))) for n in plan.nodes] == list(plan.nodes)
+
+
+def test_processes(plan: Plan) -> None:
+    """Nodes with the same word share a process, others have one that is called as they are."""
+    names = {process: [n.name for n in nodes] for process, nodes in plan.processes().items()}
+    assert names == {"one": ["/sim", "/t/chaser"], "/alone": ["/alone"]}
+
+
+def test_a_rule_knows_where_it_was_written() -> None:
+    """The names of a node can tell which line of which file changed them."""
+    assert Rule("a", "/b", Place("f.yaml", 3, 4)).remap() == Remap("a", "/b", source="f.yaml:3:4")
+
+
+def test_a_plan_does_not_change(plan: Plan) -> None:
+    """What was checked is what runs."""
+    with pytest.raises(FrozenInstanceError):
+        plan.domain = 6  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError):
+        plan.nodes[0].process = "two"  # type: ignore[misc]

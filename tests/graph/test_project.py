@@ -1,0 +1,71 @@
+"""Where a project begins, and what graphflow brings along."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph import project
+from graphflow.graph.project import bundled_graphs, demos_root, project_root, shown
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A project with graphs and nodes, and a graph file deep inside."""
+    for name in ("a/graphs/deep", "a/nodes", "b"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "a/pyproject.toml").touch()
+    (tmp_path / "a/graphs/deep/g.yaml").touch()
+    return tmp_path
+
+
+def test_the_root_has_a_pyproject_and_graphs_or_nodes(folder: Path) -> None:
+    """The nearest folder above the file that looks like a project is where classes are imported from."""
+    assert project_root(folder / "a/graphs/deep/g.yaml") == folder / "a"
+    assert project_root(folder / "a/graphs") == folder / "a"
+    assert project_root(folder / "a") == folder / "a"
+    (folder / "a/nodes").rmdir()
+    assert project_root(folder / "a/graphs/deep/g.yaml") == folder / "a"
+
+
+def test_without_a_project_it_is_the_files_own_folder(folder: Path) -> None:
+    """A file that stands alone finds the modules beside it."""
+    (folder / "b/g.yaml").touch()
+    assert project_root(folder / "b/g.yaml") == folder / "b"
+    assert project_root(folder / "b") == folder / "b"
+    (folder / "b/pyproject.toml").touch()  # a package of something else
+    assert project_root(folder / "b/g.yaml") == folder / "b"
+
+
+def test_the_nearest_project_counts(folder: Path) -> None:
+    """A project inside another is its own."""
+    (folder / "a/graphs/deep/nodes").mkdir()
+    (folder / "a/graphs/deep/pyproject.toml").touch()
+    assert project_root(folder / "a/graphs/deep/g.yaml") == folder / "a/graphs/deep"
+
+
+def test_a_link_leads_to_its_project(folder: Path) -> None:
+    """A link to a graph file belongs to the project the file is in."""
+    (folder / "b/link.yaml").symlink_to(folder / "a/graphs/deep/g.yaml")
+    assert project_root(folder / "b/link.yaml") == folder / "a"
+
+
+def test_bundled_graphs_are_in_the_clone_or_in_the_package(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a clone they are the project's own; an installed package has them under `demos`."""
+    assert "talker_listener" in bundled_graphs()
+    assert bundled_graphs()["talker_listener"].is_file()
+    (folder / "package/demos/graphs").mkdir(parents=True)
+    (folder / "package/demos/graphs/one.yaml").touch()
+    monkeypatch.setattr(project, "PACKAGE", folder / "package")
+    assert demos_root() == folder / "package/demos"
+    assert bundled_graphs() == {"one": folder / "package/demos/graphs/one.yaml"}
+
+
+def test_paths_are_shown_short(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Below the working directory a path is relative, elsewhere it stays as it was given."""
+    monkeypatch.chdir(folder / "a")
+    assert shown(Path("graphs/deep/g.yaml")) == "graphs/deep/g.yaml"
+    assert shown(folder / "a/graphs/deep/g.yaml") == "graphs/deep/g.yaml"
+    assert shown(folder / "b/g.yaml") == str(folder / "b/g.yaml")
+    assert shown(Path("../b/g.yaml")) == "../b/g.yaml"

@@ -1,0 +1,160 @@
+"""`$(...)` in texts: what each stands for, nested, typed, and what is wrong with the others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import graphflow
+from graphflow.graph.substitutions import MAX_DEPTH, SubstitutionError, Substitutions
+
+ARGS: dict[str, Any] = {
+    "name": "turtle2",
+    "gain": 2.5,
+    "count": 3,
+    "on": True,
+    "list": [1, 2],
+    "none": None,
+    "which": "name",
+    "dollar": "$(var name)",
+}
+ENV = {"USER": "ada", "EMPTY": "", "ARG": "gain", "TWO": "a b", "PARENTHESIS": ")"}
+
+
+def apply(value: Any) -> Any:
+    return Substitutions(ARGS, "/home/ada/graphs", ENV).apply(value)
+
+
+@pytest.mark.parametrize(
+    "value", ["plain", "", "$HOME", "${HOME}", "$ (var x)", "(var x)", 3, 2.5, True, None, ["$(x)"]]
+)
+def test_what_has_no_substitution_stays(value: Any) -> None:
+    """Other values, and other uses of a dollar, are left alone."""
+    assert apply(value) is value
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("$(var name)", "turtle2"),
+        ("$(  var   name  )", "turtle2"),
+        ("/$(var name)/chaser", "/turtle2/chaser"),
+        ("$(var name)$(var name)", "turtle2turtle2"),
+        ("$(env USER)", "ada"),
+        ("$(env USER grace)", "ada"),
+        ("$(env NOBODY grace)", "grace"),
+        ("$(env NOBODY two words)", "two words"),
+        ("$(env EMPTY full)", ""),
+        ("$(dirname)", "/home/ada/graphs"),
+        ("$(dirname)/../maps", "/home/ada/graphs/../maps"),
+        ("$(var $(var which))", "turtle2"),
+        ("$(var $(env ARG))", 2.5),
+        ("$(env NOBODY $(var name))", "turtle2"),
+        ("$(env NOBODY a$(var $(var which))b)", "aturtle2b"),
+        ("$(env NOBODY (round))", "(round)"),
+        ("$(env PARENTHESIS)", ")"),
+    ],
+)
+def test_substitutions(text: str, value: Any) -> None:
+    """Variables, environment with default, folders, and all of them within each other."""
+    assert apply(text) == value
+
+
+def test_find_pkg_share_is_the_folder_of_an_installed_package() -> None:
+    """A Python package's folder stands in for ROS's share folder."""
+    assert apply("$(find-pkg-share graphflow)/x") == f"{graphflow.__path__[0]}/x"
+
+
+@pytest.mark.parametrize("name", ["gain", "count", "on", "list", "none", "dollar"])
+def test_a_whole_text_takes_the_type(name: str) -> None:
+    """A text that is one substitution becomes the argument's value itself."""
+    assert apply(f"$(var {name})") is ARGS[name]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a $(var gain)", "a 2.5"),
+        ("$(var count) ", "3 "),
+        ("v$(var on)", "vtrue"),
+        ("$(var none)!", "!"),
+    ],
+)
+def test_within_a_text_it_is_text(text: str, value: str) -> None:
+    """Beside other characters a value is written out, as YAML would write it."""
+    assert apply(text) == value
+
+
+def test_values_are_not_read_again() -> None:
+    """What a substitution gives is not searched for substitutions, so that no input can become one."""
+    assert apply("x$(var dollar)") == "x$(var name)"
+
+
+def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without an environment given, the process's own is used."""
+    monkeypatch.setenv("GRAPHFLOW_TEST_WORD", "here")
+    assert Substitutions({}, "/").apply("$(env GRAPHFLOW_TEST_WORD)") == "here"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("$(var nme)", "there is no argument 'nme'; did you mean 'name'?"),
+        ("$(var)", "write $(var NAME)"),
+        ("$(var a b)", "write $(var NAME)"),
+        ("$(env)", "write $(env NAME) or $(env NAME default)"),
+        ("$(env NOBODY)", "the environment variable NOBODY is not set; give a default: $(env NAME default)"),
+        ("$(dirname x)", "write $(dirname)"),
+        ("$(find-pkg-share)", "write $(find-pkg-share PACKAGE)"),
+        ("$(find-pkg-share nowhere_to_be)", "there is no installed package of that name"),
+        ("$(find-pkg-share ../x)", "there is no installed package of that name"),
+        ("$(find-pkg-share __main__)", "there is no installed package of that name"),
+        ("$(vra name)", "$(vra name): unknown substitution 'vra'; did you mean 'var'?"),
+        ("$(find-pkg-shar x)", "unknown substitution 'find-pkg-shar'; did you mean 'find-pkg-share'?"),
+        ("$()", "unknown substitution ''; there is dirname, env, find-pkg-share, var"),
+        ("a $(var name", "'$(var name' has no closing )"),
+        ("$(env NOBODY $(var name)", "has no closing )"),
+        ("$(var $(env TWO))", "write $(var NAME)"),
+    ],
+)
+def test_what_cannot_be_substituted(text: str, message: str) -> None:
+    """Every mistake says what is known, or how it is written."""
+    with pytest.raises(SubstitutionError) as caught:
+        apply(text)
+    assert message in str(caught.value)
+
+
+def test_no_argument_to_be_near_to() -> None:
+    """In a file without arguments, the way out is to declare one."""
+    with pytest.raises(SubstitutionError, match="there is no argument 'x'; declare it under args:"):
+        Substitutions({}, "/", {}).apply("$(var x)")
+
+
+def test_nesting_has_an_end() -> None:
+    """A text nested without measure is refused, not a crash."""
+    depth = MAX_DEPTH - 1
+    assert apply("$(env NOBODY " * depth + "x" + ")" * depth) == "x"
+    with pytest.raises(SubstitutionError, match=f"nested more than {MAX_DEPTH} deep"):
+        apply("$(env NOBODY " * 3000 + "x" + ")" * 3000)
+
+
+def test_arguments_asked_for_are_noted() -> None:
+    """It is known which arguments a file has used."""
+    substitutions = Substitutions(ARGS, "/", ENV)
+    substitutions.apply("$(var name) $(var $(var which)) $(env USER $(var gain))")
+    assert substitutions.used == {"name", "which", "gain"}
+
+
+@settings(derandomize=True, max_examples=300, deadline=None)
+@given(
+    st.lists(st.sampled_from(["$(", "$", "(", ")", "var ", "env ", "name", "USER", "dirname", " ", "x"]), max_size=12)
+)
+def test_any_text_is_substituted_or_refused(words: list[str]) -> None:
+    """No text leads to another error than a SubstitutionError."""
+    try:
+        apply("".join(words))
+    except SubstitutionError:
+        pass
