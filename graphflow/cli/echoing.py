@@ -10,11 +10,13 @@ from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
 from graphflow.introspect.echo import block, csv, flow, plain, truncated
 from graphflow.msgs import registry
+from graphflow.names import did_you_mean
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.runtime.endpoints import MessageInfo, TopicSubscription
 from graphflow.runtime.node import Node
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind
+from graphflow.wire.schema import FieldType
 
 DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be known."""
@@ -122,19 +124,34 @@ def _reduced(data: Any, options: EchoOptions) -> Any:
 
 
 def _field_path(text: str, type_name: str) -> list[str | int]:
-    """`a.b[0].c` as parts, checked against the type as far as it has named fields."""
-    from graphflow.names import did_you_mean
+    """`a.b[0].c` as parts, checked against the type.
 
+    Raises:
+        UsageFault: The type has no such field or element.
+    """
+    if not re.fullmatch(r"\w+(\[\d+\])?(\.\w+(\[\d+\])?)*", text):
+        raise exits.UsageFault(f"{text!r} is no field of a message; write FIELD.FIELD or FIELD[0]")
     parts: list[str | int] = []
-    schema = registry.message_schema(type_name)
-    current: str | None = schema.name
-    for word in re.findall(r"[^.\[\]]+|\[\d+\]", text):
-        if word.startswith("["):
-            parts.append(int(word[1:-1]))
-            continue
-        fields = {f.name: f.type for f in registry.message_schema(current).fields} if current else {}
-        if word not in fields:
-            raise exits.UsageFault(f"{current or text} has no field {word!r}{did_you_mean(word, fields)}")
+    type_, at = FieldType(type_name), ""
+    for word, index in re.findall(r"(\w+)(?:\[(\d+)\])?", text):
+        type_ = _field_type(type_, at, word)
+        at = f"{at}.{word}" if at else word
         parts.append(word)
-        current = None if fields[word].is_primitive else fields[word].base
+        if index:
+            if not type_.array:
+                raise exits.UsageFault(f"{at} is a {type_}, it has no elements")
+            type_, at = type_._replace(array="", size=0), f"{at}[{index}]"
+            parts.append(int(index))
     return parts
+
+
+def _field_type(type_: FieldType, at: str, word: str) -> FieldType:
+    """The type of field `word` of what is at `at`."""
+    if type_.array:
+        raise exits.UsageFault(f"{at} is a list; say which element, as in {at}[0]")
+    if type_.is_primitive:
+        raise exits.UsageFault(f"{at} is a {type_}, it has no field {word!r}")
+    fields = {f.name: f.type for f in registry.message_schema(type_.base).fields}
+    if word not in fields:
+        raise exits.UsageFault(f"{type_.base} has no field {word!r}{did_you_mean(word, fields)}")
+    return fields[word]

@@ -37,7 +37,7 @@ def up(graph: str, args: tuple[str, ...], detach: bool, show_args: bool, private
     # From here to the fork nothing heavy may have been imported: the children share what this process has.
     from graphflow.supervisor.launch import launch
 
-    report = launch(path, list(args), domain)
+    report = launch(path, list(args), domain, attached=not detach)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])

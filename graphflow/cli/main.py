@@ -13,7 +13,7 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.errors import GraphflowError
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 
 _VERBS = {
     "up": ("graphs", "Start a graph from its file."),
@@ -32,6 +32,10 @@ _VERBS = {
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
+_OTHER_WORDS = {"launch": "up", "start": "up", "stop": "down", "kill": "down", "interfaces": "interface"}
+"""What people type who come from elsewhere."""
+
+
 class _Verbs(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
@@ -47,7 +51,9 @@ class _Verbs(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _VERBS:
-            raise click.UsageError(f"no such command {args[0]!r}{did_you_mean(args[0], _VERBS)}", ctx)
+            meant = _OTHER_WORDS.get(nearest(args[0], [*_OTHER_WORDS, *_VERBS]) or "")
+            help_ = f"; did you mean {meant!r}?" if meant else did_you_mean(args[0], _VERBS)
+            raise click.UsageError(f"no such command {args[0]!r}{help_}", ctx)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

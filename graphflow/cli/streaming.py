@@ -53,15 +53,21 @@ class LogReader:
 
 def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:
     """Follow a graph from its start; returns the exit code of `up`."""
+    interrupts: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda got, _: interrupts.append(got))
     with ControlClient(run["socket"]) as client:
         client.send(do="follow", lifeline=not detach)
-        return _Stream(run, classes, client, detach).run()
+        return _Stream(run, classes, client, detach, interrupts).run()
 
 
 class _Stream:
-    def __init__(self, run: dict[str, Any], classes: dict[str, str], client: ControlClient, detach: bool) -> None:
+    def __init__(
+        self, run: dict[str, Any], classes: dict[str, str], client: ControlClient, detach: bool, interrupts: list[int]
+    ) -> None:
         self._run, self._classes, self._client, self._detach = run, classes, client, detach
-        self._interrupts = 0
+        self._interrupts = interrupts
+        """Signals that asked to stop, as they came."""
         self._stop_sent = 0
         self._nodes: list[dict[str, Any]] = []
         self._logs: LogReader | None = None
@@ -72,8 +78,6 @@ class _Stream:
         self._nodes = self._list_nodes()
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
         self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0))
-        signal.signal(signal.SIGINT, self._interrupted)
-        signal.signal(signal.SIGTERM, self._interrupted)
         while True:
             select.select([self._client], [], [], _POLL)
             events = self._client.pending()
@@ -85,12 +89,10 @@ class _Stream:
                     return code
             if not self._detach:
                 self._logs.show()
-            if self._interrupts > self._stop_sent:
-                self._stop_sent = self._interrupts
-                self._client.send(do="down", now=self._interrupts > 1, reason="Ctrl-C")
-
-    def _interrupted(self, *_: object) -> None:
-        self._interrupts += 1
+            if len(self._interrupts) > self._stop_sent:
+                self._stop_sent = len(self._interrupts)
+                reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
+                self._client.send(do="down", now=self._stop_sent > 1, reason=reason)
 
     def _list_nodes(self) -> list[dict[str, Any]]:
         with ControlClient(self._run["socket"]) as other:
@@ -115,6 +117,8 @@ class _Stream:
             self._greet(event["seconds"])
             if self._detach:
                 return exits.OK
+        elif what == "note":
+            output.talk(f"note: {event['text']}")
         elif what == "stopping":
             if self._logs is not None and not self._detach:
                 self._logs.show()

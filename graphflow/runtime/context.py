@@ -89,8 +89,13 @@ class Context:
         future = self.loop.create_future()
 
         def look(_: Change) -> None:
-            if not future.done() and condition():
-                future.set_result(None)
+            if future.done():
+                return
+            try:
+                if condition():
+                    future.set_result(None)
+            except Exception as error:  # whoever waits is to have it, not whoever else looks at the graph
+                future.set_exception(error)
 
         stop = self.on_change(look)
         try:

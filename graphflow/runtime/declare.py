@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
 
@@ -245,8 +245,8 @@ class Rate:
         """The parameters it is read from."""
         return [source.parameter.name for source in self._sources if isinstance(source, Param)]
 
-    def period_ns(self, node: Node | None = None) -> int:
-        """The period now, or with the parameters' defaults when there is no node yet.
+    def period_ns(self, values: Mapping[str, Any] | None = None) -> int:
+        """The period with these values of its parameters, or with their defaults.
 
         Raises:
             ValueError: as `clock.period_ns`.
@@ -255,8 +255,7 @@ class Rate:
         def plain(source: float | Param[Any] | None) -> float | None:
             if not isinstance(source, Param):
                 return source
-            value = source.parameter.default if node is None else node.parameters.get(source.parameter.name)
-            return float(value)
+            return float(source.parameter.default if values is None else values[source.parameter.name])
 
         period, hz = self._sources
         return period_ns(plain(period), plain(hz))
@@ -393,15 +392,26 @@ def _members(cls: type) -> Iterator[tuple[str, Any]]:
         yield from vars(parent).items()
 
 
+def class_line() -> int:
+    """The line of the class statement that is being executed; to be called by `__init_subclass__`.
+
+    Python has it from 3.13 on as `__firstlineno__`. To look for it in the source takes milliseconds a class.
+    """
+    frame = sys._getframe(1)
+    while frame.f_code.co_name == "__init_subclass__" and frame.f_back is not None:
+        frame = frame.f_back
+    return frame.f_lineno
+
+
 def interface_of(cls: type[Node]) -> Interface:
     """Everything a node class declares, as data.
 
     Raises:
         DeclarationError: Two declarations contradict each other.
     """
-    lines = getattr(cls, "__firstlineno__", 0)
+    line: int = vars(cls).get("__firstlineno__", 0)
     try:
-        place = Place(inspect.getsourcefile(cls) or "", lines or inspect.getsourcelines(cls)[1])
+        place = Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
     except (OSError, TypeError):
         place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
     endpoints: list[Endpoint] = []

@@ -21,6 +21,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import did_you_mean
 from graphflow.qos import History, Qos
+from graphflow.runtime.clock import period_ns
 from graphflow.runtime.scheduler import Runner
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller, Closable, Inbox, Sender
@@ -129,8 +130,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         if message.__class__ is not self.type:
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
         payload = self._encode(message)
-        self.published += 1
         entity = self._announced()
+        self.published += 1
         self._put(payload, attachment.pack(self.published, self.node.clock.time_ns(), entity.gid))
 
     def get_subscription_count(self) -> int:
@@ -182,7 +183,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._decode = registry.codec(self.type_name).decode
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
-        self._waiter: Future[None] | None = None
+        self._waiters: set[Future[None]] = set()
 
     def _open(self, key: str) -> None:
         context = self.node.context
@@ -211,15 +212,17 @@ class TopicSubscription(Endpoint, Generic[M]):
         return sum(1 for e in self.node.context.cache.endpoints(Kind.PUBLISHER, self.name) if e.data_key == key)
 
     def _invoke(self, arrival: Any) -> Any:
-        payload, _ = self.node.context.session.read(arrival)
-        message = self._decode(payload)
         assert self._callback is not None
+        payload, _ = self.node.context.session.read(arrival)
+        try:
+            message = self._decode(payload)
+        except DecodeError as error:
+            self._count_malformed(error)
+            return None
         return self._callback(message)
 
     def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
-        if isinstance(error, DecodeError):
-            self._count_malformed(error)
-        elif error is not None:
+        if error is not None:
             self.node.handler_failed(self._label, error)
 
     def _count_malformed(self, error: DecodeError) -> None:
@@ -230,8 +233,9 @@ class TopicSubscription(Endpoint, Generic[M]):
     # iteration
 
     def _arrived(self) -> None:
-        if self._waiter is not None and not self._waiter.done():
-            self._waiter.set_result(None)
+        for waiter in self._waiters:
+            if not waiter.done():
+                waiter.set_result(None)
 
     def __aiter__(self) -> AsyncIterator[M]:
         if self._callback is not None:
@@ -252,11 +256,12 @@ class TopicSubscription(Endpoint, Generic[M]):
                     return self._decode(payload), _info(beside)
                 except DecodeError as error:
                     self._count_malformed(error)
-            self._waiter = self.node.context.loop.create_future()
+            waiter: Future[None] = self.node.context.loop.create_future()
+            self._waiters.add(waiter)
             try:
-                await self._waiter
+                await waiter
             finally:
-                self._waiter = None
+                self._waiters.discard(waiter)
 
     def close(self) -> None:
         if self.runner is not None:
@@ -270,6 +275,10 @@ def _info(beside: bytes | None) -> MessageInfo:
         return MessageInfo(*attachment.unpack(beside or b""))
     except DecodeError:
         return MessageInfo(0, 0, bytes(16))
+
+
+_STOPPING = RemoteError("Cancelled", "the server is stopping")
+"""What a server that stops answers; no exception class is called that."""
 
 
 class ServiceServer(Endpoint, Generic[Request, Response]):
@@ -323,11 +332,12 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             except (TypeError, EncodeError) as wrong:
                 error = wrong
         if error is not None:
-            if not isinstance(error, (CancelledError, DecodeError)):
+            if isinstance(error, CancelledError) and self.runner is not None and self.runner.closed:
+                request.reply_error(_STOPPING.to_payload())
+                return
+            if not isinstance(error, DecodeError):
                 self.node.log.error("%s: %s", self._label, error, exc_info=error)
-            kind = "Cancelled" if isinstance(error, CancelledError) else type(error).__name__
-            text = "the server is stopping" if isinstance(error, CancelledError) else str(error)
-            request.reply_error(RemoteError(kind, text).to_payload())
+            request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             return
         asked = attachment.unpack(request.attachment)
         now = self.node.clock.time_ns()
@@ -336,6 +346,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def close(self) -> None:
         if self.runner is not None:
             self.runner.cancel()
+        while self._inbox is not None and self._inbox.items:
+            self._inbox.items.popleft().reply_error(_STOPPING.to_payload())
         super().close()
 
 
@@ -403,7 +415,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
 
         Raises:
             ServiceUnavailable: There is no server, and none came within `DISCOVERY_GRACE`.
-            ServerLost: The server went away while the call waited.
+            ServerLost: The server stopped or went away while the call waited.
             CallTimeout: The deadline passed.
             RemoteError: The handler raised.
             EncodeError: The request does not fit its type.
@@ -432,7 +444,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if answer is None:
                 future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
             elif answer.is_error:
-                future.set_exception(RemoteError.from_payload(answer.payload))
+                error = RemoteError.from_payload(answer.payload)
+                lost = ServerLost(f"the server of {self.name} stopped before it answered")
+                future.set_exception(lost if error.type == _STOPPING.type else error)
             elif _sequence_of(answer) == sequence:
                 future.set_result(answer)
 
@@ -500,12 +514,16 @@ class Timer:
 
     @property
     def period(self) -> float:
-        """Seconds between runs. Setting it re-arms the timer, one new period from now."""
+        """Seconds between runs. Setting it re-arms the timer, one new period from now.
+
+        Raises:
+            ValueError: It is set to something that is not a positive number.
+        """
         return self._period_ns / 1e9
 
     @period.setter
     def period(self, seconds: float) -> None:
-        self._period_ns = to_ns(seconds)
+        self._period_ns = period_ns(seconds, None)
         if self.runner is not None:
             self.reset()
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from graphflow.errors import ClosedError, DeclarationError, GraphflowError
+from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
 from graphflow.interface import Interface, may_make
 from graphflow.machines.group import GroupState
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import Remap, Resolver, did_you_mean, expand
 from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare
-from graphflow.runtime.clock import Clock
+from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
 from graphflow.runtime.endpoints import (
     ServiceClient,
@@ -28,7 +29,6 @@ from graphflow.runtime.endpoints import (
 from graphflow.runtime.params import Parameters, ParameterServices
 from graphflow.runtime.rosout import Rosout, node_logger
 from graphflow.runtime.scheduler import Finished, Runner
-from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
@@ -71,6 +71,7 @@ class Node:
     """The name of nodes that are given none; empty: the class's name in snake case."""
     dynamic_names: ClassVar[bool | Sequence[str]] = False
     """Names the class makes at run time, which checks cannot know: True, or patterns such as `*/cmd_vel`."""
+    __firstlineno__: ClassVar[int]
     _made = False
 
     def __init__(
@@ -100,7 +101,7 @@ class Node:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._ended: asyncio.Future[None] | None = None
         self._token: Any = None
-        self._groups: dict[int, GroupState[Runner]] = {}
+        self._groups: dict[declare.Group, GroupState[Runner]] = {}
         self._handler_timers: list[tuple[declare.Rate, Timer]] = []
         self._made = True
         self._bind_declarations(start_parameter_services, enable_rosout)
@@ -112,6 +113,8 @@ class Node:
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
+        if "__firstlineno__" not in vars(cls):
+            cls.__firstlineno__ = declare.class_line()
         declare.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:
@@ -209,14 +212,13 @@ class Node:
         Raises:
             ValueError: The period is not positive.
         """
-        if not period > 0:
-            raise ValueError(f"a timer's period must be positive, not {period!r} s")
+        nanoseconds = period_ns(period, None)
         call = self._in_thread(callback) if thread else callback
 
         def run(info: TimerInfo) -> Any:
             return call(info) if takes_info else call()
 
-        return self._add(Timer(self, to_ns(period), run, _label(callback, "timer"), self._slots(group)))
+        return self._add(Timer(self, nanoseconds, run, _label(callback, "timer"), self._slots(group)))
 
     def declare_parameter(self, name: str, default: Any, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
@@ -290,8 +292,13 @@ class Node:
         finally:
             self.failure_taken = True
 
-    async def stop(self) -> None:
-        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything."""
+    async def stop(self, *, withdraw: bool = True) -> None:
+        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything.
+
+        Args:
+            withdraw: False when the context is closed right after, which withdraws all at once and cannot be held up
+                by peers that are going away too.
+        """
         context = self._context
         if context is None:
             return
@@ -310,10 +317,11 @@ class Node:
             if stuck:
                 names = ", ".join(ending[future] for future in stuck)
                 self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
-        for openable in list(reversed(self._openables)):
-            openable.close()
-        if self._token is not None:
-            self._token.close()
+        if withdraw:
+            for openable in list(reversed(self._openables)):
+                openable.close()
+            if self._token is not None:
+                self._token.close()
         if self._ended is not None and not self._ended.done():
             self._ended.cancel()
         self._context = None
@@ -359,9 +367,12 @@ class Node:
         chosen = group if group is not None else self.default_group
         if chosen is None:
             return None
-        return self._groups.setdefault(id(chosen), GroupState(chosen.limit))
+        return self._groups.setdefault(chosen, GroupState(chosen.limit))
 
     def _in_thread(self, fn: Callable[..., Any]) -> Callable[..., Coroutine[Any, Any, Any]]:
+        if inspect.iscoroutinefunction(fn):
+            raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
+
         async def run(*args: Any) -> Any:
             return await self.offload(fn, *args)
 
@@ -374,6 +385,7 @@ class Node:
         for attribute, item in declared.items():
             if isinstance(item, declare.Param):
                 self._held[attribute] = item.bind(self)
+        self.parameters.check(self._check_rates)
         self.parameters.observe(self._parameter_changed)
         if rosout:
             Rosout(self).attach()
@@ -392,14 +404,27 @@ class Node:
         elif handler.kind == "service":
             self.create_service(handler.type, handler.name, method, **options)
         elif handler.rate is not None:
-            period = handler.rate.period_ns(self) / 1e9
+            period = self._period_ns(handler.rate, {}) / 1e9
             timer = self.create_timer(period, method, takes_info=handler.takes_info, **options)
             self._handler_timers.append((handler.rate, timer))
+
+    def _period_ns(self, rate: declare.Rate, changes: Mapping[str, Any]) -> int:
+        values = {name: changes[name] if name in changes else self.parameters.get(name) for name in rate.parameters()}
+        try:
+            return rate.period_ns(values)
+        except ValueError as error:
+            given = ", ".join(f"{name!r} = {value!r}" for name, value in values.items())
+            raise ParameterError(f"parameter {given}: {error}") from None
+
+    def _check_rates(self, changes: Mapping[str, Any]) -> None:
+        for rate, _ in self._handler_timers:
+            if changes.keys() & rate.parameters():
+                self._period_ns(rate, changes)
 
     def _parameter_changed(self, name: str, value: Any) -> None:
         for rate, timer in self._handler_timers:
             if name in rate.parameters():
-                timer.period = rate.period_ns(self) / 1e9
+                timer.period = self._period_ns(rate, {}) / 1e9
 
     def _open_parameter_services(self) -> None:
         from graphflow.msgs.registry import interface_class

@@ -33,6 +33,7 @@ class Parameters:
         self._values: dict[str, Any] = {}
         self._sources: dict[str, str] = {}
         self._overrides = dict(overrides or {})
+        self._checks: list[Callable[[Mapping[str, Any]], None]] = []
         self._observers: list[Callable[[str, Any], None]] = []
 
     def declare(self, parameter: Parameter) -> Any:
@@ -100,11 +101,17 @@ class Parameters:
             if declared.read_only:
                 raise ParameterError(f"parameter {name!r} is read-only")
             fitted[name] = declared.fit(value)
+        for check in self._checks:
+            check(fitted)
         for name, value in fitted.items():
             self._values[name], self._sources[name] = value, source
         for name, value in fitted.items():
             for observer in self._observers:
                 observer(name, value)
+
+    def check(self, check: Callable[[Mapping[str, Any]], None]) -> None:
+        """Have `check(changes)` called before each change; a ParameterError that it raises refuses them all."""
+        self._checks.append(check)
 
     def observe(self, observer: Callable[[str, Any], None]) -> None:
         """Have `observer(name, value)` called after each change."""

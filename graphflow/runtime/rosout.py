@@ -89,6 +89,8 @@ class Rosout(logging.Handler):
         super().close()
 
     def emit(self, record: logging.LogRecord) -> None:
+        if not self._node.is_running:
+            return
         loop = self._node.context.loop
         if threading.get_ident() == self._thread:
             self._publish(record)
@@ -98,7 +100,7 @@ class Rosout(logging.Handler):
     def _publish(self, record: logging.LogRecord) -> None:
         from graphflow.msgs.rcl_interfaces.msg import Log
 
-        if not self._publisher.is_open:
+        if not self._node.is_running:
             return
         message = Log(
             stamp=Time(int(record.created * 1e9)),

@@ -40,7 +40,7 @@ async def graph(*nodes: Node, context: Context | None = None) -> AsyncGenerator[
                     watcher.cancel()
     finally:
         for node in reversed(started):
-            await node.stop()
+            await node.stop(withdraw=not own)
         if own:
             await context.close()
 
@@ -51,7 +51,7 @@ async def serve(
     stop: asyncio.Event,
     ready: Callable[[Node], None] | None = None,
 ) -> None:
-    """Run nodes until `stop` is set, one of them fails, or all have ended themselves.
+    """Run nodes until `stop` is set, one of them fails, or all have ended themselves. The context is to be closed then.
 
     Args:
         ready: Called with each node once it has started.
@@ -78,7 +78,7 @@ async def serve(
         for task in waiting:
             task.cancel()
         for node in reversed(started):
-            await node.stop()
+            await node.stop(withdraw=False)
 
 
 def catch_signals(stop: asyncio.Event) -> None:

@@ -241,7 +241,7 @@ class Runner:
         try:
             for _ in range(BURST):
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
-                if not self.items or (limit is not None and len(self._active) >= limit):
+                if not self.items or self._closed or (limit is not None and len(self._active) >= limit):
                     return
                 if not self._group.admit(self):
                     return

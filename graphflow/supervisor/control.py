@@ -23,6 +23,8 @@ from typing import Any, Protocol, Self
 from graphflow.errors import SupervisorError
 
 CONNECT_LIMIT = 5.0
+CLOSE_LIMIT = 1.0
+LIFELINE_LIMIT = 5.0
 
 
 class Commands(Protocol):
@@ -41,7 +43,15 @@ class ControlServer:
     def __init__(self, commands: Commands) -> None:
         self._commands = commands
         self._server: asyncio.Server | None = None
-        self._connections: set[asyncio.Task[None]] = set()
+        self._expectation: asyncio.TimerHandle | None = None
+        self._connections: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
+
+    def expect_lifeline(self) -> None:
+        """Stop the graph if no door with a lifeline comes soon: the one that started it is dead already."""
+        loop = asyncio.get_running_loop()
+        self._expectation = loop.call_later(
+            LIFELINE_LIMIT, lambda: self._commands.begin_stop(now=False, reason="its terminal never came")
+        )
 
     async def open(self, path: Path) -> None:
         """Listen at `path`, for this user only."""
@@ -56,21 +66,22 @@ class ControlServer:
         """Stop listening, and let open connections send what is waiting."""
         if self._server is not None:
             self._server.close()
-        for connection in list(self._connections):
-            connection.cancel()
-        await asyncio.gather(*self._connections, return_exceptions=True)
+        for writer in self._connections.values():
+            writer.close()
+        if self._connections:
+            await asyncio.wait(self._connections, timeout=CLOSE_LIMIT)
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         task = asyncio.current_task()
         assert task is not None
-        self._connections.add(task)
+        self._connections[task] = writer
         try:
             if _peer_uid(writer.get_extra_info("socket")) in (None, os.getuid()):
                 await self._serve(reader, writer)
         except (ConnectionError, asyncio.IncompleteReadError):
             return
         finally:
-            self._connections.discard(task)
+            del self._connections[task]
             writer.close()
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -106,6 +117,8 @@ class ControlServer:
             stop()
 
     async def _follow(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, lifeline: bool) -> None:
+        if lifeline and self._expectation is not None:
+            self._expectation.cancel()
         stop = self._commands.subscribe(lambda event: _write(writer, event), replay=True)
         try:
             while line := await reader.readline():

@@ -64,6 +64,7 @@ class Supervisor:
         """Processes that are ready and steps that are finished, by name."""
         self._step_tasks: dict[str, asyncio.Task[None]] = {}
         self._order = self._make_order()
+        self._mode = "peer" if len(self._processes) <= MESH_LIMIT else "client"
         self._stopping = False
         self._layers: list[list[str]] = []
         self._began = time.monotonic()
@@ -135,6 +136,12 @@ class Supervisor:
 
     async def run(self) -> int:
         """Bring the graph up and keep it until it has ended; returns its exit code."""
+        if self._mode == "client":
+            self._tell(
+                event="note",
+                text=f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages pass "
+                "through the rendezvous; nodes that share a `process:` need fewer",
+            )
         self._start_ready_ones()
         await self.ended.wait()
         for task in self._step_tasks.values():
@@ -251,7 +258,7 @@ class Supervisor:
             "nodes": [planned[n.name] for n in process.nodes],
             "root": plan.root,
             "domain": self._context.domain,
-            "mode": "peer" if len(self._processes) <= MESH_LIMIT else "client",
+            "mode": self._mode,
         }
         self._tell(event="starting", process=process.name)
         self._preload.send(do="spawn", process=process.name, job=job, log=process.log, env=env)

@@ -7,6 +7,7 @@ import heapq
 import itertools
 from collections.abc import Callable
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from graphflow.runtime.clock import Clock
 from graphflow.times import to_ns
@@ -14,6 +15,7 @@ from graphflow.times import to_ns
 START_NS = 1_700_000_000_000_000_000
 """The time of day at which every manual clock begins."""
 _TURNS = 100_000
+_settling: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
 
 
 class _Alarm:
@@ -67,8 +69,13 @@ async def settle() -> None:
     loop = asyncio.get_running_loop()
     # asyncio has no public way to ask whether the loop is idle.
     ready: Any = getattr(loop, "_ready", ())
-    for _ in range(_TURNS):
-        await asyncio.sleep(0)
-        if not ready:
-            return
+    _settling[loop] = _settling.get(loop, 0) + 1
+    try:
+        for _ in range(_TURNS):
+            await asyncio.sleep(0)
+            # Whoever else settles is always in the queue, and is not what this waits for.
+            if len(ready) < _settling[loop]:
+                return
+    finally:
+        _settling[loop] -= 1
     raise RuntimeError("the graph does not come to rest: a handler or task keeps waking itself without waiting")

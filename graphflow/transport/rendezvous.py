@@ -8,6 +8,7 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
+import time
 
 import zenoh
 
@@ -46,18 +47,29 @@ def join() -> zenoh.Session | None:
     """
     endpoint = rendezvous_endpoint()
     address(endpoint)
-    try:
-        session = open_session(config("client", connect=endpoint))
-    except TransportError:
-        if not _is_listening(endpoint):
-            return None
-        raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s")) from None
+    began = time.monotonic()
+    session = _open_client(endpoint)
+    if session is None and _is_listening(endpoint):
+        if time.monotonic() - began < ANSWER_LIMIT:
+            # Somebody may have bound the port between the two looks: ask again before calling him mute.
+            session = _open_client(endpoint)
+        if session is None:
+            raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s"))
+    if session is None:
+        return None
     try:
         _refuse_strangers(session, endpoint)
     except BaseException:
         close_session(session)
         raise
     return session
+
+
+def _open_client(endpoint: str) -> zenoh.Session | None:
+    try:
+        return open_session(config("client", connect=endpoint))
+    except TransportError:
+        return None
 
 
 def _is_listening(endpoint: str) -> bool:

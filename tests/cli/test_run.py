@@ -33,7 +33,9 @@ def test_a_script_that_runs_a_node_ends_as_cleanly(machine: Machine) -> None:
 
 def test_remaps_and_namespace_reach_the_graph(machine: Machine) -> None:
     """As in the course: __ns, __node, a remap, a parameter, with or without --ros-args."""
-    node = machine.start("run", "nodes.talker:Talker", "__ns:=/robot", "__node:=voice", "chatter:=said", "-p", "rate:=20.0")
+    node = machine.start(
+        "run", "nodes.talker:Talker", "__ns:=/robot", "__node:=voice", "chatter:=said", "-p", "rate:=20.0"
+    )
     node.wait_for("Publishing")
     assert machine.run("node", "list").split() == ["/robot/voice"]
     assert "/robot/said [std_msgs/msg/String]" in machine.run("topic", "list", "-t")
@@ -108,4 +110,3 @@ def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) ->
         "asyncio.run(main())\n",
     )
     assert program.wait() == 3
-

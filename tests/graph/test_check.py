@@ -57,7 +57,9 @@ def plan(text: str) -> Plan:
 
 
 def problems(text: str, interfaces: Interfaces = KNOWN) -> list[str]:
-    return [str(p).removeprefix("f.yaml:") for p in check(plan(text), interfaces)]
+    found = plan(text)
+    imported = {node.class_path: interfaces[node.class_path] for node in found.nodes}
+    return [str(p).removeprefix("f.yaml:") for p in check(found, imported)]
 
 
 def chaser(line: str) -> list[str]:
@@ -119,7 +121,7 @@ def test_names_made_at_run_time_are_taken_on_trust() -> None:
     text = "nodes:\n  s: {{class: {}, remap: {{{}: /x}}}}\n"
     assert problems(text.format("a.b:Sim", "turtle9/cmd_vel")) == []
     assert problems(text.format("a.b:Sim", "turtle9/pose")) == [
-        "2:30: Sim has no topic or service 'turtle9/pose'; there is spawn"
+        "2:31: Sim has no topic or service 'turtle9/pose'; there is spawn"
     ]
     assert problems(text.format("a.b:Any", "anything")) == []
     assert problems("nodes: {s: {class: a.b:Any, params: {anything: 1}}}") == []
@@ -196,7 +198,7 @@ def test_steps_that_can_be(step: str) -> None:
         ),
         (
             "{call: /hatch, request: {theeta: 1.0}}",
-            ["5:30: turtlesim/srv/Spawn_Request has no field 'theeta'; did you mean 'theta'?"],
+            ["5:31: turtlesim/srv/Spawn_Request has no field 'theeta'; did you mean 'theta'?"],
         ),
         (
             "\n    call: /hatch\n    request:\n      x: 1.0\n      y: far\n      z: 1\n      name: 7\n",

@@ -291,6 +291,28 @@ def test_logs_follow(machine: Machine) -> None:
     assert follow.wait() == 0
 
 
+def test_a_large_graph_talks_through_the_rendezvous_and_says_so(machine: Machine) -> None:
+    """Beyond what a mesh carries nodes are clients; they hear each other all the same."""
+    pair = "  /t{0}/talker: {{class: nodes.talker:Talker, params: {{rate: 20.0}}}}\n  /t{0}/ear: {{class: nodes.listener:Listener}}\n"
+    file = machine.run_directory / "large.yaml"
+    file.write_text("nodes:\n" + "".join(pair.format(i) for i in range(13)))
+    text = machine.run("up", "-d", str(file))
+    assert "note: 26 processes are more than a mesh carries" in text
+    for i in (0, 12):
+        machine.until(lambda i=i: "I heard" in machine.run("logs", f"/t{i}/ear"), "it hears")  # type: ignore[misc]
+    machine.run("down")
+
+
+def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
+    """`--private` takes a port and a domain of its own, and says how other terminals get there."""
+    text = machine.run("up", "-d", "--private", "graphs/talker_listener.yaml")
+    assert "nothing is running" in machine.run("node", "list", code=3)
+    line = next(line for line in text.splitlines() if "export" in line)
+    machine.env |= dict(word.split("=", 1) for word in line.split()[1:])
+    assert machine.run("node", "list").split() == ["/listener", "/talker"]
+    machine.run("down")
+
+
 def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> None:
     """Otherwise forking it would be unsafe."""
     machine.run("up", "-d", write(project, GOOD), cwd=project)

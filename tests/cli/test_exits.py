@@ -1,0 +1,41 @@
+"""Exit codes: a contract with scripts."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow import errors
+from graphflow.cli import exits
+from graphflow.cli.exits import UsageFault, exit_code
+
+
+def test_the_codes() -> None:
+    """The numbers themselves never change."""
+    assert (exits.OK, exits.FAILED, exits.USAGE, exits.NOT_RUNNING, exits.TIMEOUT) == (0, 1, 2, 3, 4)
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (UsageFault("x"), exits.USAGE),
+        (errors.GraphFileError([]), exits.USAGE),
+        (errors.InterfaceError("x"), exits.USAGE),
+        (errors.UnknownInterface("x"), exits.USAGE),
+        (errors.InvalidName("x"), exits.USAGE),
+        (errors.EncodeError("x"), exits.USAGE),
+        (errors.SupervisorError("x"), exits.FAILED),
+        (errors.SupervisorError("x", exits.NOT_RUNNING), exits.NOT_RUNNING),
+        (errors.SupervisorError("x", exits.USAGE), exits.USAGE),
+        (errors.CallTimeout("x"), exits.TIMEOUT),
+        (errors.CallError("x"), exits.FAILED),
+        (errors.ServiceUnavailable("x"), exits.FAILED),
+        (errors.ServerLost("x"), exits.FAILED),
+        (errors.RemoteError("ValueError", "x"), exits.FAILED),
+        (errors.ParameterError("x"), exits.FAILED),
+        (errors.TransportError("x"), exits.FAILED),
+        (errors.GraphflowError("x"), exits.FAILED),
+    ],
+)
+def test_what_a_command_ends_with(error: errors.GraphflowError, code: int) -> None:
+    """Whose fault it was decides: the words or file given, nobody there, too late, or anything else."""
+    assert exit_code(error) == code

@@ -1,0 +1,108 @@
+"""`interface show`: definitions with the fields of nested types below each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli import exits
+from graphflow.cli.main import main
+from graphflow.msgs import registry
+
+Show = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def show(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Show:
+    monkeypatch.setattr(registry, "_roots", list(registry._roots))
+
+    def show(*words: str) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as end:
+            main(["interface", "show", *words])
+        assert isinstance(end.value.code, int)
+        return (end.value.code, *capsys.readouterr())
+
+    return show
+
+
+@pytest.mark.parametrize("name", ["geometry_msgs/msg/Twist", "geometry_msgs/Twist", "geometry_msgs.msg.Twist"])
+def test_a_message(name: str, show: Show) -> None:
+    """Nested fields are indented by a tab; the type may be written in each of ROS's ways."""
+    assert show(name) == (
+        exits.OK,
+        "Vector3 linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+        "Vector3 angular\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n",
+        "",
+    )
+
+
+def test_types_within_types(show: Show) -> None:
+    """Each level is one tab further in."""
+    code, out, _ = show("geometry_msgs/msg/PoseStamped")
+    lines = out.splitlines()
+    assert code == exits.OK
+    assert "\tbuiltin_interfaces/Time stamp" in lines
+    assert "\t\tint32 sec" in lines
+    assert "\t\tfloat64 w 1" in [line.removesuffix(".0") for line in lines]
+
+
+def test_a_service(show: Show) -> None:
+    """Request and response are apart."""
+    assert show("turtlesim/srv/Spawn")[1] == "float32 x\nfloat32 y\nfloat32 theta\nstring name\n---\nstring name\n"
+
+
+def test_an_action(show: Show) -> None:
+    """Goal, result and feedback are apart."""
+    found = show("turtlesim/action/RotateAbsolute")[1]
+    assert found == "float32 theta\n---\nfloat32 delta\n---\nfloat32 remaining\n"
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project with an interface of its own, and a working directory inside it."""
+    for name in ("nodes", "interfaces/show_msgs/msg"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "interfaces/show_msgs/msg/Leg.msg").write_text(
+        "# A leg of the way.\n\nuint8 WALK=1  # slow\ngeometry_msgs/Point[2] ends  # both\n\nuint8 how 1\n"
+    )
+    monkeypatch.chdir(tmp_path / "nodes")
+    return tmp_path
+
+
+def test_the_projects_own_with_its_comments(own: Path, show: Show) -> None:
+    """Definitions of the project around are found, and shown as they are written."""
+    assert show("show_msgs/msg/Leg")[1] == (
+        "# A leg of the way.\n\nuint8 WALK=1  # slow\ngeometry_msgs/Point[2] ends  # both\n"
+        "\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n\nuint8 how 1\n"
+    )
+
+
+def test_without_comments(own: Path, show: Show) -> None:
+    """`--no-comments` leaves the definition alone."""
+    assert show("show_msgs/msg/Leg", "--no-comments")[1] == (
+        "\nuint8 WALK=1\ngeometry_msgs/Point[2] ends\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n\nuint8 how 1\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("geometry_msgs/msg/Twst", "error: package 'geometry_msgs' has no interface 'Twst'; did you mean 'Twist'?"),
+        (
+            "geometry_msg/msg/Twist",
+            "error: there is no interface package 'geometry_msg'; did you mean 'geometry_msgs'?",
+        ),
+        ("std_msgs/Heder", "error: package 'std_msgs' has no interface 'Heder'; did you mean 'Header'?"),
+        ("Twist", "error: 'Twist' is no interface name; write package/msg/Name, for example std_msgs/msg/String"),
+        ("a/b/c/d", "error: 'a/b/c/d' is no interface name; write package/msg/Name"),
+        ("../msg/Name", "error: '../msg/Name' is no interface name"),
+    ],
+)
+def test_an_unknown_type(name: str, message: str, show: Show) -> None:
+    """A misspelt type is told with the nearest one, and exit code 2."""
+    code, out, err = show(name)
+    assert (code, out) == (exits.USAGE, "")
+    assert err.startswith(message)

@@ -1,0 +1,188 @@
+"""The command as a whole: its verbs, its help, its exit codes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+import pytest
+
+import graphflow
+from graphflow import errors
+from graphflow.cli import exits, main
+from graphflow.cli.main import cli
+
+VERBS = ("up", "down", "ps", "logs", "plan", "check", "run", "node", "topic", "service", "param", "interface")
+
+
+@pytest.fixture(autouse=True)
+def no_graph_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An environment in which nothing runs, and that is as it was afterwards."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.delenv("ROS_LOG_DIR", raising=False)
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "77")
+
+
+def ends(*words: str) -> int:
+    with pytest.raises(SystemExit) as end:
+        main.main(words)
+    assert isinstance(end.value.code, int)
+    return end.value.code
+
+
+def test_help_lists_every_verb(capsys: pytest.CaptureFixture[str]) -> None:
+    """All verbs with a line each, the first steps on lines of their own, and no control characters."""
+    assert ends("--help") == exits.OK
+    text = capsys.readouterr().out
+    listed = [line.split()[0] for line in text.partition("Commands:\n")[2].splitlines()]
+    assert tuple(listed) == VERBS
+    assert "\n  Begin with:   graphflow up turtlesim\n" in text
+    assert "\\b" not in text
+    assert "\b" not in text
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_is_there(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A verb's module has it, its help works with -h, too, and begins with the line of the overview."""
+    command = cli.get_command(click.Context(cli), verb)
+    assert command is not None
+    assert command.name == verb
+    assert ends(verb, "-h") == exits.OK
+    assert main._VERBS[verb][1].rstrip(".") in " ".join(capsys.readouterr().out.split())
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    """`--version` tells the package's version."""
+    assert ends("--version") == exits.OK
+    assert capsys.readouterr().out == f"graphflow, version {graphflow.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["topik"], "no such command 'topik'; did you mean 'topic'?"),
+        (["launch"], "no such command 'launch'; did you mean 'up'?"),
+        (["lanch"], "no such command 'lanch'; did you mean 'up'?"),
+        (["stop"], "no such command 'stop'; did you mean 'down'?"),
+        (["zzz"], "no such command 'zzz'; there is check, down, interface, logs, "),
+        (["topic", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["topic", "list", "--type"], "--show-types"),
+        (["topic", "pub", "/x"], "Missing argument 'TYPE'"),
+        (["topic", "pub", "-r", "0", "/x", "std_msgs/msg/String"], "Invalid value for '-r' / '--rate'"),
+        (["--domain", "-1", "ps"], "Invalid value for '--domain'"),
+        (["check"], "Missing argument 'GRAPH.yaml'"),
+        (["check", "nothing.yaml"], "error: nothing.yaml: there is no such file"),
+        (["check", "turtlesm"], "error: turtlesm: there is no such file; did you mean 'turtlesim'?"),
+        (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, for example nodes.talker:"),
+        (["topic", "info", "a b"], "error: 'a b' is no topic or service name"),
+    ],
+)
+def test_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Misspelt words come with the nearest right one, on stderr, and exit code 2."""
+    assert ends(*words) == exits.USAGE
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert message in err
+
+
+@pytest.mark.parametrize("words", [["ps"], ["down"], ["down", "--all"], ["logs"], ["ps", "--graph", "x"]])
+def test_nothing_running(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """Without a running graph the verbs of graphs end with 3."""
+    assert ends(*words) == exits.NOT_RUNNING
+    assert capsys.readouterr().err.startswith("error: no graph is running")
+
+
+def test_no_verb_is_help_and_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
+    """`graphflow` alone shows what there is, and is not a success."""
+    assert ends() == exits.USAGE
+    assert "Commands:" in capsys.readouterr().err
+
+
+def test_the_domain_goes_to_every_verb(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`--domain` comes before the environment's."""
+    monkeypatch.setattr(cli, "get_command", lambda *_: click.Command("ps", callback=lambda: None))
+    assert ends("--domain", "12", "ps") == exits.OK
+    assert os.environ["GRAPHFLOW_DOMAIN"] == "12"
+
+
+@pytest.mark.parametrize(
+    ("outcome", "code", "text"),
+    [
+        (None, exits.OK, ""),
+        (4, exits.TIMEOUT, ""),
+        (errors.SupervisorError("nobody is there", 3), exits.NOT_RUNNING, "error: nobody is there\n"),
+        (errors.CallTimeout("too late"), exits.TIMEOUT, "error: too late\n"),
+        (errors.ServerLost("gone"), exits.FAILED, "error: gone\n"),
+        (errors.UnknownInterface("no such type"), exits.USAGE, "error: no such type\n"),
+        (click.UsageError("wrong"), exits.USAGE, "Error: wrong\n"),
+        (click.ClickException("failed"), exits.FAILED, "Error: failed\n"),
+        (KeyboardInterrupt(), exits.OK, ""),
+        (click.Abort(), exits.OK, ""),
+    ],
+)
+def test_how_a_command_ends(
+    outcome: int | BaseException | None,
+    code: int,
+    text: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """What a verb returns is the exit code; an error of ours is one line on stderr; Ctrl-C is no failure."""
+
+    def run() -> int | None:
+        if isinstance(outcome, BaseException):
+            raise outcome
+        return outcome
+
+    monkeypatch.setattr(cli, "get_command", lambda *_: click.Command("ps", callback=run))
+    assert ends("ps") == code
+    err = capsys.readouterr().err
+    assert err.endswith(text)
+    assert "Traceback" not in err
+
+
+def test_an_error_that_is_not_ours_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bug shows as the traceback it is."""
+
+    def run() -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(cli, "get_command", lambda *_: click.Command("ps", callback=run))
+    with pytest.raises(ZeroDivisionError):
+        main.main(["ps"])
+
+
+def test_show_args(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`up -s` tells a file's arguments and starts nothing; what is wrong with the file has its place."""
+    file = tmp_path / "g.yaml"
+    file.write_bytes(
+        b"\xef\xbb\xbfargs:\n  gain: {default: 5.0, unit: 1/s, doc: How sharply.}\n"
+        b"  name: {default: a}\n  mode:\nnodes: {}\n"
+    )
+    assert ends("up", "-s", str(file)) == exits.OK
+    assert capsys.readouterr().out.splitlines() == [
+        "Arguments (pass arguments as '<name>:=<value>'):",
+        "",
+        "    'gain':",
+        "        How sharply. [1/s]",
+        "        (default: 5.0)",
+        "",
+        "    'name':",
+        "        no description given",
+        "        (default: 'a')",
+        "",
+        "    'mode':",
+        "        no description given",
+        "",
+    ]
+    for data, problem in (
+        (b"nodes: {}", ""),
+        (b"a: {", f"error: {file}:1:5: not valid YAML"),
+        (b"\xe9", "is not UTF-8"),
+    ):
+        file.write_bytes(data)
+        code = ends("up", "-s", str(file))
+        out, err = capsys.readouterr()
+        assert (code == exits.OK and "no arguments" in out) if not problem else (code == exits.USAGE and problem in err)

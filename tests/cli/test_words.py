@@ -1,0 +1,174 @@
+"""Words of a command line as options and values: what the shell leaves of an unquoted message is a message."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+from typing import Any
+
+import click
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from graphflow.cli.exits import UsageFault
+from graphflow.cli.param import set_
+from graphflow.cli.topic import pub
+from graphflow.cli.words import message_values, split_values
+from graphflow.msgs.build import from_plain
+from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+from graphflow.msgs.std_msgs.msg import Int32, String
+
+CIRCLE = "{linear: {x: 2.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 1.8}}"
+FLAGS, VALUED = frozenset({"-1", "--once"}), frozenset({"-r", "--rate", "-t"})
+
+
+def parsed(command: click.Command, words: list[str]) -> dict[str, Any]:
+    """What click makes of the words after a command, without running it."""
+    return command.make_context(command.name or "", list(words)).params
+
+
+def published(line: str) -> tuple[dict[str, Any], Any]:
+    """The options of a `topic pub` line, and the values of its message."""
+    found = parsed(pub, shlex.split(line))
+    return found, message_values(found["values"])
+
+
+def test_the_unquoted_command_of_the_slides() -> None:
+    """The course's line has no quotes; the turtle still drives in a circle."""
+    options, values = published(f"-r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist {CIRCLE}")
+    assert len(options["values"]) > 10
+    assert (options["name"], options["type_name"], options["rate"]) == (
+        "/turtle1/cmd_vel",
+        "geometry_msgs/msg/Twist",
+        10.0,
+    )
+    assert from_plain(Twist, values) == Twist(linear=Vector3(x=2.0), angular=Vector3(z=1.8))
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="asks bash itself")
+def test_bash_splits_it_so() -> None:
+    """The words of these tests are those that bash really makes."""
+    done = subprocess.run(
+        ["bash", "-c", f"printf '%s\\n' {CIRCLE} -1"], capture_output=True, text=True, check=True, timeout=20
+    )
+    assert done.stdout.splitlines() == [*CIRCLE.split(), "-1"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "-1 -r 5 /t T {a}",
+        "/t -1 T -r 5 {a}",
+        "/t T {a} -1 -r 5",
+        "/t T {a} --once --rate 5",
+        "/t T {a} --once --rate=5",
+        "/t T {a} -1 -r5",
+        "-r5.0 /t T {a} -1",
+        "/t T -1 -r 5 -- {a}",
+    ],
+)
+def test_options_may_stand_anywhere(line: str) -> None:
+    """Before, between and after the values, in each way an option is written."""
+    options, _ = published(line)
+    assert (options["once"], options["rate"]) == (True, 5.0)
+    assert (options["name"], options["type_name"], options["values"]) == ("/t", "T", ("{a}",))
+
+
+@pytest.mark.parametrize(
+    ("line", "values"),
+    [
+        ("{linear: {x: -1}}", {"linear": {"x": -1}}),
+        ("{linear: {x: -1.0}} -1", {"linear": {"x": -1.0}}),
+        ("{x: -1, y: -2} -1", {"x": -1, "y": -2}),
+        ("data: -1", {"data": -1}),
+        ("data: -1 -1", {"data": -1}),
+        ("[-1, -2]", [-1, -2]),
+        ("-1.5", -1.5),
+        ("-2", -2),
+        ("data: hello", {"data": "hello"}),
+        ("'data: hello world'", {"data": "hello world"}),
+        ("data: hello   world", {"data": "hello world"}),
+        ("""'{data: "a { b"}' -1""", {"data": "a { b"}),
+        ("""'{data: "a } b"}' -1""", {"data": "a } b"}),
+        ("""'{data: "it\\"s {"}' -1""", {"data": 'it"s {'}),
+        ("{data: don\\'t} -1", {"data": "don't"}),
+        ("{data: -- }", {"data": "--"}),
+        ("{data: --once}", {"data": "--once"}),
+        ("{data: 12:30}", {"data": "12:30"}),
+        ("", None),
+        ("''", None),
+        ("{}", {}),
+    ],
+)
+def test_values_that_look_like_options(line: str, values: Any) -> None:
+    """Within brackets, behind a colon, or as a number, a minus sign begins a value; quotes hide brackets."""
+    options, found = published(f"/t T {line}")
+    assert found == values
+    assert options["once"] == line.endswith(" -1") or line == "data: -1"
+
+
+def test_a_negative_number_in_a_message() -> None:
+    """A message's only field may be negative, without any bracket or quote."""
+    assert from_plain(Int32, published("/t std_msgs/msg/Int32 data: -1")[1]) == Int32(data=-1)
+    assert from_plain(String, published("/t std_msgs/msg/String data: -r")[1]) == String(data="-r")
+
+
+@pytest.mark.parametrize(
+    ("line", "value"),
+    [
+        ("/n gain -1.0", ("-1.0",)),
+        ("/n gain -1", ("-1",)),
+        ("--timeout 3 /n gain -1.0", ("-1.0",)),
+        ("/n gain -1.0 --timeout 3", ("-1.0",)),
+        ("/n gain --timeout=3 -1.0", ("-1.0",)),
+        ("/n points [-1, 2]", ("[-1,", "2]")),
+        ("/n name two words", ("two", "words")),
+        ("/n name -x", ("-x",)),
+    ],
+)
+def test_the_value_of_a_parameter(line: str, value: tuple[str, ...]) -> None:
+    """`param set` takes a negative number as the number it is."""
+    found = parsed(set_, line.split())
+    assert (found["name"], found["value"]) == ("/n", value)
+    assert found["timeout"] == (3.0 if "timeout" in line else 2.0)
+
+
+def test_an_unknown_option_is_left_to_click() -> None:
+    """Two dashes and a word are an option, and click knows the nearest."""
+    with pytest.raises(click.NoSuchOption, match="--rat") as caught:
+        parsed(pub, ["/t", "T", "--rat", "5"])
+    assert caught.value.possibilities
+    assert "--rate" in caught.value.possibilities
+
+
+@pytest.mark.parametrize("words", [["/t"], []])
+def test_what_is_missing_is_left_to_click(words: list[str]) -> None:
+    """Too few words are a usage error that names the missing one."""
+    with pytest.raises(click.MissingParameter):
+        parsed(pub, words)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["{x:", "1"], "'{x: 1', character 6: not valid YAML"),
+        (["{x:2.0}"], "'{x:2.0}': write a space after each colon, and quotes around all, for example '{x: 2.0}'"),
+        (["x:2.0", "y:1"], "'x:2.0 y:1': write a space after each colon"),
+        (["{a: *b}"], "*b: aliases are not used here"),
+    ],
+)
+def test_values_that_are_no_message(words: list[str], message: str) -> None:
+    """What is not YAML, or lost its spaces, is wrong usage and says how to write it."""
+    with pytest.raises(UsageFault) as caught:
+        message_values(words)
+    assert message in str(caught.value)
+
+
+@settings(derandomize=True, max_examples=300, deadline=None)
+@given(st.lists(st.sampled_from(["-1", "-r", "5", "{a:", "-2}", "[", "]", "x", "--", "--no", "--rate=3", "'", "-r5"])))
+def test_no_word_is_lost(words: list[str]) -> None:
+    """Splitting moves words, and never makes, changes or drops one; only separators are its own."""
+    found = split_values(words, FLAGS, VALUED)
+    assert sorted(w for w in found if w != "--") == sorted(w for w in words if w != "--")

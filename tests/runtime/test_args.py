@@ -1,0 +1,102 @@
+"""ROS 2's arguments of a node."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow import GraphflowError, Node, Param
+from graphflow.names import Remap
+from graphflow.runtime.args import parse_ros_args
+
+
+class TurtleSim(Node):
+    """Something with parameters."""
+
+    rate = Param(1.0)
+    title = Param("")
+
+
+def test_no_arguments() -> None:
+    """Nothing said is nothing asked for."""
+    parsed = parse_ros_args([])
+
+    assert (parsed.remaps, parsed.params, parsed.log_level, parsed.rest) == ([], [], "info", [])
+
+
+def test_everything_together() -> None:
+    """Rules, parameters and the level between --ros-args and --, and the rest left for the program."""
+    parsed = parse_ros_args(
+        "one --ros-args -r a:=b --remap __ns:=/robot -p rate:=2.0 --param n:title:=x --log-level debug -- two --x".split()
+    )
+
+    assert [str(r) for r in parsed.remaps] == ["a:=b", "__ns:=/robot"]
+    assert parsed.params == [(None, "rate", 2.0, "command line"), ("n", "title", "x", "command line")]
+    assert parsed.log_level == "debug"
+    assert parsed.rest == ["one", "two", "--x"]
+
+
+def test_ros_args_may_come_twice() -> None:
+    """As in ROS 2, each `--ros-args` runs to its `--` or to the end."""
+    parsed = parse_ros_args("--ros-args -r a:=b -- x --ros-args -r c:=d".split())
+
+    assert [str(r) for r in parsed.remaps] == ["a:=b", "c:=d"]
+    assert parsed.rest == ["x"]
+
+
+def test_a_bare_rule_is_a_remap() -> None:
+    """What ROS 2 would ignore in silence is meant as what it looks like."""
+    assert parse_ros_args(["chatter:=news"]).remaps == [Remap.parse("chatter:=news", "command line")]
+    assert parse_ros_args(["-r", "chatter:=news"]).remaps == parse_ros_args(["chatter:=news"]).remaps
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2", 2),
+        ("2.5", 2.5),
+        ("true", True),
+        ("text", "text"),
+        ("'2'", "2"),
+        ("[1, 2]", [1, 2]),
+        ("[a, b]", ["a", "b"]),
+        ("", ""),
+    ],
+)
+def test_parameter_values_are_yaml(text: str, value: Any) -> None:
+    """A value is read as in a graph file."""
+    [(_, _, parsed, _)] = parse_ros_args(["-p", f"x:={text}"]).params
+
+    assert parsed == value
+    assert type(parsed) is type(value)
+
+
+def test_values_for_one_node() -> None:
+    """A parameter may name its node, by the class's name or by the one it is given; the last one said holds."""
+    parsed = parse_ros_args(
+        "-p rate:=1.0 -p turtle_sim:rate:=2.0 -p other:rate:=3.0 -p sim2:title:=two -r __node:=sim2".split()
+    )
+
+    assert parsed.params_for(TurtleSim) == {"rate": (2.0, "command line"), "title": ("two", "command line")}
+    assert TurtleSim(remap=parsed.remaps, overrides=parsed.params_for(TurtleSim)).full_name == "/sim2"
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["-p"], "-p needs a value after it"),
+        (["-r"], "-r needs a value after it"),
+        (["--log-level"], "--log-level needs a value after it"),
+        (["-p", "rate=2"], "-p 'rate=2': write name:=value, for example rate:=2.0"),
+        (["-p", ":=2"], "-p ':=2': write name:=value"),
+        (["-r", "nothing"], "'nothing' is no remap rule; write it as from:=to"),
+        (["-r", "__nod:=x"], "'__nod' is no remap key; did you mean '__node'?; use --ros-args -r __ns:=/turtle1"),
+        (["--ros-args", "--remp", "a:=b"], "'--remp' is no ROS argument; did you mean '--remap'?"),
+    ],
+)
+def test_what_is_wrong_is_said(words: list[str], text: str) -> None:
+    """A mistake is an error that shows how it is written."""
+    with pytest.raises(GraphflowError) as caught:
+        parse_ros_args(words)
+    assert text in str(caught.value)
