@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     )
     from graphflow.runtime.endpoints import TimerInfo
     from graphflow.runtime.node import Node
-    from graphflow.runtime.run import graph, run
+    from graphflow.runtime.run import run, running
     from graphflow.times import Duration, Time
 
 __version__ = "0.1.0"
@@ -66,7 +66,7 @@ _HOMES = {
     ),
     "graphflow.runtime.endpoints": ("TimerInfo",),
     "graphflow.runtime.node": ("Node",),
-    "graphflow.runtime.run": ("graph", "run"),
+    "graphflow.runtime.run": ("run", "running"),
     "graphflow.times": ("Duration", "Time"),
 }
 
@@ -95,8 +95,8 @@ __all__ = [
     "Subscription",
     "Time",
     "TimerInfo",
-    "graph",
     "run",
+    "running",
     "service",
     "subscription",
     "task",

@@ -136,8 +136,8 @@ class RemoteError(CallError):
         message: Its text.
     """
 
-    def __init__(self, type: str, message: str) -> None:  # noqa: A002 - the word on the wire
-        super().__init__(f"{type}: {message}")
+    def __init__(self, type: str, message: str, service: str = "") -> None:  # noqa: A002 - the word on the wire
+        super().__init__(f"the handler of {service} raised {type}: {message}" if service else f"{type}: {message}")
         self.type = type
         self.message = message
 
@@ -148,15 +148,15 @@ class RemoteError(CallError):
         return json.dumps({"type": self.type, "message": self.message}).encode()
 
     @classmethod
-    def from_payload(cls, payload: bytes) -> RemoteError:
+    def from_payload(cls, payload: bytes, service: str) -> RemoteError:
         """Read an error reply; one of another form becomes the message."""
         import json
 
         try:
             data = json.loads(payload)
-            return cls(str(data["type"]), str(data["message"]))
+            return cls(str(data["type"]), str(data["message"]), service)
         except (ValueError, KeyError, TypeError):
-            return cls("Error", payload[:200].decode(errors="replace"))
+            return cls("Error", payload[:200].decode(errors="replace"), service)
 
 
 class DeadlockError(CallError):

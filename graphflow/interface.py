@@ -106,7 +106,7 @@ class Parameter:
         """The range in words, empty when there is none: `0 to 255`, `more than 0`."""
         if self.ge is not None and self.le is not None:
             return f"{self.ge:g} to {self.le:g}"
-        words = {"ge": "at least", "le": "at most", "gt": "more than", "lt": "less than"}
+        words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
         limits = [(word, getattr(self, key)) for key, word in words.items()]
         return " and ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)
 

@@ -40,7 +40,15 @@ def test_no_name_is_listed_twice() -> None:
     assert len(graphflow.__all__) == len(set(graphflow.__all__))
 
 
-@pytest.mark.parametrize("name", graphflow.__all__)
+ROOMS = {path.stem for path in Path(graphflow.__file__).parent.iterdir() if not path.stem.startswith("_")}
+
+
+def test_no_name_is_also_a_module() -> None:
+    """Importing a module of the package sets its name on the package, which would hide a public name."""
+    assert not ROOMS & set(graphflow.__all__)
+
+
+@pytest.mark.parametrize("name", sorted(set(graphflow.__all__) - ROOMS))
 def test_every_name_is_there(name: str) -> None:
     """A public name is what its home calls by that name."""
     assert getattr(graphflow, name) is getattr(import_module(imported_when_used()[name]), name)

@@ -57,12 +57,14 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     path = find_graph(graph)
     from graphflow.errors import GraphFileError
     from graphflow.graph.check import check as check_plan
+    from graphflow.graph.project import add_interfaces
     from graphflow.graph.resolve import load
+    from graphflow.supervisor.classes import read_interfaces
     from graphflow.supervisor.probe import probe
-    from graphflow.supervisor.worker import read_interfaces
 
     try:
         resolved = load(path, args)
+        add_interfaces(Path(resolved.root))
         found = read_interfaces(probe([n.class_path for n in resolved.nodes], resolved.root))
         problems = check_plan(resolved, found)
     except GraphFileError as error:

@@ -188,6 +188,7 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
         if error.exit_code != exits.NOT_RUNNING:
             raise
         folder, alive = _latest(name, error), False
+        output.talk(f"no graph is running; this is the latest run of {folder.parent.name}, {folder.name}")
     files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != "supervisor.log"}
     wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
     for node in wanted:

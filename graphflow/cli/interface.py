@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import click
 
 from graphflow.cli import output
+from graphflow.cli.types import use_project
 
 
 @click.group()
@@ -21,7 +22,7 @@ def show(type_name: str, no_comments: bool) -> None:
     """Show a definition, with the fields of nested types below each."""
     from graphflow.msgs import registry
 
-    _add_project()
+    use_project()
     name = registry.full_name(type_name)
     registry.interface(name)
     package = name.partition("/")[0]
@@ -57,15 +58,3 @@ def _nested(line: str, package: str, depth: int) -> Iterator[str]:
         text = f"{short} {field.name}{f' {field.default}' if field.default is not None else ''}"
         yield "\t" * depth + text
         yield from _nested(str(field.type).replace("/msg/", "/"), inner, depth + 1)
-
-
-def _add_project() -> None:
-    """Search the interfaces of the project around the working directory, too."""
-    from pathlib import Path
-
-    from graphflow.graph.project import project_root
-    from graphflow.msgs import registry
-
-    folder = project_root(Path.cwd()) / "interfaces"
-    if folder.is_dir():
-        registry.add_root(folder)

@@ -141,7 +141,7 @@ def read_value(text: str, type_: int) -> Any:
 
 def _call(view: View, node: str, what: str, request: dict[str, Any], timeout: float) -> Any:
     from graphflow.msgs import registry
-    from graphflow.msgs.build import from_plain
+    from graphflow.msgs.values import from_plain
 
     type_name = f"rcl_interfaces/srv/{what}"
     name = {

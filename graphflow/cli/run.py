@@ -49,16 +49,16 @@ def _import(class_path: str) -> type[Node]:
 
     from graphflow.errors import GraphflowError
     from graphflow.graph.project import demos_root, project_root
-    from graphflow.supervisor.worker import add_root, import_class
+    from graphflow.supervisor.classes import NoModule, add_root, import_class
 
     root = project_root(Path.cwd())
     add_root(str(root))
     try:
         try:
             cls = import_class(class_path)
-        except GraphflowError as error:
+        except NoModule as error:
             # A project's own `nodes` is never mixed with ours: only where there is none do ours stand in for it.
-            if not str(error).endswith("there is no module 'nodes'"):
+            if error.module != "nodes":
                 raise
             add_root(str(demos_root()))
             cls = import_class(class_path)

@@ -7,7 +7,7 @@ import time
 import click
 
 from graphflow.cli import output
-from graphflow.cli.types import agree
+from graphflow.cli.types import agree, use_project
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.introspect.view import View
@@ -36,7 +36,7 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
         output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in services.items())
 
 
-@service.command(cls=ValueCommand)
+@service.command(cls=ValueCommand, short_help="Call a service with a request in YAML.")
 @click.argument("name", metavar="SERVICE")
 @click.argument("type_name", metavar="TYPE")
 @click.argument("values", nargs=-1)
@@ -49,8 +49,9 @@ def call(name: str, type_name: str, values: tuple[str, ...], rate: float | None,
     """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
     from graphflow.introspect.echo import plain
     from graphflow.msgs import registry
-    from graphflow.msgs.build import from_plain
+    from graphflow.msgs.values import from_plain
 
+    use_project()
     full = expand(name, "/", "cli")
     wanted = registry.full_name(type_name)
     values_read = message_values(values)

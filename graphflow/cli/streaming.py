@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.cli import exits, output
+from graphflow.domain import domain_id
 from graphflow.supervisor.control import ControlClient
 
 _POLL = 0.1
@@ -145,12 +146,15 @@ class _Stream:
         run = self._run
         width = max(len(n["node"]) for n in self._nodes)
         class_width = max(len(n["class"]) for n in self._nodes)
-        output.talk(f"graph {run['graph']} is up: {len(self._nodes)} nodes in domain {run['domain']}, {seconds:.2f} s")
+        count = f"{len(self._nodes)} node{'s' if len(self._nodes) > 1 else ''}"
+        output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
         for node in self._nodes:
             place = self._classes.get(node["class"], "")
             output.talk(f"  {node['node']:{width}}  {node['class']:{class_width}}  {_shown(place)}")
         output.talk("")
         output.talk("In another terminal:")
+        if run["domain"] != domain_id():
+            output.talk(f"  export GRAPHFLOW_DOMAIN={run['domain']}".ljust(36) + "first: the file has its own domain")
         output.talk("  graphflow topic list              what the nodes say to each other")
         output.talk(f"  graphflow node info {self._nodes[0]['node']:<14}".ljust(36) + "what a node does")
         output.talk(f"  graphflow param list {self._nodes[0]['node']:<13}".ljust(36) + "what can be set")

@@ -137,7 +137,9 @@ def _described(e: Entity) -> str:
 def echo(name: str, type_name: str | None, **options: object) -> int:
     """Show the messages of a topic as they come. Ctrl-C ends it."""
     from graphflow.cli import echoing
+    from graphflow.cli.types import use_project
 
+    use_project()
     full = expand(name, "/", "cli")
     chosen: EchoOptions = echoing.EchoOptions(**options)  # type: ignore[arg-type]  # click made them of these types
     return echoing.run(full, _echo_type(full, type_name), chosen)
@@ -173,7 +175,7 @@ def _echo_type(full: str, given: str | None) -> str:
     return agree(wanted, types[0], full) if wanted is not None and wanted not in types else (wanted or types[0])
 
 
-@topic.command(cls=ValueCommand)
+@topic.command(cls=ValueCommand, short_help="Publish messages given in YAML.")
 @click.argument("name", metavar="TOPIC")
 @click.argument("type_name", metavar="TYPE")
 @click.argument("values", nargs=-1)
@@ -190,11 +192,12 @@ def _echo_type(full: str, given: str | None) -> str:
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: object) -> int:
     """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; it need not be quoted."""
     from graphflow.cli import publishing
-    from graphflow.cli.types import agree
+    from graphflow.cli.types import agree, use_project
     from graphflow.errors import SupervisorError
     from graphflow.msgs import registry
-    from graphflow.msgs.build import from_plain
+    from graphflow.msgs.values import from_plain
 
+    use_project()
     full = expand(name, "/", "cli")
     wanted = registry.full_name(type_name)
     try:

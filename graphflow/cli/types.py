@@ -1,9 +1,18 @@
-"""When the type on the command line and the type in the graph are not the same."""
+"""Types on the command line: the project's own are known, and may differ from those in the graph."""
 
 from __future__ import annotations
 
 from graphflow.cli import output
 from graphflow.cli.exits import UsageFault
+
+
+def use_project() -> None:
+    """Know the interfaces of the project around the working directory."""
+    from pathlib import Path
+
+    from graphflow.graph.project import add_interfaces, project_root
+
+    add_interfaces(project_root(Path.cwd()))
 
 
 def agree(given: str, actual: str, name: str) -> str:

@@ -127,7 +127,7 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
 
 
 def _check_request(step: PlannedStep, message_class: type[Message]) -> Iterator[Problem]:
-    from graphflow.msgs.build import from_plain
+    from graphflow.msgs.values import from_plain
 
     for name, value in step.request.items():
         try:

@@ -4,25 +4,38 @@ from __future__ import annotations
 
 from pathlib import Path
 
-PACKAGE = Path(__file__).parents[1]
+from graphflow.msgs import registry
+
+PACKAGE = Path(__file__).resolve().parents[1]
+INSTALLED_DEMOS = PACKAGE / "demos"
+"""Where the wheel puts `graphs/` and `nodes/`."""
 
 
 def project_root(path: Path) -> Path:
     """The folder that a graph file's classes are imported from.
 
-    The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the file's own folder.
+    The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the file's own folder. The
+    graphs inside an installed graphflow have the nodes beside them as their project.
     """
     start = path.resolve()
+    if start.is_relative_to(INSTALLED_DEMOS):
+        return INSTALLED_DEMOS
     for folder in [start, *start.parents]:
         if (folder / "pyproject.toml").is_file() and ((folder / "graphs").is_dir() or (folder / "nodes").is_dir()):
             return folder
     return start if start.is_dir() else start.parent
 
 
+def add_interfaces(root: Path) -> None:
+    """Let the messages, services and actions in a project's `interfaces/` be found."""
+    folder = root / "interfaces"
+    if folder.is_dir():
+        registry.add_root(folder)
+
+
 def demos_root() -> Path:
     """The folder with the bundled `graphs/` and `nodes/`: inside the installed package, or the project's own."""
-    installed = PACKAGE / "demos"
-    return installed if installed.is_dir() else PACKAGE.parent
+    return INSTALLED_DEMOS if INSTALLED_DEMOS.is_dir() else PACKAGE.parent
 
 
 def bundled_graphs() -> dict[str, Path]:

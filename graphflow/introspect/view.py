@@ -118,7 +118,7 @@ class View:
         if reply is None:
             raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
         if reply.is_error:
-            raise RemoteError.from_payload(reply.payload)
+            raise RemoteError.from_payload(reply.payload, name)
         return registry.codec(service.response.name).decode(reply.payload)
 
     def owner(self, name: str) -> str:

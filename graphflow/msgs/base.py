@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Generic, Self, TypeVar
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from graphflow.wire.schema import Message as Schema
+
+if TYPE_CHECKING:
+    from graphflow.wire.cdr import Codec
 
 
 class Message:
@@ -17,6 +21,10 @@ class Message:
 
     __slots__ = ()
     SCHEMA: ClassVar[Schema]
+    NESTED: ClassVar[Mapping[str, type[Message]]]
+    """Classes of the message types that the fields hold, by name."""
+    CODEC: ClassVar[Callable[[], Codec]]
+    """Finds the compiled codec."""
 
     def to_bytes(self) -> bytes:
         """The message as CDR with its 4-byte header.
@@ -24,9 +32,7 @@ class Message:
         Raises:
             EncodeError: A field holds a value its type cannot carry; the text begins with the field's path.
         """
-        from graphflow.msgs.registry import codec
-
-        return codec(self.SCHEMA.name).encode(self)
+        return type(self).CODEC().encode(self)
 
     @classmethod
     def from_bytes(cls, payload: bytes) -> Self:
@@ -35,9 +41,7 @@ class Message:
         Raises:
             DecodeError: `payload` is no message of this type.
         """
-        from graphflow.msgs.registry import codec
-
-        message: Self = codec(cls.SCHEMA.name).decode(payload)
+        message: Self = cls.CODEC().decode(payload)
         return message
 
     @classmethod
@@ -73,17 +77,6 @@ class Message:
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
             setattr(self, name, value)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_restore, (self.SCHEMA.name, self.__getstate__()))
-
-
-def _restore(name: str, state: dict[str, Any]) -> Message:
-    from graphflow.msgs.registry import interface_class
-
-    message: Message = object.__new__(interface_class(name))
-    message.__setstate__(state)
-    return message
 
 
 def _same(a: Any, b: Any) -> bool:

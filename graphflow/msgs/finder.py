@@ -10,6 +10,7 @@ from types import ModuleType
 
 from graphflow.errors import UnknownInterface
 from graphflow.msgs import registry
+from graphflow.names import did_you_mean
 
 _ROOT = "graphflow.msgs."
 
@@ -20,10 +21,22 @@ class _InterfaceFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     ) -> importlib.machinery.ModuleSpec | None:
         if not fullname.startswith(_ROOT):
             return None
-        package, _, kind = fullname.removeprefix(_ROOT).partition(".")
-        if kind not in ("", *registry.KINDS) or not registry.package_folders(package):
+        package, *rest = fullname.removeprefix(_ROOT).split(".")
+        if (registry.BUNDLED / f"{package}.py").is_file():  # a module of ours
             return None
-        return importlib.machinery.ModuleSpec(fullname, self, is_package=not kind)
+        if not registry.package_folders(package):
+            hint = did_you_mean(package, registry.packages())
+            raise ModuleNotFoundError(f"there is no interface package {package!r}{hint}", name=fullname)
+        if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
+            # `from package.msg import Nam` looks for a submodule when there is no such attribute: say what there is.
+            known = registry.names_in(package, rest[0])
+            if rest[1] in known:
+                return None
+            hint = did_you_mean(rest[1], known)
+            raise ImportError(f"package {package!r} has no {rest[0]} {rest[1]!r}{hint}", name=fullname)
+        if rest and (len(rest) > 1 or rest[0] not in registry.KINDS):
+            return None
+        return importlib.machinery.ModuleSpec(fullname, self, is_package=True)
 
     def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
         return None

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graphflow.errors import InterfaceError, UnknownInterface
+from graphflow.msgs import build
+from graphflow.msgs.values import checked
 from graphflow.names import did_you_mean
 from graphflow.wire import idl
+from graphflow.wire.cdr import Codec, compile_codec
+from graphflow.wire.codegen import Types
 from graphflow.wire.schema import Action, Interface, Message, Service
 from graphflow.wire.typehash import type_hash
-
-if TYPE_CHECKING:
-    from graphflow.wire.cdr import Codec
 
 KINDS = ("msg", "srv", "action")
 BUNDLED = Path(__file__).parent
@@ -191,23 +192,20 @@ def interface_class(name: str) -> type:
     Raises:
         UnknownInterface, InterfaceError: as `interface`.
     """
-    from graphflow.msgs import build
-
     if name.endswith(("_SendGoal", "_GetResult")):
-        return build.service_class(service_schema(name))
+        return build.service_class(service_schema(name), interface_class)
     if "/msg/" in name or "_" in name.rpartition("/")[2]:
-        return build.message_class(message_schema(name))
+        return build.message_class(message_schema(name), interface_class, partial(codec, name))
     found = interface(name)
-    return build.service_class(found) if isinstance(found, Service) else build.action_class(found)  # type: ignore[arg-type]
+    if isinstance(found, Service):
+        return build.service_class(found, interface_class)
+    assert isinstance(found, Action)
+    return build.action_class(found, interface_class)
 
 
 @cache
 def codec(name: str) -> Codec:
     """The compiled codec of a message."""
-    from graphflow.msgs.build import checked
-    from graphflow.wire.cdr import compile_codec
-    from graphflow.wire.codegen import Types
-
     return compile_codec(message_schema(name), Types(message_schema, interface_class, checked))
 
 

@@ -58,6 +58,8 @@ def parse_ros_args(words: Sequence[str]) -> RosArgs:
             _option(result, word, todo.pop(0))
         elif ":=" in word and not word.startswith("-"):
             _remap(result, word)
+        elif in_ros and word.lstrip("-") == "params-file":
+            raise GraphflowError(f"{word}: parameter files are not there yet; write -p name:=value for each parameter")
         elif in_ros:
             raise GraphflowError(f"{word!r} is no ROS argument{did_you_mean(word, _OPTIONS)}")
         else:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
 
-from graphflow.errors import DeclarationError, GraphflowError, InvalidName, Place
+from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
 from graphflow.interface import Endpoint, Interface, Parameter, type_of
 from graphflow.msgs import base
 from graphflow.msgs.base import Message, Request, Response, Service
@@ -30,6 +30,7 @@ V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float
 F = TypeVar("F", bound=Callable[..., Any])
 
 _MARK = "__graphflow__"
+_NUMBERS = ("int", "float", "list[int]", "list[float]")
 
 
 def _here(depth: int = 2) -> Place:
@@ -42,6 +43,8 @@ def _check_type(type_: Any, kind: type, what: str, place: Place) -> None:
         hint = ""
         if kind is base.Service and isinstance(type_, type) and issubclass(type_, Message):
             hint = "; give the service's class, as in AddTwoInts, not its Request"
+        elif isinstance(type_, str):
+            hint = "; the type comes first, then the name"
         raise DeclarationError(f"{place}: {what} needs a {kind.__name__.lower()} class, not {type_!r}{hint}")
 
 
@@ -55,10 +58,18 @@ def _check_name(name: Any, what: str, place: Place) -> None:
 
 
 def _qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
+    asked = qos if depth is None else depth
+    if not isinstance(asked, (Qos, int)):
+        raise DeclarationError(f"{place}: give a Qos or a queue depth such as 10, not {asked!r}")
     try:
-        return Qos.of(qos if depth is None else depth)
-    except (ValueError, TypeError) as error:
+        return Qos.of(asked)
+    except ValueError as error:
         raise DeclarationError(f"{place}: {error}") from None
+
+
+def _check_group(group: Any, what: str, place: Place) -> None:
+    if group is not None and not isinstance(group, Group):
+        raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
 
 
 class Group:
@@ -85,6 +96,7 @@ class _Held:
     """A declaration that is an attribute of the class; on a node it gives what the node holds."""
 
     attribute = ""
+    place: Place
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.attribute = name
@@ -193,8 +205,11 @@ class Param(_Held, Generic[V]):
                 name or "unnamed", type_of(default), default, self.place, unit, doc, ge, le, gt, lt, read_only
             )
             self.parameter.fit(default)
+            if self.parameter.range_text() and self.parameter.type not in _NUMBERS:
+                raise ParameterError(f"limits are for numbers, and {default!r} is none")
         except GraphflowError as error:
-            raise DeclarationError(f"{self.place}: {error}") from None
+            text = str(error).replace("parameter 'unnamed'", "the default")
+            raise DeclarationError(f"{self.place}: {text}") from None
 
     def __set_name__(self, owner: type, name: str) -> None:
         super().__set_name__(owner, name)
@@ -254,7 +269,7 @@ class Rate:
 
         def plain(source: float | Param[Any] | None) -> float | None:
             if not isinstance(source, Param):
-                return source
+                return None if source is None else float(source)
             return float(source.parameter.default if values is None else values[source.parameter.name])
 
         period, hz = self._sources
@@ -265,6 +280,12 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     name = getattr(fn, "__name__", repr(fn))
     if not inspect.isfunction(fn):
         raise DeclarationError(f"{handler.place}: @{handler.kind} goes on a method, not on {fn!r}")
+    other = getattr(fn, _MARK, None)
+    if isinstance(other, Handler):
+        kinds = f"@{other.kind} and @{handler.kind}"
+        raise DeclarationError(f"{handler.place}: {name} is declared twice, as {kinds}; make it two methods")
+    if inspect.isgeneratorfunction(fn) or inspect.isasyncgenfunction(fn):
+        raise DeclarationError(f"{handler.place}: {name} has a yield in it, so that its body would never run")
     if handler.thread and inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{handler.place}: {name}: thread=True is for `def`, an `async def` runs on the loop")
     positional = [
@@ -296,6 +317,7 @@ def subscription(
     place = _here()
     _check_type(type, Message, "@subscription", place)
     _check_name(name, "@subscription", place)
+    _check_group(group, "@subscription", place)
     handler = Handler("subscription", place, group, thread, type, name, _qos(qos, depth, place))
     return lambda fn: _mark(fn, handler, range(2, 3))
 
@@ -314,6 +336,7 @@ def timer(
     place = _here()
     if callable(period) and not isinstance(period, Param):
         raise DeclarationError(f"{place}: write @timer(0.5) or @timer(hz=2.0), with a period")
+    _check_group(group, "@timer", place)
     try:
         rate = Rate(period, hz)
         rate.period_ns()
@@ -334,6 +357,7 @@ def service(
     place = _here()
     _check_type(type, Service, "@service", place)
     _check_name(name, "@service", place)
+    _check_group(group, "@service", place)
     handler = Handler("service", place, group, thread, type, name)
     return lambda fn: _mark(fn, handler, range(2, 3))
 
@@ -380,6 +404,20 @@ def handlers(cls: type) -> dict[str, Handler]:
         elif attribute in found and not inspect.isfunction(value):
             del found[attribute]
     return found
+
+
+def check_attributes(cls: type, taken: frozenset[str]) -> None:
+    """See that no declaration hides something that every node has.
+
+    Raises:
+        DeclarationError: One does.
+    """
+    found: dict[str, _Held | Handler] = {**held(cls), **handlers(cls)}
+    for attribute, declared in found.items():
+        if attribute in taken:
+            hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
+            text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
+            raise DeclarationError(f"{declared.place}: {text}")
 
 
 def groups(cls: type) -> dict[str, Group]:
@@ -429,6 +467,10 @@ def interface_of(cls: type[Node]) -> Interface:
             endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
     methods = handlers(cls)
     for attribute, handler in methods.items():
+        for name in handler.rate.parameters() if handler.rate is not None else ():
+            if name not in params:
+                text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
+                raise DeclarationError(f"{handler.place}: {text}")
         if handler.kind in ("subscription", "service"):
             type_name = handler.type.NAME if handler.kind == "service" else handler.type.SCHEMA.name
             kind = handler.kind

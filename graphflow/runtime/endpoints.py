@@ -336,7 +336,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 request.reply_error(_STOPPING.to_payload())
                 return
             if not isinstance(error, DecodeError):
-                self.node.log.error("%s: %s", self._label, error, exc_info=error)
+                self.node.handler_failed(self._label, error)
             request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             return
         asked = attachment.unpack(request.attachment)
@@ -444,7 +444,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if answer is None:
                 future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
             elif answer.is_error:
-                error = RemoteError.from_payload(answer.payload)
+                error = RemoteError.from_payload(answer.payload, self.name)
                 lost = ServerLost(f"the server of {self.name} stopped before it answered")
                 future.set_exception(lost if error.type == _STOPPING.type else error)
             elif _sequence_of(answer) == sequence:

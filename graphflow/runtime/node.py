@@ -7,6 +7,8 @@ import inspect
 from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
@@ -115,6 +117,7 @@ class Node:
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declare.class_line()
+        declare.check_attributes(cls, _TAKEN)
         declare.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:
@@ -273,11 +276,16 @@ class Node:
 
     def warn_unused_remaps(self) -> None:
         """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""
-        known = [r.given for r in self.names.derivations.values()]
+        own = {f"~/{name}" for name, _, _ in ParameterServices(self.parameters).handlers()}
+        known = {r.given for r in self.names.derivations.values()} - own
         for rule in self.names.unused():
             if may_make(self.dynamic_names, expand(rule.match, self.namespace, self.name)):
                 continue
-            self.log.warning("the remap %s matches no name of this node%s", rule, did_you_mean(rule.match, known))
+            if rule.match in self.parameters:
+                hint = f"; to set the parameter write -p {rule}"
+            else:
+                hint = did_you_mean(rule.match, known)
+            self.log.warning("the remap %s matches no name of this node%s", rule, hint)
 
     def shutdown(self) -> None:
         """End the node from within: whoever runs it will stop it, and a process with nothing else to run ends."""
@@ -329,14 +337,15 @@ class Node:
     def handler_failed(self, label: str, error: BaseException) -> None:
         """Report an error of a timer or subscription; the node goes on."""
         if not isinstance(error, CancelledError):
-            self._report(label, error)
+            self.report(label, error)
 
-    def _report(self, label: str, error: BaseException) -> None:
+    def report(self, label: str, error: BaseException) -> None:
         """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
         if isinstance(error, GraphflowError):
             self.log.error("%s: %s", label, error)
         else:
-            self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=error)
+            trace = (type(error), error, _users_part(error.__traceback__))
+            self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
 
     # for its endpoints
 
@@ -441,12 +450,28 @@ class Node:
         if self._ended is not None and not self._ended.done():
             error = task.exception()
             assert error is not None
-            self._report(f"task {task.get_name()}", error)
+            self.report(f"task {task.get_name()}", error)
             self.failure = error
             self._ended.set_exception(error)
             self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
 
 
+_TAKEN = frozenset(dir(Node)) | {
+    *("id", "names", "log", "parameters", "failure", "failure_taken"),
+    *("_context", "_ended", "_groups", "_handler_timers", "_held", "_openables", "_tasks", "_token"),
+}
+"""Attributes that no declaration may hide."""
+
+
 def _label(callback: Callable[..., Any] | None, otherwise: str) -> str:
     name = getattr(callback, "__name__", "")
     return name if name and name != "<lambda>" else otherwise
+
+
+def _users_part(trace: TracebackType | None) -> TracebackType | None:
+    """A traceback without the frames of this package that it begins with; whole if there are no others."""
+    here = str(Path(__file__).parent)
+    rest = trace
+    while rest is not None and rest.tb_frame.f_code.co_filename.startswith(here):
+        rest = rest.tb_next
+    return rest or trace

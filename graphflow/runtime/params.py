@@ -143,6 +143,16 @@ def to_descriptor(parameter: Parameter) -> rcl.ParameterDescriptor:
     return descriptor
 
 
+def _is_listed(name: str, prefixes: Iterable[str], depth: int) -> bool:
+    """Whether `name` is under one of the prefixes, if there are any, at most `depth` levels below it; 0: any depth."""
+    for prefix in prefixes or ("",):
+        if not prefix or name == prefix or name.startswith(f"{prefix}."):
+            below = name.removeprefix(prefix).strip(".")
+            if not depth or below.count(".") < depth:
+                return True
+    return False
+
+
 class ParameterServices:
     """The handlers of a node's six parameter services."""
 
@@ -193,17 +203,8 @@ class ParameterServices:
         from graphflow.msgs.rcl_interfaces.msg import ListParametersResult
         from graphflow.msgs.rcl_interfaces.srv import ListParameters
 
-        names, prefixes = [], set()
-        for name in self._parameters.names():
-            prefix = next((p for p in request.prefixes if name == p or name.startswith(f"{p}.")), None)
-            if request.prefixes and prefix is None:
-                continue
-            below = name[len(prefix) :].strip(".") if prefix else name
-            if request.depth and below.count(".") >= request.depth:
-                continue
-            names.append(name)
-            if "." in name:
-                prefixes.add(name.rpartition(".")[0])
+        names = [n for n in self._parameters.names() if _is_listed(n, request.prefixes, request.depth)]
+        prefixes = {name.rpartition(".")[0] for name in names if "." in name}
         return ListParameters.Response(result=ListParametersResult(names=names, prefixes=sorted(prefixes)))
 
     def set(self, request: Any) -> Any:

@@ -17,6 +17,7 @@ from graphflow.runtime.endpoints import TopicPublisher
 from graphflow.times import Time
 
 if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces.msg import Log
     from graphflow.runtime.node import Node
 
 ROOT = "graphflow.node"
@@ -71,7 +72,7 @@ class Rosout(logging.Handler):
         from graphflow.msgs.rcl_interfaces.msg import Log
 
         self._node = node
-        self._thread = threading.get_ident()
+        self._thread = 0
         self._publisher = TopicPublisher(node, Log, "/rosout", ROSOUT)
 
     def attach(self) -> None:
@@ -79,6 +80,7 @@ class Rosout(logging.Handler):
         self._node._openables.append(self)
 
     def open(self) -> None:
+        self._thread = threading.get_ident()
         self._publisher.open()
         self._node.log.addHandler(self)
 
@@ -89,7 +91,7 @@ class Rosout(logging.Handler):
         super().close()
 
     def emit(self, record: logging.LogRecord) -> None:
-        if not self._node.is_running:
+        if not self._node.is_running or not self._is_ours(record):
             return
         loop = self._node.context.loop
         if threading.get_ident() == self._thread:
@@ -97,18 +99,31 @@ class Rosout(logging.Handler):
         elif not loop.is_closed():
             loop.call_soon_threadsafe(self._publish, record)
 
-    def _publish(self, record: logging.LogRecord) -> None:
-        from graphflow.msgs.rcl_interfaces.msg import Log
+    def _is_ours(self, record: logging.LogRecord) -> bool:
+        """Whether this is the nearest node above the record: those of /arm/hand pass by the logger of /arm too."""
+        logger: logging.Logger | None = logging.getLogger(record.name)
+        while logger is not None and not any(isinstance(h, Rosout) for h in logger.handlers):
+            logger = logger.parent
+        return logger is None or self in logger.handlers
 
-        if not self._node.is_running:
-            return
-        message = Log(
-            stamp=Time(int(record.created * 1e9)),
-            level=LEVELS.get(record.levelno, 20),
-            name=record.name.removeprefix(f"{ROOT}."),
-            msg=record.getMessage(),
-            file=record.pathname,
-            function=record.funcName or "",
-            line=record.lineno,
-        )
-        self._publisher.publish(message)
+    def _publish(self, record: logging.LogRecord) -> None:
+        if self._node.is_running:
+            try:
+                self._publisher.publish(to_log(record))
+            except Exception:  # as every handler of Python's: to log is never an error of who logs
+                self.handleError(record)
+
+
+def to_log(record: logging.LogRecord) -> Log:
+    """A record as rcl_interfaces/msg/Log."""
+    from graphflow.msgs.rcl_interfaces.msg import Log
+
+    return Log(
+        stamp=Time(int(record.created * 1e9)),
+        level=LEVELS.get(record.levelno, 20),
+        name=record.name.removeprefix(f"{ROOT}."),
+        msg=record.getMessage(),
+        file=record.pathname,
+        function=record.funcName or "",
+        line=record.lineno,
+    )

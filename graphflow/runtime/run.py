@@ -1,4 +1,4 @@
-"""Running nodes: `graphflow.run(Talker())` is a whole program; `async with graphflow.graph(...)` is for your own."""
+"""Running nodes: `graphflow.run(Talker())` is a whole program; `async with graphflow.running(...)` is for your own."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ from graphflow.runtime.rosout import log_level, setup_console
 
 
 @asynccontextmanager
-async def graph(*nodes: Node, context: Context | None = None) -> AsyncGenerator[Context, None]:
+async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerator[Context, None]:
     """Run nodes for the length of the block; a node that fails cancels the block and its error leaves it.
+
+    Errors come out as they are; only if several happen at once, as an ExceptionGroup.
 
     Args:
         context: Where to run them; without one, a new one over Zenoh, closed at the end.
@@ -26,18 +28,23 @@ async def graph(*nodes: Node, context: Context | None = None) -> AsyncGenerator[
     own = context is None
     context = context or await Context.open()
     started: list[Node] = []
+    failure: BaseException | None = None
     try:
-        async with asyncio.TaskGroup() as group:
-            watchers = []
-            for node in nodes:
-                await node.start(context)
-                started.append(node)
-                watchers.append(group.create_task(node.wait_ended()))
-            try:
-                yield context
-            finally:
-                for watcher in watchers:
-                    watcher.cancel()
+        for node in nodes:
+            await node.start(context)
+            started.append(node)
+        try:
+            async with asyncio.TaskGroup() as group:
+                watchers = [group.create_task(node.wait_ended()) for node in started]
+                try:
+                    yield context
+                finally:
+                    for watcher in watchers:
+                        watcher.cancel()
+        except BaseExceptionGroup as errors:
+            failure = errors.exceptions[0] if len(errors.exceptions) == 1 else errors
+        if failure is not None:  # raised here, where it does not get the group for a context
+            raise failure
     finally:
         for node in reversed(started):
             await node.stop(withdraw=not own)

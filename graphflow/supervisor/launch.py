@@ -115,10 +115,12 @@ class _Launch:
         from graphflow.domain import domain_id
         from graphflow.errors import GraphFileError
         from graphflow.graph.check import check, step_type
+        from graphflow.graph.project import add_interfaces
         from graphflow.graph.resolve import load
-        from graphflow.supervisor.worker import read_interfaces
+        from graphflow.supervisor.classes import read_interfaces
 
         plan = load(self._file, self._given)
+        add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
         probe = {"do": "probe", "classes": sorted({n.class_path for n in plan.nodes}), "root": plan.root}
         self._channel.sendall(json.dumps(probe).encode() + b"\n")

@@ -29,6 +29,7 @@ PROBE_LIMIT = 5.0
 """Seconds that importing all classes of a project may take."""
 _FRESH = ("PYTHON", "LD_", "MALLOC_")
 """Variables with these prefixes act only on a fresh interpreter."""
+_WORKER = (sys.executable, "-P", "-m", "graphflow.supervisor.worker")
 _WARM = (
     *(f"rcl_interfaces/srv/{name}" for name in ("GetParameters", "SetParameters", "ListParameters")),
     *(f"rcl_interfaces/srv/{name}" for name in ("DescribeParameters", "GetParameterTypes", "SetParametersAtomically")),
@@ -198,7 +199,11 @@ class _Preload:
         os.set_inheritable(self._status, True)
         with open(request["log"], "ab") as out:
             child = subprocess.Popen(
-                [sys.executable, "-m", "graphflow.supervisor.worker", json.dumps(request["job"]), str(self._status)],
+                [
+                    *_WORKER,
+                    json.dumps(request["job"]),
+                    str(self._status),
+                ],
                 stdin=subprocess.DEVNULL,
                 stdout=out,
                 stderr=out,
@@ -226,7 +231,7 @@ class _Preload:
 
 def answer_probe(request: dict[str, Any], write: int) -> None:
     """In the probing child: import the classes and write their Interfaces."""
-    from graphflow.supervisor.worker import add_root, interfaces
+    from graphflow.supervisor.classes import add_root, interfaces
 
     add_root(request["root"])
     null = os.open(os.devnull, os.O_RDWR)

@@ -16,7 +16,7 @@ def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
     """What each class declares, as `worker.interfaces` gives it."""
     wanted = sorted(set(classes))
     request = json.dumps({"classes": wanted, "root": root})
-    command = [sys.executable, "-m", "graphflow.supervisor.probe", request]
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.probe", request]
     try:
         result = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_LIMIT, check=False

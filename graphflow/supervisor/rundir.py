@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 
 SOCKET_PATH_LIMIT = 100
@@ -222,6 +223,13 @@ def choose(name: str | None) -> Run:
             raise SupervisorError(f"graph {name!r} is not running{did_you_mean(name, names)}", exit_code=3)
         runs = named
     if len(runs) > 1:
+        here = [r for r in runs if r.domain == domain_id()]
+        runs = here if name is not None and len(here) == 1 else runs
+    if len(runs) > 1:
         listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
-        raise SupervisorError(f"several graphs are running: {listing}; say which with --graph NAME", exit_code=2)
+        raise SupervisorError(
+            f"several graphs are running: {listing}; say which with --graph NAME"
+            f"{' and GRAPHFLOW_DOMAIN' if len({r.graph for r in runs}) < len(runs) else ''}",
+            exit_code=2,
+        )
     return runs[0]

@@ -8,7 +8,7 @@ from typing import Any
 from graphflow.errors import ServiceUnavailable
 from graphflow.graph.plan import PlannedStep
 from graphflow.msgs import registry
-from graphflow.msgs.build import from_plain
+from graphflow.msgs.values import from_plain
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.wire.liveliness import Kind

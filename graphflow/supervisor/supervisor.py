@@ -139,8 +139,8 @@ class Supervisor:
         if self._mode == "client":
             self._tell(
                 event="note",
-                text=f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages pass "
-                "through the rendezvous; nodes that share a `process:` need fewer",
+                text=f"{len(self._processes)} processes are more than a mesh carries ({MESH_LIMIT}): their messages "
+                "pass through the rendezvous; nodes that share a `process:` need fewer",
             )
         self._start_ready_ones()
         await self.ended.wait()

@@ -8,74 +8,21 @@ import json
 import os
 import signal
 import sys
-from importlib import import_module
 from typing import Any
 
-from graphflow.errors import GraphflowError, Problem
+from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
+from graphflow.supervisor.classes import add_root, import_class
 
 EXIT_ERROR = 70
 """A node failed while it ran."""
 EXIT_CONFIGURATION = 78
 """A node could not be made: starting it again would not help."""
-
-
-def add_root(root: str) -> None:
-    """Let modules of the project at `root` be imported.
-
-    Before the installed packages, so that a project's own `nodes` is never shadowed; after the standard library, so
-    that a file that happens to be called `queue.py` breaks nothing.
-    """
-    if root not in sys.path:
-        installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
-        sys.path.insert(next(installed, len(sys.path)), root)
-
-
-def import_class(class_path: str) -> type[Node]:
-    """The node class at `package.module:Class`.
-
-    Raises:
-        GraphflowError: There is none, or importing it failed; the text says where.
-    """
-    module_name, _, class_name = class_path.partition(":")
-    try:
-        found = getattr(import_module(module_name), class_name, None)
-    except Exception as error:
-        raise GraphflowError(f"cannot import {module_name}: {_where(error, module_name)}") from error
-    if found is None:
-        raise GraphflowError(f"module {module_name} has no class {class_name!r}{_classes(module_name, class_name)}")
-    if not (isinstance(found, type) and issubclass(found, Node)):
-        raise GraphflowError(f"{class_path} is no node class: it does not derive from graphflow.Node")
-    return found
-
-
-def _classes(module_name: str, wanted: str) -> str:
-    from graphflow.names import did_you_mean
-
-    values = vars(sys.modules[module_name])
-    return did_you_mean(wanted, [k for k, v in values.items() if isinstance(v, type) and issubclass(v, Node)])
-
-
-def _where(error: BaseException, module_name: str) -> str:
-    """The error in one line, with the place in the user's code it came from."""
-    if isinstance(error, SyntaxError):
-        return f"{error.filename}:{error.lineno}: {error.msg}"
-    if isinstance(error, ModuleNotFoundError) and error.name and module_name.startswith(error.name):
-        return f"there is no module {error.name!r}"
-    frame, place = error.__traceback__, ""
-    while frame is not None:
-        file = frame.tb_frame.f_code.co_filename
-        if not file.startswith("<frozen") and file != __file__ and not file.endswith("importlib/__init__.py"):
-            place = f"{file}:{frame.tb_lineno}: "
-        frame = frame.tb_next
-    text = str(error)
-    # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
-    return text if text.startswith("/") else f"{place}{type(error).__name__}: {text}"
 
 
 def make_node(planned: PlannedNode) -> Node:
@@ -91,29 +38,6 @@ def make_node(planned: PlannedNode) -> Node:
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
     return node
-
-
-def interfaces(class_paths: list[str]) -> dict[str, Any]:
-    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`."""
-    found: dict[str, Any] = {}
-    for path in class_paths:
-        try:
-            cls = import_class(path)
-            found[path] = cls.interface().to_json()
-        except GraphflowError as error:
-            found[path] = {"problem": str(error)}
-    return found
-
-
-def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
-    """What `interfaces` gave, as Interfaces and Problems."""
-    from graphflow.errors import Place
-    from graphflow.interface import Interface
-
-    return {
-        path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
-        for path, value in data.items()
-    }
 
 
 def tell(status: int, **event: Any) -> None:

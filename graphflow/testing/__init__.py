@@ -11,7 +11,26 @@
 Installing graphflow gives pytest the fixture `graph`, and runs `async def` tests that use it.
 """
 
-from graphflow.testing.clock import ManualClock
-from graphflow.testing.graph import Graph, Tap
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from graphflow.testing.clock import ManualClock
+    from graphflow.testing.graph import Graph, Tap
 
 __all__ = ["Graph", "ManualClock", "Tap"]
+
+
+def __getattr__(name: str) -> object:
+    # When first used: pytest loads the plugin beside this in every run, and most runs have no graphs in them.
+    if name == "ManualClock":
+        from graphflow.testing.clock import ManualClock
+
+        return ManualClock
+    if name in __all__:
+        from graphflow.testing import graph
+
+        value: object = getattr(graph, name)
+        return value
+    raise AttributeError(f"module 'graphflow.testing' has no attribute {name!r}")

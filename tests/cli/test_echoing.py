@@ -51,7 +51,7 @@ def test_json_is_whole() -> None:
 def test_long_arrays_and_strings_are_cut() -> None:
     """At 128 elements, or where told, or not at all."""
     message = ParameterValue(integer_array_value=list(range(200)), string_value="x" * 200)
-    assert shown(message).splitlines()[-6:-4] == ["- 127", "- ..."]
+    assert "\n- 127\n- ...\ndouble_array_value: []\n" in shown(message)
     assert f"string_value: {'x' * 128}..." in shown(message)
     cut = shown(message, ["integer_array_value"], truncate_length=2)
     assert cut == "- 0\n- 1\n- ...\n---"

@@ -16,9 +16,9 @@ from graphflow.cli.exits import UsageFault
 from graphflow.cli.param import set_
 from graphflow.cli.topic import pub
 from graphflow.cli.words import message_values, split_values
-from graphflow.msgs.build import from_plain
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.msgs.values import from_plain
 
 CIRCLE = "{linear: {x: 2.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 1.8}}"
 FLAGS, VALUED = frozenset({"-1", "--once"}), frozenset({"-r", "--rate", "-t"})

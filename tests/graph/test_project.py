@@ -55,11 +55,14 @@ def test_bundled_graphs_are_in_the_clone_or_in_the_package(folder: Path, monkeyp
     """In a clone they are the project's own; an installed package has them under `demos`."""
     assert "talker_listener" in bundled_graphs()
     assert bundled_graphs()["talker_listener"].is_file()
-    (folder / "package/demos/graphs").mkdir(parents=True)
-    (folder / "package/demos/graphs/one.yaml").touch()
-    monkeypatch.setattr(project, "PACKAGE", folder / "package")
-    assert demos_root() == folder / "package/demos"
-    assert bundled_graphs() == {"one": folder / "package/demos/graphs/one.yaml"}
+    demos = folder / "a/graphflow/demos"
+    (demos / "graphs").mkdir(parents=True)
+    (demos / "graphs/one.yaml").touch()
+    monkeypatch.setattr(project, "INSTALLED_DEMOS", demos)
+    assert demos_root() == demos
+    assert bundled_graphs() == {"one": demos / "graphs/one.yaml"}
+    assert project_root(demos / "graphs/one.yaml") == demos  # even when installed inside somebody's project
+    assert project_root(folder / "a/graphs/deep/g.yaml") == folder / "a"
 
 
 def test_paths_are_shown_short(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

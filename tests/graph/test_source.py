@@ -208,6 +208,11 @@ def test_half_a_construct_has_a_place(text: str) -> None:
     assert re.match(r"\d+:\d+: ", refused(text))
 
 
+def test_the_limits() -> None:
+    """What a person writes is far below, and what would hurt is far above."""
+    assert (MAX_BYTES, MAX_DEPTH, MAX_VALUES) == (1_000_000, 40, 50_000)
+
+
 def test_a_large_file_is_refused_unread() -> None:
     """Size is looked at first, in bytes."""
     assert refused("é" * (MAX_BYTES // 2 + 1)) == " the file is larger than 1,000,000 bytes"

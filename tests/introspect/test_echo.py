@@ -134,7 +134,9 @@ TEXTS = st.text(st.characters(exclude_categories=["Cs"])) | st.text(
     alphabet="a:-#'\"\\{}[],&*!|>%@` \n\t?.~01é\u2028\r"
 )
 LEAVES = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | TEXTS
-FIELDS = st.from_regex(r"[a-xz][a-z0-9_]{0,5}\Z").filter(lambda name: isinstance(read(name, "").data, str))
+FIELDS = st.from_regex(r"[a-z][a-z0-9_]{0,5}", fullmatch=True).filter(
+    lambda name: name not in ("true", "false", "null")
+)
 DATA = st.recursive(
     LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(FIELDS, inner, max_size=3), max_leaves=12
 )
@@ -158,6 +160,6 @@ def test_a_text_alone_reads_back(text: str) -> None:
 @pytest.mark.parametrize("message", [Twist(), Pose(), ParameterEvent(node="/a: b"), ParameterValue(string_value="#")])
 def test_messages_read_back(message: Any) -> None:
     """What `topic echo` prints can be given to `topic pub`."""
-    from graphflow.msgs.build import from_plain
+    from graphflow.msgs.values import from_plain
 
     assert from_plain(type(message), read(block(plain(message)), "block").data) == message

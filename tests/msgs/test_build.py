@@ -11,7 +11,7 @@ import pytest
 
 from graphflow.errors import EncodeError, InterfaceError
 from graphflow.msgs import base, registry
-from graphflow.msgs.build import checked
+from graphflow.msgs.values import checked
 from graphflow.times import Duration, Time
 from graphflow.wire.schema import INTEGER_RANGES, Message
 

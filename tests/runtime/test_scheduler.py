@@ -601,8 +601,9 @@ async def test_cancelled_in_its_finally(graphflow_runner: asyncio.Runner) -> Non
     assert isinstance(ended[0][1], CancelledError)
 
 
-async def test_cancelled_by_itself(graphflow_runner: asyncio.Runner) -> None:
-    """A run that cancels itself goes on to its next await."""
+@pytest.mark.parametrize("waits", [False, True])
+async def test_cancelled_by_itself(graphflow_runner: asyncio.Runner, waits: bool) -> None:
+    """A run that cancels itself goes on to its next await, be it one that would last for ever."""
     log: list[str] = []
 
     async def body() -> None:
@@ -610,7 +611,7 @@ async def test_cancelled_by_itself(graphflow_runner: asyncio.Runner) -> None:
         assert task is not None
         task.cancel()
         log.append("still here")
-        await asyncio.sleep(0)
+        await (asyncio.Event().wait() if waits else asyncio.sleep(0))
         log.append("not here")
 
     run, ended = activity(body())

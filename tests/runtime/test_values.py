@@ -54,7 +54,9 @@ def test_the_numbers_are_rcl_interfaces() -> None:
     """Types, names and fields agree with the interface definition."""
     constants = {name.lower(): value for name, value in vars(ParameterType).items() if name.startswith("PARAMETER_")}
 
-    assert constants == {f"parameter_{TYPE_NAMES[n].replace(' ', '_')}": n for n in TYPE_NAMES}
+    words = {n: name.replace("boolean", "bool").replace(" ", "_") for n, name in TYPE_NAMES.items()}
+
+    assert constants == {f"parameter_{word}": n for n, word in words.items()}
     assert set(VALUE_FIELDS[1:]) == {f.name for f in ParameterValue.SCHEMA.fields} - {"type"}
 
 

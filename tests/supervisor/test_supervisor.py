@@ -293,7 +293,10 @@ def test_logs_follow(machine: Machine) -> None:
 
 def test_a_large_graph_talks_through_the_rendezvous_and_says_so(machine: Machine) -> None:
     """Beyond what a mesh carries nodes are clients; they hear each other all the same."""
-    pair = "  /t{0}/talker: {{class: nodes.talker:Talker, params: {{rate: 20.0}}}}\n  /t{0}/ear: {{class: nodes.listener:Listener}}\n"
+    pair = (
+        "  /t{0}/talker: {{class: nodes.talker:Talker, params: {{rate: 20.0}}}}\n"
+        "  /t{0}/ear: {{class: nodes.listener:Listener}}\n"
+    )
     file = machine.run_directory / "large.yaml"
     file.write_text("nodes:\n" + "".join(pair.format(i) for i in range(13)))
     text = machine.run("up", "-d", str(file))

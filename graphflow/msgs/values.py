@@ -1,0 +1,202 @@
+"""Values put into messages: checked against the field's type, and converted where nothing is lost by it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from graphflow.errors import EncodeError
+from graphflow.msgs import base
+from graphflow.names import did_you_mean
+from graphflow.wire import schema
+from graphflow.wire.schema import INTEGER_RANGES, Field, FieldType
+
+Nested = Mapping[str, type[base.Message]]
+"""Classes of the message types that a message's fields hold, by name."""
+
+
+def convert(field: Field, value: Any, owner: base.Message) -> Any:
+    """`value` as the field's type wants it.
+
+    Raises:
+        EncodeError: It cannot be; the text begins with `Type.field`.
+    """
+    try:
+        return _value(field.type, value, owner.NESTED)
+    except _Wrong as wrong:
+        path = f"{type(owner).__name__}.{field.name}{wrong.path}"
+        raise EncodeError(f"{path}: {wrong.reason}") from None
+
+
+class _Wrong(Exception):
+    def __init__(self, reason: str, path: str = "") -> None:
+        self.reason, self.path = reason, path
+
+
+def _value(type_: FieldType, value: Any, nested: Nested) -> Any:
+    if type_.array:
+        return _array(type_, value, nested)
+    if type_.is_primitive:
+        return _scalar(type_, value)
+    return _nested(nested[type_.base], value)
+
+
+def _nested(cls: type[base.Message], value: Any) -> Any:
+    if value.__class__ is cls:
+        return value
+    fields = [f.name for f in cls.SCHEMA.fields]
+    if isinstance(value, Mapping):
+        for key in value:
+            if key not in fields:
+                raise _Wrong(f"{cls.SCHEMA.name} has no field {key!r}{did_you_mean(str(key), fields)}")
+        given = dict(value)
+    elif fields and not isinstance(value, base.Message) and all(hasattr(value, f) for f in fields):
+        given = {f: getattr(value, f) for f in fields}
+    else:
+        raise _Wrong(f"expected {cls.SCHEMA.name}, got {value!r}")
+    try:
+        return cls(**given)
+    except EncodeError as error:
+        path, _, reason = str(error).partition(": ")
+        raise _Wrong(reason, path.removeprefix(cls.__name__)) from None
+
+
+def _array(type_: FieldType, value: Any, nested: Nested) -> Any:
+    if isinstance(value, (str, Mapping)) or not hasattr(value, "__len__") or getattr(value, "shape", None) == ():
+        raise _Wrong(f"expected {type_}, got {value!r}")
+    if type_.base in schema.NUMERIC:
+        from graphflow.wire.arrays import as_array
+
+        try:
+            array = as_array(value, type_.base)
+        except (ValueError, TypeError) as error:
+            raise _Wrong(str(error)) from None
+        _check_count(type_, array.size)
+        return array
+    _check_count(type_, len(value))
+    element = type_._replace(array="", size=0)
+    items = []
+    for i, item in enumerate(value):
+        try:
+            items.append(_value(element, item, nested))
+        except _Wrong as wrong:
+            raise _Wrong(wrong.reason, f"[{i}]{wrong.path}") from None
+    return items
+
+
+def _check_count(type_: FieldType, count: int) -> None:
+    if type_.array == "fixed" and count != type_.size:
+        raise _Wrong(f"expected {type_.size} elements ({type_}), got {count}")
+    if type_.array == "bounded" and count > type_.size:
+        raise _Wrong(f"expected at most {type_.size} elements ({type_}), got {count}")
+
+
+def _scalar(type_: FieldType, value: Any) -> Any:
+    name = type_.base
+    if name in schema.STRINGS:
+        if not isinstance(value, str):
+            raise _Wrong(f"expected {name}, got {value!r}")
+        try:
+            length = schema.string_length(name, value)
+        except UnicodeEncodeError:
+            raise _Wrong(f"{value!r} is not valid Unicode") from None
+        if type_.string_bound and length > type_.string_bound:
+            unit = "bytes of UTF-8" if name == "string" else "UTF-16 code units"
+            raise _Wrong(f"expected at most {type_.string_bound} {unit} ({type_}), got {length}")
+        return value
+    if name in ("byte", "char") and isinstance(value, bytes) and len(value) == 1:
+        return value[0]
+    kind = _kind(value)
+    if name == "bool":
+        if kind != "bool":
+            raise _Wrong(f"expected bool, got {value!r}")
+        return bool(value)
+    if name in INTEGER_RANGES:
+        if kind != "int":
+            raise _Wrong(f"expected {name}, got {value!r}")
+        low, high = INTEGER_RANGES[name]
+        if not low <= value <= high:
+            raise _Wrong(f"{value} does not fit {name}: {low} to {high}")
+        return int(value)
+    if kind not in ("int", "float"):
+        raise _Wrong(f"expected {name}, got {value!r}")
+    try:
+        number = float(value)
+    except OverflowError:
+        raise _Wrong(f"{value} is too large for {name}") from None
+    if name == "float32" and 3.4028235677973366e38 <= abs(number) != float("inf"):
+        raise _Wrong(f"{value!r} is too large for float32")
+    return number
+
+
+def _kind(value: Any) -> str:
+    """`bool`, `int`, `float` or something else, numpy's scalars included."""
+    if isinstance(value, bool):
+        return "bool"
+    if isinstance(value, int):
+        return "int"
+    if isinstance(value, float):
+        return "float"
+    kind = getattr(getattr(value, "dtype", None), "kind", "") if getattr(value, "shape", None) == () else ""
+    return {"b": "bool", "i": "int", "u": "int", "f": "float"}.get(kind, "other")
+
+
+def from_plain(cls: type[base.Message], data: Any) -> base.Message:
+    """A message from plain values, as read from YAML: a mapping of field names, or nothing for all defaults.
+
+    Raises:
+        EncodeError: A field does not exist or its value does not fit; the text names the field.
+    """
+    if data is None:
+        data = {}
+    fields = [f.name for f in cls.SCHEMA.fields]
+    if not isinstance(data, Mapping):
+        example = f"{{{fields[0]}: ...}}" if fields else "{}"
+        raise EncodeError(f"{cls.SCHEMA.name} is written as a mapping, for example {example}; got {data!r}")
+    for key in data:
+        if key not in fields:
+            raise EncodeError(f"{cls.SCHEMA.name} has no field {key!r}{did_you_mean(str(key), fields)}")
+    return cls(**data)
+
+
+def checked(message: base.Message) -> base.Message:
+    """A copy with every value, nested ones included, checked and converted.
+
+    Raises:
+        EncodeError: The first wrong value, by its path.
+    """
+    if not isinstance(message, base.Message):
+        raise EncodeError(f"expected a message, got {message!r}")
+    try:
+        return _checked(message)
+    except _Wrong as wrong:
+        raise EncodeError(f"{type(message).__name__}{wrong.path}: {wrong.reason}") from None
+
+
+def _checked(message: base.Message) -> base.Message:
+    result: base.Message = object.__new__(type(message))
+    for field in message.SCHEMA.fields:
+        if not hasattr(message, field.name):
+            raise _Wrong("was deleted", f".{field.name}")
+        try:
+            setattr(result, field.name, _checked_value(field.type, getattr(message, field.name), message.NESTED))
+        except _Wrong as wrong:
+            raise _Wrong(wrong.reason, f".{field.name}{wrong.path}") from None
+    return result
+
+
+def _checked_value(type_: FieldType, value: Any, nested: Nested) -> Any:
+    if isinstance(value, base.Message) and not type_.is_primitive and not type_.array:
+        if value.SCHEMA.name != type_.base:
+            raise _Wrong(f"expected {type_.base}, got {value!r}")
+        return _checked(value)
+    converted = _value(type_, value, nested)
+    if type_.array and not type_.is_primitive:
+        items = []
+        for i, item in enumerate(converted):
+            try:
+                items.append(_checked(item))
+            except _Wrong as wrong:
+                raise _Wrong(wrong.reason, f"[{i}]{wrong.path}") from None
+        return items
+    return converted

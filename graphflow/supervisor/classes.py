@@ -1,0 +1,105 @@
+"""Node classes by their paths, as graph files name them: imported, and described without being run."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+from typing import Any
+
+from graphflow.errors import GraphflowError, Place, Problem
+from graphflow.graph.project import add_interfaces
+from graphflow.interface import Interface
+from graphflow.names import did_you_mean
+from graphflow.runtime.node import Node
+
+
+class NoModule(GraphflowError):
+    """There is no module of that name.
+
+    Attributes:
+        module: The first part of its path that was not found.
+    """
+
+    def __init__(self, module: str, wanted: str, root: str) -> None:
+        parent, _, last = module.rpartition(".")
+        package = sys.modules.get(parent)
+        known = [m.name for m in iter_modules(getattr(package, "__path__", None) if parent else [root])]
+        hint = did_you_mean(last, known) or f"; modules are looked for in {root}"
+        super().__init__(f"cannot import {wanted}: there is no module {module!r}{hint}")
+        self.module = module
+
+
+_roots: list[str] = []
+
+
+def add_root(root: str) -> None:
+    """Let modules and interfaces of the project at `root` be found.
+
+    Before the installed packages, so that a project's own `nodes` is never shadowed; after the standard library, so
+    that a file that happens to be called `queue.py` breaks nothing.
+    """
+    _roots.append(root)
+    add_interfaces(Path(root))
+    if root not in sys.path:
+        installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
+        sys.path.insert(next(installed, len(sys.path)), root)
+
+
+def import_class(class_path: str) -> type[Node]:
+    """The node class at `package.module:Class`.
+
+    Raises:
+        NoModule: There is no such module; the text names the nearest, or where it was looked for.
+        GraphflowError: It has no such class, or importing it failed; the text says where.
+    """
+    module_name, _, class_name = class_path.partition(":")
+    try:
+        module = import_module(module_name)
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and error.name and module_name.startswith(error.name):
+            raise NoModule(error.name, module_name, _roots[-1] if _roots else ".") from None
+        raise GraphflowError(f"cannot import {module_name}: {_where(error)}") from error
+    found = getattr(module, class_name, None)
+    if found is None:
+        classes = [k for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node)]
+        raise GraphflowError(f"module {module_name} has no class {class_name!r}{did_you_mean(class_name, classes)}")
+    if not (isinstance(found, type) and issubclass(found, Node)):
+        raise GraphflowError(f"{class_path} is no node class: it does not derive from graphflow.Node")
+    return found
+
+
+def _where(error: BaseException) -> str:
+    """The error in one line, with the place in the user's code it came from."""
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    frame, place = error.__traceback__, ""
+    while frame is not None:
+        file = frame.tb_frame.f_code.co_filename
+        if not file.startswith("<frozen") and file != __file__ and not file.endswith("importlib/__init__.py"):
+            place = f"{file}:{frame.tb_lineno}: "
+        frame = frame.tb_next
+    text = str(error)
+    # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
+    return text if text.startswith("/") else f"{place}{type(error).__name__}: {text}"
+
+
+def interfaces(class_paths: list[str]) -> dict[str, Any]:
+    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`."""
+    found: dict[str, Any] = {}
+    for path in class_paths:
+        try:
+            cls = import_class(path)
+            found[path] = cls.interface().to_json()
+        except GraphflowError as error:
+            found[path] = {"problem": str(error)}
+    return found
+
+
+def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
+    """What `interfaces` gave, as Interfaces and Problems."""
+    return {
+        path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
+        for path, value in data.items()
+    }

@@ -1,0 +1,215 @@
+"""Python's logging as ROS 2's."""
+
+from __future__ import annotations
+
+import io
+import logging
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from graphflow import GraphflowError, Node, Qos
+from graphflow.msgs.rcl_interfaces.msg import Log
+from graphflow.qos import Durability
+from graphflow.runtime.rosout import ROOT, ConsoleFormatter, log_level, node_logger, setup_console
+from graphflow.testing import Graph
+from graphflow.testing.graph import TRANSIENT_LOCAL
+
+
+@pytest.fixture(autouse=True)
+def all_levels() -> Iterator[None]:
+    """Everything from debug on is logged."""
+    logger = logging.getLogger("graphflow")
+    before = logger.level
+    logger.setLevel(logging.DEBUG)
+    yield
+    logger.setLevel(before)
+
+
+@pytest.mark.parametrize(
+    ("level", "number"),
+    [
+        (logging.DEBUG, Log.DEBUG),
+        (logging.INFO, Log.INFO),
+        (logging.WARNING, Log.WARN),
+        (logging.ERROR, Log.ERROR),
+        (logging.CRITICAL, Log.FATAL),
+    ],
+)
+async def test_records_reach_rosout(graph: Graph, level: int, number: int) -> None:
+    """With the level's number, the node's dotted name, the text, and where it was written."""
+    node = Node("follower", namespace="/turtle1")
+    await graph.start(node)
+    heard = graph.tap(Log, "/rosout")
+
+    node.log.log(level, "at %d%%", 50)
+    await graph.settle()
+
+    [record] = heard
+    assert record.level == number
+    assert record.name == "turtle1.follower"
+    assert record.msg == "at 50%"
+    assert record.file == __file__
+    assert record.function == "test_records_reach_rosout"
+    assert record.line > 0
+    assert record.stamp.sec > 0
+
+
+async def test_a_latecomer_gets_the_history(graph: Graph) -> None:
+    """/rosout is transient local: what was said before is there for who asks for it."""
+    node = Node("talker")
+    await graph.start(node)
+    node.log.info("early")
+    late = graph.tap(Log, "/rosout", TRANSIENT_LOCAL)
+    fresh = graph.tap(Log, "/rosout", Qos(durability=Durability.VOLATILE))
+    await graph.settle()
+    node.log.info("later")
+    await graph.settle()
+
+    assert [r.msg for r in late] == ["early", "later"]
+    assert [r.msg for r in fresh] == ["later"]
+
+
+async def test_only_while_the_node_runs(graph: Graph) -> None:
+    """Before its start and after its stop a node's records stay at home."""
+    heard = graph.tap(Log, "/rosout")
+    node = Node("talker")
+    node.log.info("before")
+    await graph.start(node)
+    node.log.info("during")
+    await graph.stop(node)
+    node.log.info("after")
+    await graph.settle()
+
+    assert [r.msg for r in heard if r.name == "talker"] == ["during"]
+
+
+async def test_a_node_speaks_for_itself_only(graph: Graph) -> None:
+    """A record appears once, also when the name of one node is the beginning of another's; child loggers count."""
+    parent, child = Node("arm"), Node("hand", namespace="/arm")
+    await graph.start(parent, child)
+    heard = graph.tap(Log, "/rosout")
+
+    child.log.info("from the hand")
+    child.log.getChild("thumb").info("from the thumb")
+    parent.log.info("from the arm")
+    await graph.settle()
+
+    assert [(r.name, r.msg) for r in heard] == [
+        ("arm.hand", "from the hand"),
+        ("arm.hand.thumb", "from the thumb"),
+        ("arm", "from the arm"),
+    ]
+
+
+async def test_records_from_threads_reach_rosout(graph: Graph) -> None:
+    """A worker thread may log, and so may a node that was made in another thread than it runs in."""
+    made: list[Node] = []
+    maker = threading.Thread(target=lambda: made.append(Node("elsewhere")))
+    maker.start()
+    maker.join()
+    node = made[0]
+    await graph.start(node)
+    heard = graph.tap(Log, "/rosout")
+
+    await node.offload(node.log.info, "from a thread")
+    node.log.info("from the loop")
+    await graph.settle()
+
+    assert {r.msg for r in heard} == {"from a thread", "from the loop"}
+
+
+async def test_a_record_that_cannot_be_written_is_no_error_of_the_node(
+    graph: Graph, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As with Python's own handlers: it is said on stderr, and the caller goes on."""
+    node = Node("talker")
+    await graph.start(node)
+    monkeypatch.setattr(node.log, "propagate", False)
+    heard = graph.tap(Log, "/rosout")
+
+    node.log.info("%d", "no number")
+    node.log.info("half a surrogate \ud800")
+    node.log.info("good")
+    await graph.settle()
+
+    assert [r.msg for r in heard][-1] == "good"
+    assert "--- Logging error ---" in capsys.readouterr().err
+
+
+async def test_a_node_without_rosout(graph: Graph) -> None:
+    """`enable_rosout=False` is for tools that only look."""
+    node = Node("tool", enable_rosout=False)
+    await graph.start(node)
+
+    assert "/rosout" not in node.context.cache.topics()
+
+
+def record(level: int, text: str, **more: object) -> logging.LogRecord:
+    made = logging.LogRecord(f"{ROOT}.turtle1.follower", level, "file.py", 1, text, (), None)
+    made.created = 1700000000.25
+    for name, value in more.items():
+        setattr(made, name, value)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("level", "word"),
+    [(10, "DEBUG"), (20, "INFO"), (30, "WARN"), (40, "ERROR"), (50, "FATAL")],
+)
+def test_the_console_line_is_ros2s(level: int, word: str) -> None:
+    """Level, time, name, text."""
+    line = ConsoleFormatter().format(record(level, "hello"))
+
+    assert line == f"[{word}] [1700000000.250000000] [turtle1.follower]: hello"
+
+
+def test_a_traceback_follows_its_line() -> None:
+    """An error's traceback is under its line."""
+    try:
+        raise ValueError("wrong")
+    except ValueError as error:
+        made = record(40, "it failed", exc_info=(ValueError, error, error.__traceback__))
+
+    first, *rest = ConsoleFormatter().format(made).splitlines()
+    assert first.endswith("it failed")
+    assert rest[0] == "Traceback (most recent call last):"
+    assert rest[-1] == "ValueError: wrong"
+
+
+def test_loggers_are_named_as_ros2_does() -> None:
+    """Slashes become dots."""
+    assert node_logger("/a/b").name == f"{ROOT}.a.b"
+    assert node_logger("/a").name == f"{ROOT}.a"
+
+
+def test_the_console_is_set_up_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second call changes the level only."""
+    logger = logging.getLogger("graphflow")
+    monkeypatch.setattr(logger, "handlers", [])
+    stream = io.StringIO()
+    monkeypatch.setattr("sys.stderr", stream)
+
+    setup_console()
+    setup_console(logging.ERROR)
+    node_logger("/talker").warning("not this")
+    node_logger("/talker").error("this")
+
+    assert stream.getvalue().count("\n") == 1
+    assert stream.getvalue().endswith("[talker]: this\n")
+
+
+@pytest.mark.parametrize(
+    ("word", "level"),
+    [("debug", 10), ("INFO", 20), ("warn", 30), ("warning", 30), ("error", 40), ("fatal", 50)],
+)
+def test_levels_by_word(word: str, level: int) -> None:
+    """ROS 2's words, in any case."""
+    assert log_level(word) == level
+
+
+def test_a_level_that_is_none() -> None:
+    """The error offers the nearest."""
+    with pytest.raises(GraphflowError, match="'debg' is no log level; did you mean 'debug'"):
+        log_level("debg")

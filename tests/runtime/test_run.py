@@ -1,0 +1,279 @@
+"""Running nodes in a program of one's own, and until they end."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from graphflow import Context, GraphflowError, Node, Param, Publisher, task, timer
+from graphflow.errors import ClosedError
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.args import parse_ros_args
+from graphflow.runtime.run import make, run, running, serve
+from graphflow.testing.clock import ManualClock, settle
+from graphflow.transport.memory import Network
+
+
+class Talker(Node):
+    """Something to run."""
+
+    rate = Param(1.0)
+    out = Publisher(String, "out")
+
+
+class Failing(Node):
+    """Ends with an error after a second."""
+
+    @task
+    async def work(self) -> None:
+        await self.clock.sleep(1.0)
+        raise ValueError("broken")
+
+
+class Quitting(Node):
+    """Ends itself after a second."""
+
+    @timer(1.0)
+    async def quit(self) -> None:
+        self.shutdown()
+
+
+def context_of(clock: ManualClock | None = None) -> Context:
+    return Context(Network().session(asyncio.get_running_loop()), clock=clock or ManualClock())
+
+
+# running
+
+
+async def test_nodes_run_for_the_length_of_the_block(graphflow_runner: asyncio.Runner) -> None:
+    """They are up in it and stopped after it; a context that was given stays open."""
+    one, two, context = Talker("one"), Talker("two"), context_of()
+    async with running(one, two, context=context) as given:
+        assert given is context
+        assert one.is_running
+        assert two.is_running
+        one.out.publish(String())
+
+    assert not one.is_running
+    assert not two.is_running
+    async with running(Talker(), context=context):
+        await settle()
+        assert context.cache.nodes() == ["/talker"]
+    await context.close()
+
+
+async def test_an_error_of_the_block_leaves_it_as_it_is(graphflow_runner: asyncio.Runner) -> None:
+    """Not wrapped in anything, and the nodes are stopped."""
+    node, context = Talker(), context_of()
+    error = ValueError("mine")
+    with pytest.raises(ValueError, match="mine") as caught:
+        async with running(node, context=context):
+            raise error
+
+    assert caught.value is error
+    assert not node.is_running
+    await context.close()
+
+
+async def test_a_nodes_failure_leaves_the_block(graphflow_runner: asyncio.Runner) -> None:
+    """The block is cancelled where it waits, and the node's own error comes out of it."""
+    clock = ManualClock()
+    context, bystander, failing = context_of(clock), Talker(), Failing()
+    log: list[str] = []
+
+    async def program() -> None:
+        async with running(bystander, failing, context=context):
+            try:
+                await asyncio.Event().wait()
+            except asyncio.CancelledError:
+                log.append("cancelled")
+                raise
+
+    block = asyncio.create_task(program())
+    await clock.advance(1.0)
+
+    with pytest.raises(ValueError, match="broken"):
+        await block
+    assert log == ["cancelled"]
+    assert not bystander.is_running
+    assert not failing.is_running
+    await context.close()
+
+
+async def test_failures_together(graphflow_runner: asyncio.Runner) -> None:
+    """A node's failure and an error of the block's cleanup come out as a group: neither is lost."""
+    clock = ManualClock()
+    context = context_of(clock)
+
+    async def program() -> None:
+        async with running(Failing(), context=context):
+            try:
+                await asyncio.Event().wait()
+            finally:
+                raise KeyError("cleanup")
+
+    block = asyncio.create_task(program())
+    await clock.advance(1.0)
+
+    with pytest.raises(ExceptionGroup) as caught:
+        await block
+    assert {type(e) for e in caught.value.exceptions} == {ValueError, KeyError}
+    await context.close()
+
+
+async def test_a_node_that_cannot_start(graphflow_runner: asyncio.Runner) -> None:
+    """Its error comes out as it is, the block is not entered, and the others are stopped."""
+    first, context = Talker("first"), context_of()
+    with pytest.raises(GraphflowError, match="there is no parameter 'rat'"):
+        async with running(first, Talker(rat=1), context=context):
+            pytest.fail("entered")
+
+    assert not first.is_running
+    with pytest.raises(ClosedError):
+        first.out.publish(String())
+    await context.close()
+
+
+async def test_a_node_that_ends_itself_leaves_the_block_alone(graphflow_runner: asyncio.Runner) -> None:
+    """The block says how long its graph lives."""
+    clock = ManualClock()
+    context, node = context_of(clock), Quitting()
+    async with running(node, context=context):
+        await clock.advance(2.0)
+        assert node.is_running
+    assert not node.is_running
+    await context.close()
+
+
+async def test_a_cancelled_block(graphflow_runner: asyncio.Runner) -> None:
+    """Cancelling the program stops the nodes and is a cancellation outside too."""
+    node, context = Talker(), context_of()
+
+    async def program() -> None:
+        async with running(node, context=context):
+            await asyncio.Event().wait()
+
+    block = asyncio.create_task(program())
+    await settle()
+    assert node.is_running
+    block.cancel()
+    await settle()
+
+    assert block.cancelled()
+    assert not node.is_running
+    await context.close()
+
+
+async def test_without_a_context_one_is_opened_and_closed(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also when a node cannot start."""
+    closed: list[Context] = []
+
+    class Opened(Context):
+        @classmethod
+        async def open(cls, *_: Any, **__: Any) -> Context:
+            return cls(Network().session(asyncio.get_running_loop()))
+
+        async def close(self) -> None:
+            closed.append(self)
+            await super().close()
+
+    monkeypatch.setattr("graphflow.runtime.run.Context", Opened)
+    async with running(Talker()) as context:
+        assert closed == []
+    assert closed == [context]
+    with pytest.raises(GraphflowError):
+        async with running(Talker(rat=1)):
+            pytest.fail("entered")
+    assert len(closed) == 2
+
+
+# serve
+
+
+async def serving(*nodes: Node, clock: ManualClock) -> tuple[asyncio.Task[None], asyncio.Event]:
+    stop = asyncio.Event()
+    task = asyncio.create_task(serve(nodes, context_of(clock), stop))
+    await settle()
+    return task, stop
+
+
+async def test_serve_until_asked_to_stop(graphflow_runner: asyncio.Runner) -> None:
+    """Then the nodes are stopped, and nothing is an error."""
+    node, clock = Talker(), ManualClock()
+    served, stop = await serving(node, clock=clock)
+    assert node.is_running
+    stop.set()
+    await served
+
+    assert not node.is_running
+
+
+async def test_serve_until_all_have_ended(graphflow_runner: asyncio.Runner) -> None:
+    """One that ends itself waits for the others."""
+    first, second, clock = Quitting("first"), Talker(), ManualClock()
+    served, _ = await serving(first, second, clock=clock)
+    await clock.advance(2.0)
+    assert not served.done()
+    second.shutdown()
+    await served
+
+    assert not first.is_running
+
+
+async def test_serve_until_one_fails(graphflow_runner: asyncio.Runner) -> None:
+    """Its error comes out, and the others are stopped."""
+    other, clock = Talker(), ManualClock()
+    served, _ = await serving(other, Failing(), clock=clock)
+    await clock.advance(1.0)
+
+    with pytest.raises(ValueError, match="broken"):
+        await served
+    assert not other.is_running
+
+
+async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None:
+    """Each node once it has started, in order; one that cannot start stops those before it."""
+    ready: list[Node] = []
+    first, wrong = Talker("first"), Talker("wrong", rat=1)
+    with pytest.raises(GraphflowError, match="no parameter 'rat'"):
+        await serve([first, wrong], context_of(), asyncio.Event(), ready.append)
+
+    assert ready == [first]
+    assert not first.is_running
+
+
+# make
+
+
+def test_a_node_as_the_command_line_wants_it() -> None:
+    """Names and parameters come from the words."""
+    node = make(Talker, parse_ros_args(["-r", "out:=news", "-p", "rate:=3", "-r", "__ns:=/a"]))
+
+    assert isinstance(node, Talker)
+    assert node.full_name == "/a/talker"
+    assert node.out.name == "/a/news"
+    assert node.rate == 3.0
+    assert node.parameters.source("rate") == "command line"
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "text"),
+    [
+        (["-p", "rate=3"], 2, "error: -p 'rate=3': write name:=value"),
+        (["--ros-args", "--log-level", "loud"], 2, "error: 'loud' is no log level"),
+        (["-p", "rate:=fast"], 1, "error: parameter 'rate' is of type double, 'fast' is not (from command line)"),
+    ],
+)
+def test_run_says_what_is_wrong_with_its_words(
+    capsys: pytest.CaptureFixture[str], words: list[str], code: int, text: str
+) -> None:
+    """Before anything is opened: a sentence and an exit code."""
+    with pytest.raises(SystemExit) as caught:
+        run(Talker, args=words)
+
+    assert caught.value.code == code
+    assert text in capsys.readouterr().err

@@ -1,0 +1,134 @@
+"""Interfaces of classes, found out by importing them in another process."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import Problem
+from graphflow.graph.plan import Plan
+from graphflow.interface import Interface
+from graphflow.supervisor import probe as probe_module
+from graphflow.supervisor.classes import read_interfaces
+from graphflow.supervisor.probe import probe
+
+ROBOT = '''\
+import sys
+from graphflow import Node, Param, subscription
+from graphflow.msgs.std_msgs.msg import String
+
+print("this goes nowhere")
+print("nor does this", file=sys.stderr)
+
+
+class Robot(Node):
+    """A robot."""
+
+    rate = Param(10.0, gt=0.0, unit="Hz", doc="How often.")
+
+    @subscription(String, "words")
+    async def heard(self, message: String) -> None: ...
+
+
+class Wheel: ...
+'''
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project with modules good and bad, away from the working directory."""
+    folder = tmp_path / "project"
+    (folder / "machines").mkdir(parents=True)
+    for name, text in {
+        "robot": ROBOT,
+        "raises": "def deep():\n    raise RuntimeError('no wheels')\n\n\ndeep()\n",
+        "needs": "\nimport no_such_module_anywhere\n",
+        "from_robot": "from machines.robot import Robto\n",
+        "syntax": "class Robot(:\n    pass\n",
+        "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
+        "dies": "import os\nos._exit(3)\n",
+        "hangs": "import time\nwhile True: time.sleep(1)\n",
+    }.items():
+        (folder / "machines" / f"{name}.py").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return folder
+
+
+def found(project: Path, *classes: str) -> dict[str, Interface | Problem]:
+    return read_interfaces(probe(classes, str(project)))
+
+
+def test_what_a_class_declares(project: Path) -> None:
+    """Parameters, topics and types come back as data; the class stays in the other process."""
+    interface = found(project, "machines.robot:Robot")["machines.robot:Robot"]
+    assert isinstance(interface, Interface)
+    assert (interface.class_path, interface.place.file) == ("machines.robot:Robot", f"{project}/machines/robot.py")
+    (rate,) = (p for p in interface.params if p.name == "rate")
+    assert (rate.type, rate.default, rate.gt, rate.unit, rate.doc) == ("float", 10.0, 0.0, "Hz", "How often.")
+    assert ("subscription", "words", "std_msgs/msg/String") in [(e.kind, e.name, e.type) for e in interface.endpoints]
+    assert "machines.robot" not in sys.modules
+
+
+@pytest.mark.parametrize(
+    ("class_path", "problem"),
+    [
+        ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
+        ("machines.robot:Wheel", "machines.robot:Wheel is no node class: it does not derive from graphflow.Node"),
+        (
+            "machines.nowhere:Robot",
+            "cannot import machines.nowhere: there is no module 'machines.nowhere'; there is declares, dies, from_robot, hangs, needs, raises, robot, syntax",
+        ),
+        (
+            "nowhere.robot:Robot",
+            "cannot import nowhere.robot: there is no module 'nowhere'; modules are looked for in {project}",
+        ),
+        ("machines.raises:Robot", "cannot import machines.raises: {machines}/raises.py:2: RuntimeError: no wheels"),
+        (
+            "machines.needs:Robot",
+            "cannot import machines.needs: {machines}/needs.py:2: ModuleNotFoundError: "
+            "No module named 'no_such_module_anywhere'",
+        ),
+        (
+            "machines.from_robot:Robot",
+            "cannot import machines.from_robot: {machines}/from_robot.py:1: ImportError: "
+            "cannot import name 'Robto' from 'machines.robot' ({machines}/robot.py)",
+        ),
+        ("machines.syntax:Robot", "cannot import machines.syntax: {machines}/syntax.py:1: invalid syntax"),
+        ("machines.dies:Robot", "the process that imported it died"),
+    ],
+)
+def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
+    """Each failure names the place in the user's own code, or the nearest name."""
+    fault = found(project, class_path)[class_path]
+    assert isinstance(fault, Problem)
+    assert fault.message == problem.replace("{machines}", f"{project}/machines").replace("{project}", str(project))
+
+
+def test_a_wrong_declaration_names_its_line(project: Path) -> None:
+    """A class that refuses to be made says where, and why."""
+    fault = found(project, "machines.declares:Robot")["machines.declares:Robot"]
+    assert isinstance(fault, Problem)
+    assert f"{project}/machines/declares.py:5: " in fault.message
+    assert "out of range: at least 3" in fault.message
+
+
+def test_one_failure_leaves_the_others(project: Path) -> None:
+    """A module that cannot be imported does not keep the next from being looked at."""
+    classes = found(project, "machines.raises:Robot", "machines.robot:Robot", "machines.syntax:Robot")
+    assert [type(classes[c]) for c in sorted(classes)] == [Problem, Interface, Problem]
+
+
+def test_an_import_that_does_not_end(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is a limit, and the problem says what to do instead."""
+    monkeypatch.setattr(probe_module, "PROBE_LIMIT", 0.5)
+    fault = found(project, "machines.hangs:Robot")["machines.hangs:Robot"]
+    assert isinstance(fault, Problem)
+    assert fault.message.endswith("do the work in the node, not while importing")
+
+
+def test_nothing_to_look_at() -> None:
+    """A plan without classes has no Interfaces."""
+    plan = Plan("empty", "f.yaml", "/nowhere", ())
+    assert probe([n.class_path for n in plan.nodes], plan.root) == {}

@@ -1,0 +1,169 @@
+"""The graph of one test."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from graphflow import Node, Publisher, ServiceUnavailable, service, task
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph, ManualClock, Tap
+from graphflow.testing.graph import TRANSIENT_LOCAL
+
+
+class Adder(Node):
+    """Something to call."""
+
+    out = Publisher(String, "out")
+
+    @service(AddTwoInts, "add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+class Broken(Node):
+    """Fails as soon as it is up."""
+
+    @task
+    async def work(self) -> None:
+        raise ValueError("broken")
+
+
+async def test_nodes_run_each_as_in_a_process_of_its_own(graph: Graph) -> None:
+    """With sessions of their own, one clock, and each other in sight."""
+    one, two = Adder("one"), Adder("two")
+    await graph.start(one, two)
+
+    assert one.context is not two.context
+    assert one.context.session.zid != two.context.session.zid
+    assert one.clock is two.clock is graph.clock
+    assert isinstance(graph.clock, ManualClock)
+    assert one.context.cache.nodes() == two.context.cache.nodes() == ["/one", "/two"]
+
+
+async def test_a_tap_is_a_sequence(graph: Graph) -> None:
+    """Of everything said since it was opened, with the newest at hand."""
+    node = Adder()
+    await graph.start(node)
+    node.out.publish(String(data="too early"))
+    heard: Tap[String] = graph.tap(String, "/out")
+    assert not heard
+    assert len(heard) == 0
+    with pytest.raises(IndexError):
+        heard.latest  # noqa: B018
+
+    for data in "ab":
+        node.out.publish(String(data=data))
+    await graph.settle()
+
+    assert heard
+    assert [m.data for m in heard] == ["a", "b"]
+    assert heard[0].data == "a"
+    assert heard.latest == heard[-1] == String(data="b")
+
+
+async def test_a_tap_may_be_opened_before_there_is_anything(graph: Graph) -> None:
+    """Nodes that start later are heard from their first word."""
+
+    class Early(Node):
+        out = Publisher(String, "out")
+
+        @task
+        async def speak(self) -> None:
+            self.out.publish(String(data="first"))
+
+    heard = graph.tap(String, "/out")
+    await graph.start(Early())
+
+    assert [m.data for m in heard] == ["first"]
+
+
+async def test_the_test_may_speak(graph: Graph) -> None:
+    """With publishers of its own, latched ones too."""
+    heard = graph.tap(String, "/in")
+    graph.publisher(String, "/in").publish(String(data="x"))
+    graph.publisher(String, "/map", TRANSIENT_LOCAL).publish(String(data="kept"))
+    late = graph.tap(String, "/map", TRANSIENT_LOCAL)
+    await graph.settle()
+
+    assert [m.data for m in heard] == ["x"]
+    assert [m.data for m in late] == ["kept"]
+
+
+async def test_the_tests_own_node_is_hidden(graph: Graph) -> None:
+    """Listings that leave hidden nodes out leave it out."""
+    node = Adder()
+    await graph.start(node)
+    graph.tap(String, "/x")
+    await graph.settle()
+
+    assert node.context.cache.nodes(hidden=False) == ["/adder"]
+    assert len(node.context.cache.nodes()) == 2
+
+
+async def test_the_test_may_call(graph: Graph) -> None:
+    """Without touching the clock when somebody answers."""
+    await graph.start(Adder())
+
+    assert (await graph.call(AddTwoInts, "/add", AddTwoInts.Request(a=1, b=2))).sum == 3
+    assert graph.clock.monotonic_ns() == 0
+
+
+async def test_a_call_may_wait_beside_the_test(graph: Graph) -> None:
+    """The test can move the clock while a call of its own is under way."""
+    call = asyncio.create_task(graph.call(AddTwoInts, "/nobody", AddTwoInts.Request()))
+    await graph.clock.advance(1.0)
+
+    with pytest.raises(ServiceUnavailable):
+        await call
+
+
+async def test_a_stopped_node_is_gone(graph: Graph) -> None:
+    """And the rest of the graph has noticed."""
+    one, two = Adder("one"), Adder("two")
+    await graph.start(one, two)
+    await graph.stop(one)
+
+    assert two.context.cache.nodes() == ["/two"]
+    assert not one.is_running
+
+
+def test_closing_stops_everything(graphflow_runner: asyncio.Runner) -> None:
+    """Nothing is left on the network."""
+
+    async def test() -> Graph:
+        graph = Graph()
+        await graph.start(Adder("one"), Adder("two"))
+        graph.tap(String, "/x")
+        await graph.close()
+        return graph
+
+    graph = graphflow_runner.run(test())
+
+    assert not any(node.is_running for node in graph.nodes)
+    assert graph.network.tokens == {}
+    assert not any(graph.network.receivers.values())
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_a_failed_node_fails_its_test(graphflow_runner: asyncio.Runner, taken: bool) -> None:
+    """The error of a node that failed comes out of `close`, unless the test has waited for it; the rest is stopped."""
+    other = Adder()
+
+    async def test() -> None:
+        graph = Graph()
+        broken = Broken()
+        await graph.start(broken, other)
+        if taken:
+            with pytest.raises(ValueError, match="broken"):
+                await broken.wait_ended()
+        await graph.close()
+
+    if taken:
+        graphflow_runner.run(test())
+    else:
+        with pytest.raises(ValueError, match="broken"):
+            graphflow_runner.run(test())
+    assert not other.is_running

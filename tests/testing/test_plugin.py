@@ -1,0 +1,190 @@
+"""The pytest plugin in somebody else's project."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+import graphflow.testing.graph  # noqa: F401 - here and not by a project under test: numpy cannot be imported twice
+
+pytest_plugins = ["pytester"]
+
+NODE = """
+    from graphflow import Node, Param, Publisher, task, timer
+    from graphflow.msgs.std_msgs.msg import String
+
+    class Counter(Node):
+        rate = Param(1.0)
+        out = Publisher(String, "out")
+        count = 0
+
+        @timer(hz=rate)
+        async def tick(self) -> None:
+            self.count += 1
+            self.out.publish(String(data=str(self.count)))
+
+    class Broken(Node):
+        @task
+        async def work(self) -> None:
+            raise ValueError("broken")
+"""
+
+
+def test_a_foreign_project_has_the_fixture(pytester: pytest.Pytester) -> None:
+    """With graphflow installed and nothing configured, an `async def` test that uses `graph` is run."""
+    pytester.makepyfile(
+        counter=NODE,
+        test_counter="""
+            from counter import Counter
+            from graphflow.msgs.std_msgs.msg import String
+
+            async def test_counts(graph):
+                await graph.start(Counter(rate=10))
+                heard = graph.tap(String, "/out")
+                await graph.clock.advance(1.0)
+                assert [m.data for m in heard] == [str(n) for n in range(1, 11)]
+
+            async def test_is_wrong(graph):
+                await graph.start(Counter())
+                assert graph.nodes == []
+        """,
+    )
+
+    result = pytester.runpytest_subprocess("-p", "no:cacheprovider")
+
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*assert graph.nodes == []*"])
+
+
+def run(pytester: pytest.Pytester, test: str) -> pytest.RunResult:
+    pytester.makepyfile(counter=NODE, test_it=test)
+    return pytester.runpytest_inprocess("-p", "no:cacheprovider")
+
+
+def test_fixtures_and_parameters_come_along(pytester: pytest.Pytester) -> None:
+    """An asynchronous test takes other fixtures, parameters and a class around it like any test."""
+    result = run(
+        pytester,
+        """
+        import pytest
+        from counter import Counter
+
+        @pytest.fixture
+        def two():
+            return 2
+
+        class TestIt:
+            @pytest.mark.parametrize("rate", [1, 5])
+            async def test_counts(self, rate, two, graph, tmp_path):
+                assert tmp_path.exists()
+                node = Counter(rate=rate)
+                await graph.start(node)
+                await graph.clock.advance(two)
+                assert node.count == rate * two
+
+        def test_plain(graph):
+            assert graph.nodes == []
+        """,
+    )
+
+    result.assert_outcomes(passed=3)
+
+
+def test_a_failing_node_fails_the_test(pytester: pytest.Pytester) -> None:
+    """Also if the test itself saw nothing wrong."""
+    result = run(
+        pytester,
+        """
+        from counter import Broken
+
+        async def test_it(graph):
+            await graph.start(Broken())
+        """,
+    )
+
+    result.assert_outcomes(passed=1, errors=1)
+    result.stdout.fnmatch_lines(["*ValueError: broken*"])
+
+
+def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a limit of real time, with an error that shows where it waited."""
+    monkeypatch.setattr("graphflow.testing.plugin.LIMIT", 0.01)
+    result = run(
+        pytester,
+        """
+        import asyncio
+
+        async def test_it(graph):
+            await asyncio.Event().wait()  # here
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*asyncio.Event().wait()  # here*", "*TimeoutError*"])
+
+
+def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:
+    """A test that uses nothing of graphflow's is for whichever plugin it was written for."""
+    pytester.makeconftest(
+        """
+        import asyncio, pytest
+
+        ran = []
+
+        @pytest.hookimpl
+        def pytest_pyfunc_call(pyfuncitem):
+            ran.append(pyfuncitem.name)
+            asyncio.run(pyfuncitem.obj())
+            return True
+
+        def pytest_terminal_summary(terminalreporter):
+            terminalreporter.line(f"by the other plugin: {ran}")
+        """
+    )
+    result = run(
+        pytester,
+        """
+        async def test_other():
+            pass
+
+        async def test_ours(graph):
+            pass
+        """,
+    )
+
+    result.assert_outcomes(passed=2)
+    assert "by the other plugin: ['test_other']" in result.stdout.str()
+
+
+def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:
+    """Nothing that one test left behind reaches the next, and its loop is closed."""
+    result = run(
+        pytester,
+        """
+        import asyncio
+
+        loops = []
+
+        async def test_one(graph):
+            loops.append(asyncio.get_running_loop())
+
+        async def test_two(graph, graphflow_runner):
+            assert asyncio.get_running_loop() is not loops[0]
+            assert loops[0].is_closed()
+            assert graphflow_runner.get_loop() is asyncio.get_running_loop()
+        """,
+    )
+
+    result.assert_outcomes(passed=2)
+
+
+def test_the_plugin_is_light() -> None:
+    """Loaded by every pytest run of its environment, it imports nothing that takes long."""
+    code = "import graphflow.testing.plugin, json, sys; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+
+    modules = set(json.loads(done.stdout))
+    assert not modules & {"numpy", "pydantic", "graphflow.runtime.node", "graphflow.testing.graph", "zenoh"}
