@@ -135,7 +135,11 @@ class Interface:
 
     def to_json(self) -> dict[str, Any]:
         """Plain data that `from_json` reads back."""
-        return asdict(self)
+        data = asdict(self)
+        for param in data["params"]:
+            if isinstance(param["default"], bytes):
+                param["default"] = param["default"].decode("latin-1")
+        return data
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Interface:
@@ -144,10 +148,15 @@ class Interface:
             **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc", "groups")},
             place=Place(*data["place"]),
             endpoints=tuple(Endpoint(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
-            params=tuple(Parameter(**{**p, "place": Place(*p["place"])}) for p in data["params"]),
+            params=tuple(_parameter(p) for p in data["params"]),
             handlers=tuple(data["handlers"]),
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         )
+
+
+def _parameter(data: dict[str, Any]) -> Parameter:
+    default = data["default"].encode("latin-1") if data["type"] == "bytes" else data["default"]
+    return Parameter(**{**data, "default": default, "place": Place(*data["place"])})
 
 
 def type_of(value: Any) -> ParamType:

@@ -238,17 +238,21 @@ class Resolver:
     def full_name(self) -> str:
         return join(self.namespace, self.name)
 
+    def full(self, name: str) -> str:
+        """The full name before any remap. Raises InvalidName when it is not legal."""
+        return expand(name, self.namespace, self.name)
+
     def resolve(self, name: str, kind: Kind = "topic") -> str:
         """The full, remapped name.
 
         Raises:
             InvalidName: `name`, or a rule that applies to it, is not legal.
         """
-        expanded = expand(name, self.namespace, self.name)
+        expanded = self.full(name)
         for rule in self.rules:
-            if rule.kind in (None, kind) and expand(rule.match, self.namespace, self.name) == expanded:
+            if rule.kind in (None, kind) and self.full(rule.match) == expanded:
                 self.used.add(rule)
-                resolved = expand(rule.replacement, self.namespace, self.name)
+                resolved = self.full(rule.replacement)
                 self.derivations[expanded] = Resolution(name, expanded, resolved, rule)
                 return resolved
         self.derivations[expanded] = Resolution(name, expanded, expanded)

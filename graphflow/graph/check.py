@@ -8,7 +8,7 @@ from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place,
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
 from graphflow.interface import Endpoint, Interface, may_make
 from graphflow.msgs.base import Message
-from graphflow.names import Resolver, did_you_mean, expand, split
+from graphflow.names import Kind, Resolver, did_you_mean, split
 
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
@@ -20,6 +20,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     problems: list[Problem] = []
     for node in plan.nodes:
         problems += _check_node(node, interfaces)
+    problems += _check_types(plan, interfaces)
     for step in plan.steps:
         problems += _check_step(step, plan, interfaces)
     return problems
@@ -63,9 +64,9 @@ def _class(interface: Interface) -> str:
 
 def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     names = resolver(node)
-    full = {expand(e.name, names.namespace, names.name): e.name for e in interface.endpoints}
+    full = {names.full(e.name): e.name for e in interface.endpoints}
     for rule in node.remaps:
-        match = expand(rule.match, names.namespace, names.name)
+        match = names.full(rule.match)
         if match not in full and not may_make(interface.dynamic_names, match):
             help_ = did_you_mean(rule.match, full.values())
             yield Problem(
@@ -79,6 +80,26 @@ def resolver(node: PlannedNode) -> Resolver:
     """The names of a planned node."""
     namespace, name = split(node.name)
     return Resolver(name, namespace, [rule.remap() for rule in node.remaps])
+
+
+def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """One name, two types: such endpoints never hear each other, and nothing at run time would say so."""
+    first: dict[tuple[str, str], tuple[str, str]] = {}
+    for node in plan.nodes:
+        interface = interfaces[node.class_path]
+        if isinstance(interface, Problem):
+            continue
+        names = resolver(node)
+        for endpoint in interface.endpoints:
+            kind: Kind = "service" if endpoint.kind in ("service", "client") else "topic"
+            name = names.resolve(endpoint.name, kind)
+            type_, owner = first.setdefault((kind, name), (endpoint.type, node.name))
+            if type_ != endpoint.type:
+                rule = next((r for r in node.remaps if names.full(r.replacement) == name), None)
+                yield Problem(
+                    rule.place if rule else node.class_place,
+                    f"{kind} {name} is a {type_} for {owner}, but a {endpoint.type} for {node.name}",
+                )
 
 
 def offered_services(plan: Plan, interfaces: Interfaces) -> dict[str, str]:

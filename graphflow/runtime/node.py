@@ -15,7 +15,7 @@ from graphflow.errors import ClosedError, DeclarationError, GraphflowError, Para
 from graphflow.interface import Interface, may_make
 from graphflow.machines.group import GroupState
 from graphflow.msgs.base import Message, Request, Response, Service
-from graphflow.names import Remap, Resolver, did_you_mean, expand
+from graphflow.names import Remap, Resolver, did_you_mean
 from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare
 from graphflow.runtime.clock import Clock, period_ns
@@ -279,7 +279,7 @@ class Node:
         own = {f"~/{name}" for name, _, _ in ParameterServices(self.parameters).handlers()}
         known = {r.given for r in self.names.derivations.values()} - own
         for rule in self.names.unused():
-            if may_make(self.dynamic_names, expand(rule.match, self.namespace, self.name)):
+            if may_make(self.dynamic_names, self.names.full(rule.match)):
                 continue
             if rule.match in self.parameters:
                 hint = f"; to set the parameter write -p {rule}"
@@ -337,9 +337,9 @@ class Node:
     def handler_failed(self, label: str, error: BaseException) -> None:
         """Report an error of a timer or subscription; the node goes on."""
         if not isinstance(error, CancelledError):
-            self.report(label, error)
+            self.report_error(label, error)
 
-    def report(self, label: str, error: BaseException) -> None:
+    def report_error(self, label: str, error: BaseException) -> None:
         """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
         if isinstance(error, GraphflowError):
             self.log.error("%s: %s", label, error)
@@ -450,7 +450,7 @@ class Node:
         if self._ended is not None and not self._ended.done():
             error = task.exception()
             assert error is not None
-            self.report(f"task {task.get_name()}", error)
+            self.report_error(f"task {task.get_name()}", error)
             self.failure = error
             self._ended.set_exception(error)
             self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it

@@ -235,3 +235,27 @@ def test_the_types_word_comes_first() -> None:
     """A type given in the file is taken, whatever the classes declare."""
     found = plan(STEP.format("{call: /hatch, type: std_srvs/srv/Empty}"))
     assert step_type(found.steps[0], found, KNOWN) == "std_srvs/srv/Empty"
+
+
+@pytest.mark.parametrize(
+    ("remap", "place", "problem"),
+    [
+        (
+            "goal: cmd_vel",
+            "4:13",
+            "topic /cmd_vel is a geometry_msgs/msg/Twist for /b, but a turtlesim/msg/Pose for /b",
+        ),
+        ("goal: /c", "4:13", "topic /c is a std_msgs/msg/String for /a, but a turtlesim/msg/Pose for /b"),
+        ("spawn: /s", "4:13", "service /s is a std_srvs/srv/Empty for /a, but a turtlesim/srv/Spawn for /b"),
+    ],
+)
+def test_one_name_with_two_types(remap: str, place: str, problem: str) -> None:
+    """The course's follower with a Point for a goal: the rule that joins the two is named."""
+    other = Interface(
+        "a.b:Other",
+        "other",
+        NOWHERE,
+        endpoints=(endpoint("publisher", "c", "std_msgs/msg/String"), endpoint("service", "s", "std_srvs/srv/Empty")),
+    )
+    text = f"nodes:\n  a: {{class: a.b:Other}}\n  b: {{class: a.b:Chaser,\n    remap: {{{remap}}}}}\n"
+    assert problems(text, {**KNOWN, "a.b:Other": other}) == [f"{place}: {problem}"]

@@ -78,7 +78,8 @@ def test_what_a_class_declares(project: Path) -> None:
         ("machines.robot:Wheel", "machines.robot:Wheel is no node class: it does not derive from graphflow.Node"),
         (
             "machines.nowhere:Robot",
-            "cannot import machines.nowhere: there is no module 'machines.nowhere'; there is declares, dies, from_robot, hangs, needs, raises, robot, syntax",
+            "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
+            "there is declares, dies, from_robot, hangs, needs, raises, robot, syntax",
         ),
         (
             "nowhere.robot:Robot",
