@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
+from graphflow.transport.rendezvous import address
 from tests.conftest import Machine, Program, alive
 
 pytestmark = pytest.mark.real
@@ -334,3 +337,32 @@ def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
     assert "/proc/nowhere/lab" in text
     assert "ROS_LOG_DIR" in text
     nothing_is_left(machine, [])
+
+
+def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, project: Path) -> None:
+    """Whoever listens where the rendezvous should be is named, and no node is started."""
+    _, port = address(machine.endpoint)
+    with socket.create_server(("127.0.0.1", port)):
+        text = machine.run("up", write(project, GOOD), cwd=project, code=1)
+    assert f"process {os.getpid()}" in text
+    assert "did not answer as Zenoh" in text
+    assert "set GRAPHFLOW_RENDEZVOUS=tcp/127.0.0.1:OTHER_PORT" in text
+    nothing_is_left(machine, [])
+
+
+def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, project: Path) -> None:
+    """A start that takes long can be broken off."""
+    (project / "nodes" / "slow.py").write_text("import time\ntime.sleep(3)\nfrom nodes.lab import Good\n")
+    up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.slow:Good}\n"), cwd=project)
+    machine.until(lambda: bool(children(up.pid)), "the supervisor is there")
+    supervisor = children(up.pid)
+    machine.until(lambda: bool(children(supervisor[0])), "the preload process is there")
+    preload = children(supervisor[0])
+
+    up.end(signal.SIGINT)
+
+    nothing_is_left(machine, [*supervisor, *preload])
+
+
+def children(pid: int) -> list[int]:
+    return [child.pid for child in psutil.Process(pid).children()]
