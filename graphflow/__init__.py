@@ -30,9 +30,9 @@ if TYPE_CHECKING:
         task,
         timer,
     )
-    from graphflow.runtime.endpoints import TimerInfo
     from graphflow.runtime.node import Node
     from graphflow.runtime.run import run, running
+    from graphflow.runtime.timer import TimerInfo
     from graphflow.times import Duration, Time
 
 __version__ = "0.1.0"
@@ -64,7 +64,7 @@ _HOMES = {
         "task",
         "timer",
     ),
-    "graphflow.runtime.endpoints": ("TimerInfo",),
+    "graphflow.runtime.timer": ("TimerInfo",),
     "graphflow.runtime.node": ("Node",),
     "graphflow.runtime.run": ("run", "running"),
     "graphflow.times": ("Duration", "Time"),

@@ -22,8 +22,9 @@ from graphflow.qos import Qos
 from graphflow.runtime.clock import period_ns
 
 if TYPE_CHECKING:
-    from graphflow.runtime.endpoints import ServiceClient, TopicPublisher, TopicSubscription
     from graphflow.runtime.node import Node
+    from graphflow.runtime.services import ServiceClient
+    from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 
 M = TypeVar("M", bound=Message)
 V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])

@@ -20,17 +20,12 @@ from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
-from graphflow.runtime.endpoints import (
-    ServiceClient,
-    ServiceServer,
-    Timer,
-    TimerInfo,
-    TopicPublisher,
-    TopicSubscription,
-)
 from graphflow.runtime.params import Parameters, ParameterServices
 from graphflow.runtime.rosout import Rosout, node_logger
 from graphflow.runtime.scheduler import Finished, Runner
+from graphflow.runtime.services import ServiceClient, ServiceServer
+from graphflow.runtime.timer import Timer, TimerInfo
+from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)

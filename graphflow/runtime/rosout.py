@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from graphflow.errors import GraphflowError
 from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
-from graphflow.runtime.endpoints import TopicPublisher
+from graphflow.runtime.topics import TopicPublisher
 from graphflow.times import Time
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import Any, Generic, TypeVar
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.context import Context
-from graphflow.runtime.endpoints import TopicPublisher
 from graphflow.runtime.node import Node
+from graphflow.runtime.topics import TopicPublisher
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 

@@ -22,14 +22,9 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.srv import AddTwoInts, AddTwoInts_Request, AddTwoInts_Response
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
-from graphflow.runtime.endpoints import (
-    MessageInfo,
-    ServiceClient,
-    ServiceServer,
-    Timer,
-    TopicPublisher,
-    TopicSubscription,
-)
+from graphflow.runtime.services import ServiceClient, ServiceServer
+from graphflow.runtime.timer import Timer
+from graphflow.runtime.topics import MessageInfo, TopicPublisher, TopicSubscription
 from graphflow.testing import Graph, Tap
 
 

@@ -1,0 +1,231 @@
+"""Services and their clients at work."""
+
+from __future__ import annotations
+
+from asyncio import CancelledError, Future
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Generic
+
+from graphflow.errors import (
+    CallTimeout,
+    DecodeError,
+    EncodeError,
+    RemoteError,
+    ServerLost,
+    ServiceUnavailable,
+)
+from graphflow.machines.group import GroupState
+from graphflow.msgs import registry
+from graphflow.msgs.base import Request, Response, Service
+from graphflow.names import did_you_mean
+from graphflow.qos import Qos
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.scheduler import Runner
+from graphflow.times import to_ns
+from graphflow.transport.base import Answer, Caller, Inbox
+from graphflow.wire import attachment
+from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+REQUEST_QUEUE = 1_000
+"""Requests a service holds."""
+DISCOVERY_GRACE = 1.0
+"""Seconds a call waits for a server that nobody has announced yet."""
+
+_STOPPING = RemoteError("Cancelled", "the server is stopping")
+"""What a server that stops answers; no exception class is called that."""
+
+
+class ServiceServer(Endpoint, Generic[Request, Response]):
+    """A service at work."""
+
+    kind = Kind.SERVICE
+
+    def __init__(
+        self,
+        node: Node,
+        type_: type[Service[Request, Response]],
+        name: str,
+        qos: Qos,
+        callback: Callable[[Request], Any],
+        label: str = "",
+        group: GroupState[Runner] | None = None,
+    ) -> None:
+        super().__init__(node, type_.NAME, name, qos)
+        self.type = type_
+        self._callback = callback
+        self._label = label or f"service {name}"
+        self._group = group
+        service = registry.service_schema(type_.NAME)
+        self._decode = registry.codec(service.request.name).decode
+        self._encode = registry.codec(service.response.name).encode
+        self._response: type[Any] = registry.interface_class(service.response.name)
+        self.runner: Runner | None = None
+        self._inbox: Inbox | None = None
+
+    def _open(self, key: str) -> None:
+        session = self.node.context.session
+        self._inbox = Inbox(session.bell, REQUEST_QUEUE, lambda: None)
+        self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
+        self._inbox.ready = self.runner.wake
+        self._declared.append(session.open_server(key, self._inbox))
+
+    def _invoke(self, request: Any) -> Any:
+        attachment.unpack(request.attachment or b"")
+        return self._callback(self._decode(request.payload))
+
+    def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
+        if error is None:
+            try:
+                if result is None and not self._response.SCHEMA.fields:
+                    result = self._response()
+                if result.__class__ is not self._response:
+                    raise TypeError(
+                        f"the handler of {self.name} returned {result!r}, not {self._response.__qualname__}"
+                    )
+                payload = self._encode(result)
+            except (TypeError, EncodeError) as wrong:
+                error = wrong
+        if error is not None:
+            if isinstance(error, CancelledError) and self.runner is not None and self.runner.closed:
+                request.reply_error(_STOPPING.to_payload())
+                return
+            if not isinstance(error, DecodeError):
+                self.node.handler_failed(self._label, error)
+            request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
+            return
+        asked = attachment.unpack(request.attachment)
+        now = self.node.clock.time_ns()
+        request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
+
+    def close(self) -> None:
+        if self.runner is not None:
+            self.runner.cancel()
+        while self._inbox is not None and self._inbox.items:
+            self._inbox.items.popleft().reply_error(_STOPPING.to_payload())
+        super().close()
+
+
+class ServiceClient(Endpoint, Generic[Request, Response]):
+    """A client at work."""
+
+    kind = Kind.CLIENT
+
+    def __init__(self, node: Node, type_: type[Service[Request, Response]], name: str, qos: Qos) -> None:
+        super().__init__(node, type_.NAME, name, qos)
+        self.type = type_
+        service = registry.service_schema(type_.NAME)
+        self._request: type[Any] = registry.interface_class(service.request.name)
+        self._encode = registry.codec(service.request.name).encode
+        self._decode = registry.codec(service.response.name).decode
+        self._sequence = 0
+        self._caller: Caller | None = None
+
+    def _open(self, key: str) -> None:
+        self._caller = self.node.context.session.open_caller(key)
+        self._declared.append(self._caller)
+
+    def service_is_ready(self) -> bool:
+        """Whether a server of this name and type is in the graph and can be reached."""
+        return self._server_announced() and self._caller is not None and self._caller.has_server()
+
+    def _server_announced(self) -> bool:
+        key = self._announced().data_key
+        return any(e.data_key == key for e in self.node.context.cache.endpoints(Kind.SERVICE, self.name))
+
+    async def wait_ready(self, timeout: float | None = None) -> None:
+        """Wait until there is a server.
+
+        Args:
+            timeout: Seconds; None for as long as it takes.
+
+        Raises:
+            ServiceUnavailable: None came in time.
+        """
+        wait = self.node.context.wait_for(self._server_announced)
+        if timeout is None:
+            await wait
+            return
+        try:
+            async with self.node.clock.timeout(timeout):
+                await wait
+        except TimeoutError:
+            raise ServiceUnavailable(self._nobody()) from None
+
+    def _nobody(self) -> str:
+        services = self.node.context.cache.services()
+        if self.name in services:
+            offered = [e.type for e in self.node.context.cache.endpoints(Kind.SERVICE, self.name)]
+            if offered and self.type_name not in offered:
+                return f"service {self.name} is a {offered[0]}, not a {self.type_name}"
+        offers = {e.name for e in self.node.context.cache.endpoints(Kind.SERVICE)}
+        return f"nobody offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
+
+    async def call(self, request: Request, *, timeout: float | None = 10.0) -> Response:
+        """Ask, and wait for the response.
+
+        Args:
+            request: An instance of the service's `Request`.
+            timeout: Seconds until the call gives up; None waits for ever.
+
+        Raises:
+            ServiceUnavailable: There is no server, and none came within `DISCOVERY_GRACE`.
+            ServerLost: The server stopped or went away while the call waited.
+            CallTimeout: The deadline passed.
+            RemoteError: The handler raised.
+            EncodeError: The request does not fit its type.
+            DecodeError: The response is malformed.
+        """
+        if request.__class__ is not self._request:
+            raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
+        payload = self._encode(request)
+        started = self.node.clock.monotonic_ns()
+        if not self._server_announced():
+            await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+        answer = await self._ask(payload, None if timeout is None else started + to_ns(timeout), timeout)
+        message: Response = self._decode(answer.payload)
+        return message
+
+    async def _ask(self, payload: bytes, deadline_ns: int | None, timeout: float | None) -> Answer:
+        entity, caller = self._announced(), self._caller
+        assert caller is not None
+        self._sequence += 1
+        sequence = self._sequence
+        future: Future[Answer] = self.node.context.loop.create_future()
+
+        def answered(answer: Answer | None) -> None:
+            if future.done():
+                return
+            if answer is None:
+                future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
+            elif answer.is_error:
+                error = RemoteError.from_payload(answer.payload, self.name)
+                lost = ServerLost(f"the server of {self.name} stopped before it answered")
+                future.set_exception(lost if error.type == _STOPPING.type else error)
+            elif _sequence_of(answer) == sequence:
+                future.set_result(answer)
+
+        def expired() -> None:
+            if not future.done():
+                future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
+
+        beside = attachment.pack(sequence, self.node.clock.time_ns(), entity.gid)
+        give_up = caller.call(payload, beside, answered)
+        alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
+        try:
+            return await future
+        except (CallTimeout, CancelledError):
+            give_up()
+            raise
+        finally:
+            if alarm is not None:
+                alarm.cancel()
+
+
+def _sequence_of(answer: Answer) -> int | None:
+    try:
+        return attachment.unpack(answer.attachment or b"").sequence
+    except DecodeError:
+        return None

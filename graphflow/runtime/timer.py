@@ -1,0 +1,115 @@
+"""Timers at work."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graphflow.machines.group import GroupState
+from graphflow.runtime.clock import period_ns
+from graphflow.runtime.scheduler import Runner
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+
+class TimerInfo(NamedTuple):
+    """When a timer's run was due and when it began, in nanoseconds of the clock, and how many runs were missed."""
+
+    expected_ns: int
+    actual_ns: int
+    skipped: int
+
+
+class Timer:
+    """A timer at work: skips missed periods, keeps phase, and has one run at a time.
+
+    Source: rcl timer.c.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        period_ns: int,
+        callback: Callable[[TimerInfo], Any],
+        label: str,
+        group: GroupState[Runner] | None = None,
+    ) -> None:
+        self.node = node
+        self.skipped = 0
+        """Periods missed since the start, because a run or its wait for a slot took too long."""
+        self._period_ns = period_ns
+        self._label = label
+        self._callback = callback
+        self._group = group
+        self._next_ns = 0
+        self._handle: Any = None
+        self._due: deque[TimerInfo] = deque()
+        self.runner: Runner | None = None
+        self._missed = 0
+
+    def __repr__(self) -> str:
+        return f"<Timer {self._label} {self._period_ns / 1e9:g} s>"
+
+    @property
+    def period(self) -> float:
+        """Seconds between runs. Setting it re-arms the timer, one new period from now.
+
+        Raises:
+            ValueError: It is set to something that is not a positive number.
+        """
+        return self._period_ns / 1e9
+
+    @period.setter
+    def period(self, seconds: float) -> None:
+        self._period_ns = period_ns(seconds, None)
+        if self.runner is not None:
+            self.reset()
+
+    def open(self) -> None:
+        """Start. Done by the node."""
+        self.runner = self.node.runner(self._label, self._group, self._due, self._callback, self._finished)
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew: the next run is one period from now."""
+        self._arm(self.node.clock.monotonic_ns() + self._period_ns)
+
+    def _arm(self, when_ns: int) -> None:
+        if self._handle is not None:
+            self._handle.cancel()
+        self._next_ns = when_ns
+        self._handle = self.node.clock.call_at(when_ns, self._fire)
+
+    def _fire(self) -> None:
+        assert self.runner is not None
+        now, due = self.node.clock.monotonic_ns(), self._next_ns
+        late = max(0, (now - due) // self._period_ns)
+        self._arm(due + (1 + late) * self._period_ns)
+        self.skipped += late
+        self._missed += late
+        if self._due or self.runner.active:
+            self.skipped += 1
+            self._missed += 1
+            return
+        self._due.append(TimerInfo(due, now, self._missed))
+        self._missed = 0
+        self.runner.wake()
+
+    def _finished(self, info: TimerInfo, result: Any, error: BaseException | None) -> None:
+        if error is not None:
+            self.node.handler_failed(self._label, error)
+
+    def cancel(self) -> None:
+        """Stop the timer; `reset` starts it again."""
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+
+    def close(self) -> None:
+        """Stop for good, and cancel a run under way."""
+        self.cancel()
+        if self.runner is not None:
+            self.runner.cancel()
+        self.node.forget(self)
