@@ -7,14 +7,13 @@ node is made each declaration becomes a call of the `create_*` method that a nod
 from __future__ import annotations
 
 import inspect
-import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
-from graphflow.interface import Endpoint, Interface, Parameter, type_of
+from graphflow.interface import Parameter, type_of
 from graphflow.msgs import base
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import expand
@@ -30,7 +29,7 @@ M = TypeVar("M", bound=Message)
 V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])
 F = TypeVar("F", bound=Callable[..., Any])
 
-_MARK = "__graphflow__"
+MARK = "__graphflow__"
 _NUMBERS = ("int", "float", "list[int]", "list[float]")
 
 
@@ -93,7 +92,7 @@ class Group:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
 
 
-class _Held:
+class Held:
     """A declaration that is an attribute of the class; on a node it gives what the node holds."""
 
     attribute = ""
@@ -107,7 +106,7 @@ class _Held:
         raise NotImplementedError
 
 
-class Publisher(_Held, Generic[M]):
+class Publisher(Held, Generic[M]):
     """A topic the node publishes.
 
     Args:
@@ -134,7 +133,7 @@ class Publisher(_Held, Generic[M]):
         return node.create_publisher(self.type, self.name, self.qos)
 
 
-class Subscription(_Held, Generic[M]):
+class Subscription(Held, Generic[M]):
     """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as `Publisher`."""
 
     def __init__(self, type: type[M], name: str, qos: Qos | int = 10, *, depth: int | None = None) -> None:  # noqa: A002
@@ -154,7 +153,7 @@ class Subscription(_Held, Generic[M]):
         return node.create_subscription(self.type, self.name, None, self.qos)
 
 
-class Client(_Held, Generic[Request, Response]):
+class Client(Held, Generic[Request, Response]):
     """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`."""
 
     def __init__(self, type: type[Service[Request, Response]], name: str) -> None:  # noqa: A002
@@ -174,7 +173,7 @@ class Client(_Held, Generic[Request, Response]):
         return node.create_client(self.type, self.name)
 
 
-class Param(_Held, Generic[V]):
+class Param(Held, Generic[V]):
     """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
 
     Args:
@@ -281,7 +280,7 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     name = getattr(fn, "__name__", repr(fn))
     if not inspect.isfunction(fn):
         raise DeclarationError(f"{handler.place}: @{handler.kind} goes on a method, not on {fn!r}")
-    other = getattr(fn, _MARK, None)
+    other = getattr(fn, MARK, None)
     if isinstance(other, Handler):
         kinds = f"@{other.kind} and @{handler.kind}"
         raise DeclarationError(f"{handler.place}: {name} is declared twice, as {kinds}; make it two methods")
@@ -301,7 +300,7 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     takes_info = handler.kind == "timer" and len(positional) == 2
     object.__setattr__(handler, "place", place)
     object.__setattr__(handler, "takes_info", takes_info)
-    setattr(fn, _MARK, handler)
+    setattr(fn, MARK, handler)
     return fn
 
 
@@ -369,122 +368,3 @@ def task(fn: F) -> F:
     if not inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{place}: @task goes on an `async def` method, without parentheses")
     return _mark(fn, Handler("task", place), range(1, 2))
-
-
-def snake_case(class_name: str) -> str:
-    """`TurtleSim` as `turtle_sim`: the name of a node that was given none."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
-
-
-def default_name(cls: type[Node]) -> str:
-    """The name of a node of the class that is given none."""
-    return cls.node_name or snake_case(cls.__name__)
-
-
-def held(cls: type) -> dict[str, _Held]:
-    """The declarations of a class and its parents by attribute; a child's stand in place of its parents'."""
-    found: dict[str, _Held] = {}
-    for attribute, value in _members(cls):
-        if isinstance(value, _Held):
-            found[attribute] = value
-        else:
-            found.pop(attribute, None)
-    return found
-
-
-def handlers(cls: type) -> dict[str, Handler]:
-    """The handlers of a class and its parents by method name.
-
-    A child that overrides a handler's method without decorating it anew replaces the body only.
-    """
-    found: dict[str, Handler] = {}
-    for attribute, value in _members(cls):
-        mark = getattr(value, _MARK, None)
-        if isinstance(mark, Handler):
-            found[attribute] = mark
-        elif attribute in found and not inspect.isfunction(value):
-            del found[attribute]
-    return found
-
-
-def check_attributes(cls: type, taken: frozenset[str]) -> None:
-    """See that no declaration hides something that every node has.
-
-    Raises:
-        DeclarationError: One does.
-    """
-    found: dict[str, _Held | Handler] = {**held(cls), **handlers(cls)}
-    for attribute, declared in found.items():
-        if attribute in taken:
-            hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
-            text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
-            raise DeclarationError(f"{declared.place}: {text}")
-
-
-def groups(cls: type) -> dict[str, Group]:
-    """The groups of a class and its parents by name."""
-    return {name: value for name, value in _members(cls) if isinstance(value, Group)}
-
-
-def _members(cls: type) -> Iterator[tuple[str, Any]]:
-    for parent in reversed(cls.__mro__):
-        yield from vars(parent).items()
-
-
-def class_line() -> int:
-    """The line of the class statement that is being executed; to be called by `__init_subclass__`.
-
-    Python has it from 3.13 on as `__firstlineno__`. To look for it in the source takes milliseconds a class.
-    """
-    frame = sys._getframe(1)
-    while frame.f_code.co_name == "__init_subclass__" and frame.f_back is not None:
-        frame = frame.f_back
-    return frame.f_lineno
-
-
-def interface_of(cls: type[Node]) -> Interface:
-    """Everything a node class declares, as data.
-
-    Raises:
-        DeclarationError: Two declarations contradict each other.
-    """
-    line: int = vars(cls).get("__firstlineno__", 0)
-    try:
-        place = Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
-    except (OSError, TypeError):
-        place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
-    endpoints: list[Endpoint] = []
-    params: dict[str, Parameter] = {}
-    kinds = {Publisher: "publisher", Subscription: "subscription", Client: "client"}
-    for attribute, declared in held(cls).items():
-        if isinstance(declared, Param):
-            p = declared.parameter
-            if p.name in params:
-                raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
-            params[p.name] = p
-        elif isinstance(declared, (Publisher, Subscription, Client)):
-            type_name = declared.type.NAME if isinstance(declared, Client) else declared.type.SCHEMA.name
-            kind: Any = kinds[type(declared)]
-            endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
-    methods = handlers(cls)
-    for attribute, handler in methods.items():
-        for name in handler.rate.parameters() if handler.rate is not None else ():
-            if name not in params:
-                text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
-                raise DeclarationError(f"{handler.place}: {text}")
-        if handler.kind in ("subscription", "service"):
-            type_name = handler.type.NAME if handler.kind == "service" else handler.type.SCHEMA.name
-            kind = handler.kind
-            endpoints.append(Endpoint(kind, handler.name, type_name, attribute, handler.place))
-    dynamic = cls.dynamic_names
-    return Interface(
-        class_path=f"{cls.__module__}:{cls.__qualname__}",
-        node_name=default_name(cls),
-        place=place,
-        doc=inspect.cleandoc(cls.__doc__ or ""),
-        endpoints=tuple(endpoints),
-        params=tuple(params.values()),
-        handlers=tuple(name for name, handler in methods.items() if handler.kind != "task"),
-        groups={name: group.limit for name, group in groups(cls).items()},
-        dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
-    )

@@ -17,7 +17,7 @@ from graphflow.machines.group import GroupState
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import Remap, Resolver, did_you_mean
 from graphflow.qos import PARAMETERS, SERVICES, Qos
-from graphflow.runtime import declare
+from graphflow.runtime import declare, declared
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
 from graphflow.runtime.params import Parameters, ParameterServices
@@ -83,7 +83,7 @@ class Node:
         **params: Any,
     ) -> None:
         rules = [r if isinstance(r, Remap) else Remap.parse(r) for r in remap]
-        self.names = Resolver(name or declare.default_name(type(self)), namespace, rules)
+        self.names = Resolver(name or declared.default_name(type(self)), namespace, rules)
         self.id = 0
         self.failure: BaseException | None = None
         """The error that ended the node."""
@@ -106,14 +106,14 @@ class Node:
     @classmethod
     def interface(cls) -> Interface:
         """Everything the class declares, as data; known without making a node."""
-        return declare.interface_of(cls)
+        return declared.interface_of(cls)
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
-            cls.__firstlineno__ = declare.class_line()
-        declare.check_attributes(cls, _TAKEN)
-        declare.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
+            cls.__firstlineno__ = declared.class_line()
+        declared.check_attributes(cls, _TAKEN)
+        declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.full_name}{' running' if self.is_running else ''}>"
@@ -265,7 +265,7 @@ class Node:
             await self.stop()
             raise
         self.warn_unused_remaps()
-        for attribute, handler in declare.handlers(type(self)).items():
+        for attribute, handler in declared.handlers(type(self)).items():
             if handler.kind == "task":
                 self.spawn(getattr(self, attribute))
 
@@ -384,9 +384,9 @@ class Node:
 
     def _bind_declarations(self, parameter_services: bool, rosout: bool) -> None:
         cls = type(self)
-        declared = declare.held(cls)
+        held = declared.held(cls)
         # Parameters first: names and periods of the others may come from them.
-        for attribute, item in declared.items():
+        for attribute, item in held.items():
             if isinstance(item, declare.Param):
                 self._held[attribute] = item.bind(self)
         self.parameters.check(self._check_rates)
@@ -395,10 +395,10 @@ class Node:
             Rosout(self).attach()
         if parameter_services:
             self._open_parameter_services()
-        for attribute, item in declared.items():
+        for attribute, item in held.items():
             if not isinstance(item, declare.Param):
                 self._held[attribute] = item.bind(self)
-        for attribute, handler in declare.handlers(cls).items():
+        for attribute, handler in declared.handlers(cls).items():
             self._bind_handler(getattr(self, attribute), handler)
 
     def _bind_handler(self, method: Callable[..., Any], handler: declare.Handler) -> None:

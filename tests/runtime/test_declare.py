@@ -28,7 +28,7 @@ from graphflow.interface import Interface
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Durability, Qos
-from graphflow.runtime.declare import snake_case
+from graphflow.runtime.declared import snake_case
 from graphflow.testing import Graph
 
 X: Any = None

@@ -1,0 +1,135 @@
+"""What a node class and its parents declare, taken together: merged, checked, and as data."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import DeclarationError, Place
+from graphflow.interface import Endpoint, Interface, Parameter
+from graphflow.runtime.declare import MARK, Client, Group, Handler, Held, Param, Publisher, Subscription
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+
+def snake_case(class_name: str) -> str:
+    """`TurtleSim` as `turtle_sim`: the name of a node that was given none."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
+
+
+def default_name(cls: type[Node]) -> str:
+    """The name of a node of the class that is given none."""
+    return cls.node_name or snake_case(cls.__name__)
+
+
+def held(cls: type) -> dict[str, Held]:
+    """The declarations of a class and its parents by attribute; a child's stand in place of its parents'."""
+    found: dict[str, Held] = {}
+    for attribute, value in _members(cls):
+        if isinstance(value, Held):
+            found[attribute] = value
+        else:
+            found.pop(attribute, None)
+    return found
+
+
+def handlers(cls: type) -> dict[str, Handler]:
+    """The handlers of a class and its parents by method name.
+
+    A child that overrides a handler's method without decorating it anew replaces the body only.
+    """
+    found: dict[str, Handler] = {}
+    for attribute, value in _members(cls):
+        mark = getattr(value, MARK, None)
+        if isinstance(mark, Handler):
+            found[attribute] = mark
+        elif attribute in found and not inspect.isfunction(value):
+            del found[attribute]
+    return found
+
+
+def check_attributes(cls: type, taken: frozenset[str]) -> None:
+    """See that no declaration hides something that every node has.
+
+    Raises:
+        DeclarationError: One does.
+    """
+    found: dict[str, Held | Handler] = {**held(cls), **handlers(cls)}
+    for attribute, declared in found.items():
+        if attribute in taken:
+            hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
+            text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
+            raise DeclarationError(f"{declared.place}: {text}")
+
+
+def groups(cls: type) -> dict[str, Group]:
+    """The groups of a class and its parents by name."""
+    return {name: value for name, value in _members(cls) if isinstance(value, Group)}
+
+
+def _members(cls: type) -> Iterator[tuple[str, Any]]:
+    for parent in reversed(cls.__mro__):
+        yield from vars(parent).items()
+
+
+def class_line() -> int:
+    """The line of the class statement that is being executed; to be called by `__init_subclass__`.
+
+    Python has it from 3.13 on as `__firstlineno__`. To look for it in the source takes milliseconds a class.
+    """
+    frame = sys._getframe(1)
+    while frame.f_code.co_name == "__init_subclass__" and frame.f_back is not None:
+        frame = frame.f_back
+    return frame.f_lineno
+
+
+def interface_of(cls: type[Node]) -> Interface:
+    """Everything a node class declares, as data.
+
+    Raises:
+        DeclarationError: Two declarations contradict each other.
+    """
+    line: int = vars(cls).get("__firstlineno__", 0)
+    try:
+        place = Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
+    except (OSError, TypeError):
+        place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
+    endpoints: list[Endpoint] = []
+    params: dict[str, Parameter] = {}
+    kinds = {Publisher: "publisher", Subscription: "subscription", Client: "client"}
+    for attribute, declared in held(cls).items():
+        if isinstance(declared, Param):
+            p = declared.parameter
+            if p.name in params:
+                raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
+            params[p.name] = p
+        elif isinstance(declared, (Publisher, Subscription, Client)):
+            type_name = declared.type.NAME if isinstance(declared, Client) else declared.type.SCHEMA.name
+            kind: Any = kinds[type(declared)]
+            endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
+    methods = handlers(cls)
+    for attribute, handler in methods.items():
+        for name in handler.rate.parameters() if handler.rate is not None else ():
+            if name not in params:
+                text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
+                raise DeclarationError(f"{handler.place}: {text}")
+        if handler.kind in ("subscription", "service"):
+            type_name = handler.type.NAME if handler.kind == "service" else handler.type.SCHEMA.name
+            kind = handler.kind
+            endpoints.append(Endpoint(kind, handler.name, type_name, attribute, handler.place))
+    dynamic = cls.dynamic_names
+    return Interface(
+        class_path=f"{cls.__module__}:{cls.__qualname__}",
+        node_name=default_name(cls),
+        place=place,
+        doc=inspect.cleandoc(cls.__doc__ or ""),
+        endpoints=tuple(endpoints),
+        params=tuple(params.values()),
+        handlers=tuple(name for name, handler in methods.items() if handler.kind != "task"),
+        groups={name: group.limit for name, group in groups(cls).items()},
+        dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
+    )
