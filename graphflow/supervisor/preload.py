@@ -75,7 +75,7 @@ class _Preload:
 
     def run(self) -> None:
         """Serve requests until the supervisor closes its end."""
-        from graphflow.supervisor.worker import die_with_parent
+        from graphflow.supervisor.worker import STOP_SIGNALS, die_with_parent
 
         die_with_parent()
         # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
@@ -86,8 +86,8 @@ class _Preload:
             os.set_blocking(fd, False)
         signal.set_wakeup_fd(wake_write, warn_on_full_buffer=False)
         signal.signal(signal.SIGCHLD, lambda *_: None)
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)
+        # Blocked and not ignored: one that is sent to a worker just forked waits until the worker can act on it.
+        signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
         selector = selectors.DefaultSelector()
         selector.register(self._channel, selectors.EVENT_READ)
         selector.register(wake_read, selectors.EVENT_READ)

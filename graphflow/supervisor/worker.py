@@ -19,6 +19,8 @@ from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
 from graphflow.supervisor.classes import add_root, import_class
 
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""The preload process blocks these; a worker has them unblocked once it can act on them."""
 EXIT_ERROR = 70
 """A node failed while it ran."""
 EXIT_CONFIGURATION = 78
@@ -55,6 +57,7 @@ def main(job: dict[str, Any], status: int) -> None:
         job: `nodes` (as of Plan.to_json), `root`, `process`, `domain`, `mode`.
         status: The pipe to the supervisor.
     """
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable()
     setup_console()
     code = 0
@@ -113,8 +116,8 @@ def become(log: str, env: dict[str, str]) -> None:
     """Turn a fresh child into a worker's process: session, signals, stdin, log file, environment."""
     os.setsid()
     die_with_parent()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGPIPE):
-        signal.signal(number, signal.SIG_DFL if number != signal.SIGPIPE else signal.SIG_IGN)
+    for number in (*STOP_SIGNALS, signal.SIGCHLD):
+        signal.signal(number, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
     null = os.open(os.devnull, os.O_RDONLY)
     os.dup2(null, 0)
