@@ -77,7 +77,12 @@ class Parameter:
 
     def _scalar(self, type_: ParamType, value: Any) -> Any:
         if type_ == "float" and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
+            try:
+                value = float(value)
+            except OverflowError:
+                raise ParameterError(
+                    f"parameter {self.name!r} = {str(value)[:20]}... is too large for a double"
+                ) from None
         if type_ == "bytes" and isinstance(value, bytearray):
             value = bytes(value)
         try:

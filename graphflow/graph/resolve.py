@@ -414,11 +414,22 @@ def _order(
     ordered_steps = [replace(s, after=resolved(s.after, ("steps", s.name))) for s in steps]
     items: list[PlannedNode | PlannedStep] = [*ordered_nodes, *ordered_steps]
     places = {item.name: item.place for item in items}
-    cycle = find_cycle({item.name: item.after for item in items})
+    cycle = find_cycle({item.name: item.after for item in items}) or _process_cycle(items, places)
     if cycle:
         ring = " after ".join([*cycle, cycle[0]])
         problems.add(places[cycle[0]], f"waits for itself: {ring}; remove one of these after:")
     return ordered_nodes, ordered_steps
+
+
+def _process_cycle(items: list[PlannedNode | PlannedStep], places: dict[str, Place]) -> list[str]:
+    """A ring among processes: each is started as a whole, so all its nodes wait for what one of them waits for."""
+    whole = {i.name: f"process {i.process}" for i in items if isinstance(i, PlannedNode) and i.process}
+    edges: dict[str, set[str]] = {}
+    for item in items:
+        name = whole.get(item.name, item.name)
+        places.setdefault(name, item.place)
+        edges.setdefault(name, set()).update({whole.get(a, a) for a in item.after} - {name})
+    return find_cycle({name: sorted(after) for name, after in edges.items()})
 
 
 def find_cycle(edges: Mapping[str, Iterable[str]]) -> list[str]:

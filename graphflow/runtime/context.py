@@ -6,8 +6,8 @@ import asyncio
 import itertools
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from graphflow.domain import domain_id
 from graphflow.machines.cache import Change, GraphCache
@@ -17,6 +17,8 @@ from graphflow.wire.liveliness import watch_key
 
 if TYPE_CHECKING:
     from graphflow.transport.takeover import Takeover
+
+T = TypeVar("T")
 
 
 class Context:
@@ -33,6 +35,8 @@ class Context:
         self._takeover: Takeover | None = None
         self._listeners: list[Callable[[Change], None]] = []
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
+        self.busy_threads = 0
+        """Worker threads under way; the interpreter would wait for them at its end."""
         self._threads: ThreadPoolExecutor | None = None
 
     @classmethod
@@ -61,7 +65,7 @@ class Context:
             raise
         context = cls(session, domain=domain)
         context._takeover = takeover
-        takeover.guard(session, loop)
+        takeover.guard(session)
         token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}"
         context._declared.append(session.announce(token))
         return context
@@ -70,12 +74,25 @@ class Context:
         """A number no other node or endpoint of this process has."""
         return next(self._ids)
 
-    @property
-    def threads(self) -> ThreadPoolExecutor:
-        """Where handlers marked `thread=True` and `offload` run."""
+    async def in_thread(self, fn: Callable[..., T], *args: Any) -> T:
+        """Run `fn(*args)` in a worker thread. It goes on there, and is counted as busy, if the waiting is cancelled."""
         if self._threads is None:
             self._threads = ThreadPoolExecutor(thread_name_prefix="graphflow")
-        return self._threads
+        self.busy_threads += 1
+
+        def counted() -> T:
+            try:
+                return fn(*args)
+            finally:
+                self.busy_threads -= 1
+
+        future = self._threads.submit(counted)
+        future.add_done_callback(self._count_unstarted)
+        return await asyncio.wrap_future(future)
+
+    def _count_unstarted(self, future: Future[Any]) -> None:
+        if future.cancelled():  # it never ran
+            self.busy_threads -= 1
 
     def on_change(self, listener: Callable[[Change], None]) -> Callable[[], None]:
         """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""

@@ -98,6 +98,7 @@ class Node:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._ended: asyncio.Future[None] | None = None
         self._token: Any = None
+        self._rosout: Rosout | None = None
         self._groups: dict[declare.Group, GroupState[Runner]] = {}
         self._handler_timers: list[tuple[declare.Rate, Timer]] = []
         self._made = True
@@ -228,7 +229,7 @@ class Node:
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
         """Run `fn(*args)` in a worker thread, for work that would hold the loop. It cannot be cancelled."""
-        return await self.context.loop.run_in_executor(self.context.threads, fn, *args)
+        return await self.context.in_thread(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
         """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
@@ -312,22 +313,27 @@ class Node:
             runner: Runner | None = getattr(openable, "runner", None)
             if runner is not None:
                 ending[runner.cancel()] = runner.name
-        for task in self._tasks:
+        for task in self._tasks - {asyncio.current_task()}:
             task.cancel()
             ending[task] = task.get_name()
-        if ending:
-            _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
-            if stuck:
-                names = ", ".join(ending[future] for future in stuck)
-                self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
-        if withdraw:
-            for openable in list(reversed(self._openables)):
-                openable.close()
-            if self._token is not None:
-                self._token.close()
-        if self._ended is not None and not self._ended.done():
-            self._ended.cancel()
-        self._context = None
+        try:
+            if ending:
+                _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
+                if stuck:
+                    names = ", ".join(ending[future] for future in stuck)
+                    self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
+        finally:
+            # Also when this wait is cancelled: nothing stays open.
+            if self._rosout is not None:
+                self._rosout.detach()
+            if withdraw:
+                for openable in list(reversed(self._openables)):
+                    openable.close()
+                if self._token is not None:
+                    self._token.close()
+            if self._ended is not None and not self._ended.done():
+                self._ended.cancel()
+            self._context = None
 
     def handler_failed(self, label: str, error: BaseException) -> None:
         """Report an error of a timer or subscription; the node goes on."""
@@ -392,7 +398,7 @@ class Node:
         self.parameters.check(self._check_rates)
         self.parameters.observe(self._parameter_changed)
         if rosout:
-            Rosout(self).attach()
+            self._rosout = self._add(Rosout(self))
         if parameter_services:
             self._open_parameter_services()
         for attribute, item in held.items():
@@ -453,7 +459,7 @@ class Node:
 
 _TAKEN = frozenset(dir(Node)) | {
     *("id", "names", "log", "parameters", "failure", "failure_taken"),
-    *("_context", "_ended", "_groups", "_handler_timers", "_held", "_openables", "_tasks", "_token"),
+    *("_context", "_ended", "_groups", "_handler_timers", "_held", "_openables", "_rosout", "_tasks", "_token"),
 }
 """Attributes that no declaration may hide."""
 

@@ -75,17 +75,17 @@ class Rosout(logging.Handler):
         self._thread = 0
         self._publisher = TopicPublisher(node, Log, "/rosout", ROSOUT)
 
-    def attach(self) -> None:
-        """Take part in the node's life: open and close with its endpoints."""
-        self._node._openables.append(self)
-
     def open(self) -> None:
         self._thread = threading.get_ident()
         self._publisher.open()
         self._node.log.addHandler(self)
 
-    def close(self) -> None:
+    def detach(self) -> None:
+        """Listen to the node's logger no more."""
         self._node.log.removeHandler(self)
+
+    def close(self) -> None:
+        self.detach()
         self._publisher.close()
         self._node.forget(self)
         super().close()

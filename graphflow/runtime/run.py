@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+import os
 import signal
 import sys
+import threading
+import time
 from collections.abc import AsyncGenerator, Callable, Sequence
-from contextlib import asynccontextmanager
-from typing import Any
+from contextlib import AsyncExitStack, asynccontextmanager
 
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
+
+logger = logging.getLogger("graphflow")
+
+LINGER = 1.0
+"""Seconds that the interpreter gets to end when worker threads still run."""
 
 
 @asynccontextmanager
@@ -25,17 +33,17 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
     Args:
         context: Where to run them; without one, a new one over Zenoh, closed at the end.
     """
-    own = context is None
-    context = context or await Context.open()
-    started: list[Node] = []
     failure: BaseException | None = None
-    try:
+    async with AsyncExitStack() as stack:
+        if own := context is None:
+            context = await Context.open()
+            stack.push_async_callback(context.close)
         for node in nodes:
             await node.start(context)
-            started.append(node)
+            stack.push_async_callback(node.stop, withdraw=not own)
         try:
             async with asyncio.TaskGroup() as group:
-                watchers = [group.create_task(node.wait_ended()) for node in started]
+                watchers = [group.create_task(node.wait_ended()) for node in nodes]
                 try:
                     yield context
                 finally:
@@ -45,11 +53,6 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
             failure = errors.exceptions[0] if len(errors.exceptions) == 1 else errors
         if failure is not None:  # raised here, where it does not get the group for a context
             raise failure
-    finally:
-        for node in reversed(started):
-            await node.stop(withdraw=not own)
-        if own:
-            await context.close()
 
 
 async def serve(
@@ -66,26 +69,20 @@ async def serve(
     Raises:
         Exception: What ended a node.
     """
-    started: list[Node] = []
-    waiting: list[asyncio.Task[Any]] = []
-    try:
+    async with AsyncExitStack() as stack:
         for node in nodes:
             await node.start(context)
-            started.append(node)
+            stack.push_async_callback(node.stop, withdraw=False)
             if ready is not None:
                 ready(node)
         asked = asyncio.create_task(stop.wait())
-        waiting = [asked, *(asyncio.create_task(n.wait_ended()) for n in started)]
-        left = set(waiting)
+        left = {asked, *(asyncio.create_task(node.wait_ended()) for node in nodes)}
+        for task in left:
+            stack.callback(task.cancel)
         while left - {asked} and asked in left:
             done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
                 task.result()
-    finally:
-        for task in waiting:
-            task.cancel()
-        for node in reversed(started):
-            await node.stop(withdraw=False)
 
 
 def catch_signals(stop: asyncio.Event) -> None:
@@ -148,3 +145,13 @@ async def _run(nodes: Sequence[Node]) -> None:
         await serve(nodes, context, stop)
     finally:
         await context.close()
+        if context.busy_threads:
+            logger.warning("%d thread(s) still run; the process ends without them", context.busy_threads)
+            threading.Thread(target=_end_without_threads, name="graphflow-linger", daemon=True).start()
+
+
+def _end_without_threads() -> None:
+    """End the process though worker threads still run, which the interpreter would wait for."""
+    threading.main_thread().join()
+    time.sleep(LINGER)
+    os._exit(0)

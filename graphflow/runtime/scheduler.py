@@ -103,6 +103,9 @@ class Activity:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
         if awaited is None:
             self._loop.call_soon(self._step, context=self._context)
+        elif blocking and awaited.get_loop() is not self._loop:
+            wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which belongs to another event loop")
+            self._loop.call_soon(self._step, wrong, context=self._context)
         elif blocking:
             awaited._asyncio_future_blocking = False
             awaited.add_done_callback(self._wakeup, context=self._context)
@@ -281,9 +284,8 @@ class Runner:
         activity = Activity(
             self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error), context
         )
+        self._active.add(activity)
         activity.start()
-        if not activity.done():
-            self._active.add(activity)
 
     def _ended(self, activity: Activity | None, item: Any, result: Any, error: BaseException | None) -> None:
         if activity is not None:

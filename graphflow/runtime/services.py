@@ -7,10 +7,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import (
+    CallError,
     CallTimeout,
+    ClosedError,
     DecodeError,
     EncodeError,
     RemoteError,
+    ServerBusy,
     ServerLost,
     ServiceUnavailable,
 )
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
 REQUEST_QUEUE = 1_000
-"""Requests a service holds."""
+"""Requests that may wait for a service; more are refused with ServerBusy."""
 DISCOVERY_GRACE = 1.0
 """Seconds a call waits for a server that nobody has announced yet."""
 
@@ -63,14 +66,24 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._encode = registry.codec(service.response.name).encode
         self._response: type[Any] = registry.interface_class(service.response.name)
         self.runner: Runner | None = None
+        self.refused = 0
+        """Requests answered with ServerBusy because too many were waiting."""
         self._inbox: Inbox | None = None
 
     def _open(self, key: str) -> None:
         session = self.node.context.session
-        self._inbox = Inbox(session.bell, REQUEST_QUEUE, lambda: None)
+        self._inbox = Inbox(session.bell, None, self._arrived)
         self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
-        self._inbox.ready = self.runner.wake
         self._declared.append(session.open_server(key, self._inbox))
+
+    def _arrived(self) -> None:
+        assert self._inbox is not None
+        assert self.runner is not None
+        self.runner.wake()
+        while len(self._inbox.items) > REQUEST_QUEUE:
+            self.refused += 1
+            busy = f"{self.name} has {REQUEST_QUEUE} requests waiting"
+            self._inbox.items.pop().reply_error(RemoteError(ServerBusy.__name__, busy).to_payload())
 
     def _invoke(self, request: Any) -> Any:
         attachment.unpack(request.attachment or b"")
@@ -122,6 +135,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._decode = registry.codec(service.response.name).decode
         self._sequence = 0
         self._caller: Caller | None = None
+        self._pending: set[Future[Answer]] = set()
 
     def _open(self, key: str) -> None:
         self._caller = self.node.context.session.open_caller(key)
@@ -201,9 +215,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if answer is None:
                 future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
             elif answer.is_error:
-                error = RemoteError.from_payload(answer.payload, self.name)
-                lost = ServerLost(f"the server of {self.name} stopped before it answered")
-                future.set_exception(lost if error.type == _STOPPING.type else error)
+                future.set_exception(_error_of(answer.payload, self.name))
             elif _sequence_of(answer) == sequence:
                 future.set_result(answer)
 
@@ -212,16 +224,33 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
         beside = attachment.pack(sequence, self.node.clock.time_ns(), entity.gid)
+        self._pending.add(future)
         give_up = caller.call(payload, beside, answered)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:
             return await future
-        except (CallTimeout, CancelledError):
+        except (CallTimeout, ClosedError, CancelledError):
             give_up()
             raise
         finally:
+            self._pending.discard(future)
             if alarm is not None:
                 alarm.cancel()
+
+    def close(self) -> None:
+        """Withdraw it. Calls that are waiting end with ClosedError."""
+        for future in self._pending:
+            if not future.done():
+                future.set_exception(ClosedError(f"the client of {self.name} was closed while a call waited"))
+        super().close()
+
+
+def _error_of(payload: bytes, service: str) -> CallError:
+    """What an error reply means to the caller."""
+    error = RemoteError.from_payload(payload, service)
+    if error.type == _STOPPING.type:
+        return ServerLost(f"the server of {service} stopped before it answered")
+    return ServerBusy(error.message) if error.type == ServerBusy.__name__ else error
 
 
 def _sequence_of(answer: Answer) -> int | None:

@@ -77,6 +77,8 @@ class Timer:
         self._arm(self.node.clock.monotonic_ns() + self._period_ns)
 
     def _arm(self, when_ns: int) -> None:
+        if self.runner is None or self.runner.closed:
+            return
         if self._handle is not None:
             self._handle.cancel()
         self._next_ns = when_ns

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
@@ -12,7 +13,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.qos import History, Qos
 from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.scheduler import Runner
+from graphflow.runtime.scheduler import BURST, Runner
 from graphflow.transport.base import Inbox, Sender
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
@@ -107,6 +108,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._decode = registry.codec(self.type_name).decode
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
+        self._taken = 0
         self._waiters: set[Future[None]] = set()
 
     def _open(self, key: str) -> None:
@@ -175,6 +177,11 @@ class TopicSubscription(Endpoint, Generic[M]):
             if self._inbox is None or self.entity is None:
                 raise StopAsyncIteration
             while self._inbox.items:
+                self._taken += 1
+                if self._taken % BURST == 0:
+                    await asyncio.sleep(0)  # a sender that is faster than the reader must not hold the loop
+                    if not self._inbox.items:
+                        break
                 payload, beside = self.node.context.session.read(self._inbox.items.popleft())
                 try:
                     return self._decode(payload), _info(beside)

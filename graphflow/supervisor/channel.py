@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import os
 import socket
 from collections.abc import Callable
 from typing import Any
+
+logger = logging.getLogger("graphflow.supervisor")
 
 
 class Lines:
@@ -42,7 +45,12 @@ class Lines:
             return
         *lines, self._buffer = (self._buffer + data).split(b"\n")
         for line in lines:
-            self._heard(json.loads(line))
+            try:
+                event = json.loads(line)
+            except ValueError:
+                logger.error("not an event: %r", line[:200])
+                continue
+            self._heard(event)
 
     def send(self, **request: Any) -> None:
         """Send a request; the other end is a process of our own that reads at once."""

@@ -44,6 +44,7 @@ class ControlServer:
         self._commands = commands
         self._server: asyncio.Server | None = None
         self._expectation: asyncio.TimerHandle | None = None
+        self._followed = asyncio.Event()
         self._connections: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
 
     def expect_lifeline(self) -> None:
@@ -62,6 +63,14 @@ class ControlServer:
         finally:
             os.umask(mask)
 
+    async def wait_followed(self) -> None:
+        """Wait until a door follows the graph, but not for long: a graph that fails at once still tells why."""
+        try:
+            async with asyncio.timeout(LIFELINE_LIMIT):
+                await self._followed.wait()
+        except TimeoutError:
+            return
+
     async def close(self) -> None:
         """Stop listening, and let open connections send what is waiting."""
         if self._server is not None:
@@ -78,7 +87,7 @@ class ControlServer:
         try:
             if _peer_uid(writer.get_extra_info("socket")) in (None, os.getuid()):
                 await self._serve(reader, writer)
-        except (ConnectionError, asyncio.IncompleteReadError):
+        except (ConnectionError, asyncio.IncompleteReadError, ValueError):
             return
         finally:
             del self._connections[task]
@@ -121,14 +130,16 @@ class ControlServer:
             self._expectation.cancel()
         stop = self._commands.subscribe(lambda event: _write(writer, event), replay=True)
         try:
+            self._followed.set()
             while line := await reader.readline():
                 request = json.loads(line)
                 if request.get("do") == "down":
                     self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
+        finally:
+            # However the connection ended: a peer that dies with unread events resets it.
+            stop()
             if lifeline:
                 self._commands.begin_stop(now=False, reason="its terminal went away")
-        finally:
-            stop()
 
 
 def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:
@@ -209,7 +220,7 @@ class ControlClient:
             while True:
                 data = self._socket.recv(65536)
                 if not data:
-                    return None if not self._buffer else self._lines()
+                    return self._lines() or None
                 self._buffer += data
         except BlockingIOError:
             return self._lines()

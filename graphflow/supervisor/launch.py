@@ -39,8 +39,12 @@ def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) 
     sys.stderr.flush()
     pid = os.fork()
     if pid == 0:
-        os.close(read)
-        os._exit(_Launch(file, given, domain, attached, write).supervise())
+        code = 1
+        try:
+            os.close(read)
+            code = _Launch(file, given, domain, attached, write).supervise()
+        finally:
+            os._exit(code)
     os.close(write)
     data = b""
     try:
@@ -100,9 +104,12 @@ class _Launch:
                 os.waitpid(preload_pid, 0)
 
     def _report(self, **report: Any) -> None:
+        if self._report_pipe < 0:  # it has been told that the graph is up; what comes now goes to the log
+            sys.stderr.write(f"{report}\n")
+            return
         try:
             os.write(self._report_pipe, json.dumps(report).encode() + b"\n")
-        except OSError:  # the command was killed meanwhile, or has its report already
+        except OSError:  # the command was killed meanwhile
             return
 
     def _refuse(self, exit_code: int, message: str) -> int:
@@ -194,8 +201,11 @@ class _Launch:
             control.expect_lifeline()
         self._report(ok=True, run=run.__dict__, classes=places)
         os.close(self._report_pipe)
+        self._report_pipe = -1
         try:
-            return await supervisor.run()
+            code = await supervisor.run()
+            await control.wait_followed()
+            return code
         finally:
             await control.close()
             workers.close()

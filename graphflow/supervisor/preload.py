@@ -45,6 +45,7 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
     Returns:
         The socket to it, the reading end of the workers' status pipe, and its process id.
     """
+    parent = os.getpid()
     mine, its = socket.socketpair()
     status_read, status_write = os.pipe()
     pid = os.fork()
@@ -54,7 +55,7 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
             os.close(status_read)
             for fd in keep:
                 os.close(fd)
-            _Preload(its, status_write).run()
+            _Preload(its, status_write, parent).run()
         except BaseException:
             import traceback
 
@@ -67,17 +68,16 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
 
 
 class _Preload:
-    def __init__(self, channel: socket.socket, status: int) -> None:
-        self._channel, self._status = channel, status
+    def __init__(self, channel: socket.socket, status: int, parent: int) -> None:
+        self._channel, self._status, self._parent = channel, status, parent
         self._workers: dict[int, str] = {}
-        self._probe: tuple[int, int, float] | None = None
         self._buffer = b""
 
     def run(self) -> None:
         """Serve requests until the supervisor closes its end."""
         from graphflow.supervisor.worker import STOP_SIGNALS, die_with_parent
 
-        die_with_parent()
+        die_with_parent(self._parent)
         # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
         self._speak_to(os.devnull)
         self._warm_up()
@@ -173,11 +173,17 @@ class _Preload:
 
     def _spawn(self, request: dict[str, Any]) -> None:
         fresh = any(name.startswith(_FRESH) for name in request["env"])
-        pid = self._spawn_fresh(request) if fresh else os.fork()
+        parent = os.getpid()
+        try:
+            pid = self._spawn_fresh(request) if fresh else os.fork()
+        except (OSError, ValueError) as error:  # no memory, no process left, an impossible environment
+            self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
+            self._answer({"event": "exited", "process": request["process"], "status": 1})
+            return
         if pid == 0:
             try:
                 self._channel.close()
-                self._be_worker(request)
+                self._be_worker(request, parent)
             except BaseException:
                 import traceback
 
@@ -187,24 +193,25 @@ class _Preload:
         self._workers[pid] = request["process"]
         self._answer({"event": "spawned", "process": request["process"], "pid": pid})
 
-    def _be_worker(self, request: dict[str, Any]) -> None:
+    def _be_worker(self, request: dict[str, Any], parent: int) -> None:
         from graphflow.supervisor import worker
 
-        worker.become(request["log"], request["env"])
+        worker.become(request["log"], request["env"], parent)
         _reseed()
         worker.main(request["job"], self._status)
 
     def _spawn_fresh(self, request: dict[str, Any]) -> int:
         """A worker in a new interpreter, for environments that a running one cannot take on."""
         os.set_inheritable(self._status, True)
-        with open(request["log"], "ab") as out:
+        log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        with open(log, "ab") as out:
             child = subprocess.Popen(
                 [
                     *_WORKER,
-                    json.dumps(request["job"]),
                     str(self._status),
+                    str(os.getpid()),
                 ],
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
                 env={**os.environ, **request["env"]},
@@ -212,6 +219,10 @@ class _Preload:
                 start_new_session=True,
             )
         os.set_inheritable(self._status, False)
+        assert child.stdin is not None
+        # By stdin, since an argument may have 128 KiB at the most.
+        child.stdin.write(json.dumps(request["job"]).encode())
+        child.stdin.close()
         child.returncode = 0  # it is reaped below with the others
         return child.pid
 
@@ -225,6 +236,7 @@ class _Preload:
                 return
             process = self._workers.pop(pid, None)
             if process is not None:
+                _sweep(pid)
                 code = os.waitstatus_to_exitcode(status)
                 self._answer({"event": "exited", "process": process, "status": code})
 
@@ -251,6 +263,14 @@ def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
         return {path: {"problem": "the process that imported it died"} for path in classes}
     result: dict[str, Any] = json.loads(data)
     return result
+
+
+def _sweep(group: int) -> None:
+    """End what a worker has started and left behind in its process group."""
+    try:
+        os.killpg(group, signal.SIGKILL)
+    except ProcessLookupError:
+        return
 
 
 def _reseed() -> None:

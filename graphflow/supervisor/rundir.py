@@ -1,6 +1,7 @@
 """Where a running graph leaves its traces: the run directory, the run file, the logs.
 
-    $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock, lock      (0700)
+    $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock      (0700)
+    $XDG_RUNTIME_DIR/graphflow/<domain>.<graph>.lock   held while the graph runs
     $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, supervisor.log; `latest` points to the newest
 
 Without XDG_RUNTIME_DIR a private folder under the temporary directory is used; ROS_LOG_DIR moves the logs.
@@ -12,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import stat
 import tempfile
 import time
 from dataclasses import asdict, dataclass
@@ -35,12 +37,12 @@ def runtime_root() -> Path:
     root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{os.getuid()}"
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
-        owner = root.stat().st_uid
+        found = root.lstat()
     except OSError as error:
         raise SupervisorError(
             f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder of yours that can be written"
         ) from None
-    if owner != os.getuid():
+    if found.st_uid != os.getuid() or not stat.S_ISDIR(found.st_mode):
         raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
     return root
 
@@ -139,11 +141,12 @@ class RunDirectory:
         """
         import fcntl
 
+        # Beside the directory, and never removed: whoever holds the lock on this one file owns the directory.
+        lock = self.path.parents[1] / f"{self.path.parent.name}.{self.path.name}.lock"
         try:
-            self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
-            self._lock = os.open(self.path / "lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+            self._lock = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
         except OSError as error:
-            raise SupervisorError(f"{self.path}: {error.strerror}") from None
+            raise SupervisorError(f"{lock}: {error.strerror}") from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
@@ -155,6 +158,10 @@ class RunDirectory:
                 f"graph {self.path.name} is running already (domain {self.path.parent.name}{since}); "
                 f"stop it with: graphflow down --graph {self.path.name}"
             ) from None
+        try:
+            self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        except OSError as error:
+            raise SupervisorError(f"{self.path}: {error.strerror}") from None
 
     @property
     def socket(self) -> Path:
@@ -177,7 +184,7 @@ class RunDirectory:
 
     def release(self) -> None:
         """Remove what `claim` and `write` left."""
-        for name in ("run.json", "run.json.new", "control.sock", "lock"):
+        for name in ("run.json", "run.json.new", "control.sock"):
             (self.path / name).unlink(missing_ok=True)
         self.socket.unlink(missing_ok=True)
         for folder in (self.path, self.path.parent):

@@ -9,6 +9,7 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from graphflow.errors import GraphflowError
@@ -38,6 +39,8 @@ class Process:
         """Nodes that are not ready yet."""
         self.error = ""
         self.stop_asked = False
+        self.failed = False
+        """Whether it ended by itself, and not well."""
         self.alarm: asyncio.TimerHandle | None = None
 
 
@@ -45,11 +48,12 @@ class Supervisor:
     """One running graph.
 
     Args:
-        spawn: Asks for a process; `spawned` and later `exited` are called when it has happened.
+        preload: Requests to the process that starts the others; what it and they say comes to `heard`.
+        step_types: Service types by step, as far as they are known.
         logs: The folder of the nodes' logs.
     """
 
-    def __init__(self, plan: Plan, context: Context, preload: Lines, logs: Any, step_types: dict[str, str]) -> None:
+    def __init__(self, plan: Plan, context: Context, preload: Lines, logs: Path, step_types: dict[str, str]) -> None:
         self.plan = plan
         self.exit_code = 0
         self.ended = asyncio.Event()
@@ -64,6 +68,7 @@ class Supervisor:
         """Processes that are ready and steps that are finished, by name."""
         self._step_tasks: dict[str, asyncio.Task[None]] = {}
         self._order = self._make_order()
+        self._planned = {n["name"]: n for n in plan.to_json()["nodes"]}
         self._mode = "peer" if len(self._processes) <= MESH_LIMIT else "client"
         self._stopping = False
         self._layers: list[list[str]] = []
@@ -105,7 +110,7 @@ class Supervisor:
 
     @staticmethod
     def _state_word(process: Process) -> str:
-        if process.state is State.ENDED and process.exit is not None and process.exit.failed and not process.stop_asked:
+        if process.state is State.ENDED and process.failed:
             return "failed"
         return process.state.value
 
@@ -119,6 +124,8 @@ class Supervisor:
 
     def begin_stop(self, *, now: bool, reason: str) -> None:
         """Stop everything, last started first; `now` sends SIGKILL. Asking again is harmless."""
+        if self.ended.is_set():
+            return
         if not self._stopping:
             self._stopping = True
             self._tell(event="stopping", reason=reason)
@@ -248,15 +255,13 @@ class Supervisor:
             self._fail(f"{process.name} did not get ready")
 
     def _spawn(self, process: Process) -> None:
-        plan = self.plan
-        planned = {n["name"]: n for n in plan.to_json()["nodes"]}
         env: dict[str, str] = {}
         for node in process.nodes:
             env.update(node.env)
         job = {
             "process": process.name,
-            "nodes": [planned[n.name] for n in process.nodes],
-            "root": plan.root,
+            "nodes": [self._planned[n.name] for n in process.nodes],
+            "root": self.plan.root,
             "domain": self._context.domain,
             "mode": self._mode,
         }
@@ -275,8 +280,11 @@ class Supervisor:
                 return
 
     def _process_ended(self, process: Process, was: State) -> None:
-        failed = process.exit is not None and process.exit.failed
         asked = process.stop_asked or was is State.STOPPING
+        early = was is State.STARTING and not asked
+        if early and not process.error:
+            process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
+        failed = early or (process.exit is not None and process.exit.failed)
         if process.exit is not None:
             self._tell(
                 event="exited",
@@ -289,6 +297,7 @@ class Supervisor:
                 log=process.log,
             )
         if failed and not asked:
+            process.failed = True
             self.exit_code = 1
             if was is State.STARTING:
                 self.begin_stop(now=False, reason=f"{process.name} did not start")

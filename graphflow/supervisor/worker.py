@@ -21,6 +21,7 @@ from graphflow.supervisor.classes import add_root, import_class
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """The preload process blocks these; a worker has them unblocked once it can act on them."""
+PIPE_BUF = 4096
 EXIT_ERROR = 70
 """A node failed while it ran."""
 EXIT_CONFIGURATION = 78
@@ -43,11 +44,10 @@ def make_node(planned: PlannedNode) -> Node:
 
 
 def tell(status: int, **event: Any) -> None:
-    """Write an event to the supervisor, in one piece."""
-    line = json.dumps(event)
-    if len(line) > 4000:
-        line = json.dumps({**event, "error": str(event.get("error", ""))[:3000]})
-    os.write(status, line.encode() + b"\n")
+    """Write an event to the supervisor, in one piece: a pipe keeps lines of up to 4096 bytes together."""
+    while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
+        event["error"] = event["error"][: len(event["error"]) // 2]
+    os.write(status, line + b"\n")
 
 
 def main(job: dict[str, Any], status: int) -> None:
@@ -112,10 +112,10 @@ def _one_line(error: Exception) -> str:
     return str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
 
 
-def become(log: str, env: dict[str, str]) -> None:
+def become(log: str, env: dict[str, str], parent: int) -> None:
     """Turn a fresh child into a worker's process: session, signals, stdin, log file, environment."""
     os.setsid()
-    die_with_parent()
+    die_with_parent(parent)
     for number in (*STOP_SIGNALS, signal.SIGCHLD):
         signal.signal(number, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
@@ -127,22 +127,31 @@ def become(log: str, env: dict[str, str]) -> None:
     os.dup2(out, 2)
     os.close(out)
     os.environ.update(env)
+    _line_buffered()
+
+
+def _line_buffered() -> None:
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
 
 
-def die_with_parent() -> None:
-    """Have the kernel kill this process when its parent dies (Linux)."""
+def die_with_parent(parent: int) -> None:
+    """Have the kernel kill this process when its parent dies (Linux).
+
+    Args:
+        parent: Its process id from before the fork: it may be dead already.
+    """
     import ctypes
 
     if sys.platform != "linux":
         return
-    parent = os.getppid()
     pr_set_pdeathsig = 1
     ctypes.CDLL(None, use_errno=True).prctl(pr_set_pdeathsig, signal.SIGKILL)
-    if os.getppid() != parent:  # it died before the call
+    if os.getppid() != parent:
         os._exit(EXIT_ERROR)
 
 
 if __name__ == "__main__":
-    main(json.loads(sys.argv[1]), int(sys.argv[2]))
+    die_with_parent(int(sys.argv[2]))
+    _line_buffered()
+    main(json.load(sys.stdin), int(sys.argv[1]))

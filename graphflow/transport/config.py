@@ -83,9 +83,12 @@ def close_session(session: zenoh.Session) -> None:
     closer = threading.Thread(target=session.close, name="zenoh-close", daemon=True)
     closer.start()
     closer.join(CLOSE_LIMIT)
+    if session in _to_close:
+        _to_close.remove(session)
 
 
 _to_close: list[zenoh.Session] = []
+_closer: threading.Thread | None = None
 
 
 def close_at_exit(session: zenoh.Session) -> None:
@@ -94,8 +97,10 @@ def close_at_exit(session: zenoh.Session) -> None:
     Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
     So a thread of our own waits for the main thread, which is over the moment the interpreter begins to end.
     """
-    if not _to_close:
-        threading.Thread(target=_close_after_main, name="graphflow-exit").start()
+    global _closer
+    if _closer is None:
+        _closer = threading.Thread(target=_close_after_main, name="graphflow-exit")
+        _closer.start()
     _to_close.append(session)
 
 

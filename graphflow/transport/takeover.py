@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import random
-from collections.abc import Callable
 
+from graphflow.transport.base import Closable
 from graphflow.transport.config import rendezvous_endpoint
 from graphflow.transport.rendezvous import Router, host, occupied
 from graphflow.transport.zenoh import ZenohSession
@@ -26,60 +26,58 @@ class Takeover:
 
     def __init__(self, router: Router | None) -> None:
         self._router = router
-        self._retry: asyncio.TimerHandle | None = None
+        self._session: ZenohSession | None = None
+        self._loop = asyncio.get_running_loop()
+        self._alarm: asyncio.TimerHandle | None = None
         self._attempt: asyncio.Future[Router | None] | None = None
-        self._stop_watching: Callable[[], None] | None = None
+        self._watcher: Closable | None = None
         self._warned = False
+        self._closed = False
 
-    @property
-    def is_host(self) -> bool:
-        """Whether this process is the rendezvous."""
-        return self._router is not None
+    def guard(self, session: ZenohSession) -> None:
+        """From now on, take over when the rendezvous that `session` is connected to dies, or has died already."""
+        self._session = session
+        self._watcher = session.watch_transports(self._lost)
+        self._lost("")
 
-    def guard(self, session: ZenohSession, loop: asyncio.AbstractEventLoop) -> None:
-        """From now on, take over when the rendezvous that `session` is connected to dies."""
+    def _is_needed(self) -> bool:
+        return not self._closed and self._router is None and self._session is not None and not self._session.routers()
 
-        def lost(_: str) -> None:
-            if self._router is None and self._retry is None and not session.routers():
-                # The jitter keeps all the survivors from binding in the same instant.
-                self._retry = loop.call_later(random.uniform(0, _JITTER), attempt)  # noqa: S311
+    def _lost(self, _: str) -> None:
+        if self._alarm is None and self._attempt is None and self._is_needed():
+            # The jitter keeps all the survivors from binding in the same instant.
+            self._alarm = self._loop.call_later(random.uniform(0, _JITTER), self._try)  # noqa: S311
 
-        def attempt() -> None:
-            self._retry = None
-            if self._router is None and not session.routers():
-                self._attempt = loop.run_in_executor(None, host)
-                self._attempt.add_done_callback(attempted)
+    def _try(self) -> None:
+        self._alarm = None
+        if self._is_needed():
+            self._attempt = self._loop.run_in_executor(None, host)
+            self._attempt.add_done_callback(self._tried)
 
-        def attempted(future: asyncio.Future[Router | None]) -> None:
-            self._attempt = None
-            if future.cancelled():
-                return
-            self._router = future.result()
-            if self._router is not None:
-                self._warned = False
-                logger.debug("took over the rendezvous at %s", rendezvous_endpoint())
-            elif not session.routers():
-                self._retry = loop.call_later(_RETRY, complain)
+    def _tried(self, attempt: asyncio.Future[Router | None]) -> None:
+        self._attempt = None
+        if attempt.cancelled():
+            return
+        self._router = attempt.result()
+        if self._router is not None:
+            self._warned = False
+            logger.debug("took over the rendezvous at %s", rendezvous_endpoint())
+        elif self._is_needed():
+            self._alarm = self._loop.call_later(_RETRY, self._try_again)
 
-        def complain() -> None:
-            self._retry = None
-            if session.routers():
-                self._warned = False
-                return
-            if not self._warned:
-                self._warned = True
-                logger.warning("%s", occupied(rendezvous_endpoint(), "keeps newcomers from finding this process"))
-            attempt()
-
-        watcher = session.watch_transports(lost)
-        self._stop_watching = watcher.close
+    def _try_again(self) -> None:
+        if self._is_needed() and not self._warned:
+            self._warned = True
+            logger.warning("%s", occupied(rendezvous_endpoint(), "keeps newcomers from finding this process"))
+        self._try()
 
     async def close(self) -> None:
         """Stop guarding, and stop being the rendezvous."""
-        if self._stop_watching is not None:
-            self._stop_watching()
-        if self._retry is not None:
-            self._retry.cancel()
+        self._closed = True
+        if self._watcher is not None:
+            self._watcher.close()
+        if self._alarm is not None:
+            self._alarm.cancel()
         if self._attempt is not None:
             self._router = await self._attempt
         if self._router is not None:

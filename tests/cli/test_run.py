@@ -110,3 +110,16 @@ def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) ->
         "asyncio.run(main())\n",
     )
     assert program.wait() == 3
+
+
+def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: Path) -> None:
+    """A body that blocks in a thread cannot be cancelled; the process ends without it."""
+    (tmp_path / "slow.py").write_text(
+        "import time\nfrom graphflow import Node, timer\n\n\nclass Slow(Node):\n"
+        "    @timer(0.01, thread=True)\n    def work(self) -> None:\n"
+        "        self.log.info('at work')\n        time.sleep(600)\n"
+    )
+    node = machine.start("run", "slow:Slow", cwd=tmp_path)
+    node.wait_for("at work")
+    assert node.end() == 0
+    assert "ends without" in node.text

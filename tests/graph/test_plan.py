@@ -27,7 +27,7 @@ nodes:
     after: [/sim, spawn]
   /alone: {class: a.b:Sim}
 steps:
-  spawn: {call: /spawn, request: {x: 1.5}, after: /sim, type: turtlesim/srv/Spawn}
+  spawn: {call: /spawn, request: {x: 1.5}, after: /alone, type: turtlesim/srv/Spawn}
 """
 
 
@@ -59,7 +59,7 @@ domain 5
 /alone
   class    a.b:Sim
 step spawn
-  after    /sim
+  after    /alone
   call     /spawn {'x': 1.5}"""
     )
 

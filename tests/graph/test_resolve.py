@@ -493,3 +493,14 @@ def test_any_tree_is_a_plan_or_a_list_of_problems(tree: Any, given: list[str]) -
         assert places <= {"f.yaml", "command line"}, places
     else:
         assert Plan.from_json(found.to_json()) == found
+
+
+def test_processes_wait_as_a_whole() -> None:
+    """What one node of a process waits for, its mates wait for: a ring that goes through two of them is one."""
+    text = (
+        "nodes:\n  /a: {class: m:A, process: p, after: /b}\n"
+        "  /b: {class: m:A, after: /c}\n  /c: {class: m:A, process: p}\n"
+    )
+    with pytest.raises(GraphFileError) as caught:
+        resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"))
+    assert "waits for itself: process p after /b after process p" in str(caught.value)

@@ -532,8 +532,8 @@ async def test_a_stopped_node_has_ended(graph: Graph) -> None:
     assert waiting.cancelled()
 
 
-async def test_a_cancelled_stop_can_be_repeated(graph: Graph) -> None:
-    """A stop that is cancelled while it waits has not happened; the next one finishes it."""
+async def test_a_cancelled_stop_leaves_nothing_open(graph: Graph) -> None:
+    """Who is cancelled while it waits for cleanups withdraws the node all the same."""
     node = Tidy()
     await graph.start(node)
     stopping = asyncio.create_task(node.stop())
@@ -541,11 +541,8 @@ async def test_a_cancelled_stop_can_be_repeated(graph: Graph) -> None:
     stopping.cancel()
     await graph.settle()
     assert stopping.cancelled()
-    assert node.is_running
-
-    await graph.stop(node)
-
     assert not node.is_running
+    assert not any("tidy" in token for token in graph.network.tokens)
 
 
 def test_spawn_needs_a_running_node() -> None:

@@ -137,14 +137,14 @@ def test_a_graph_is_found_while_it_runs() -> None:
 
 
 def test_release_leaves_nothing() -> None:
-    """Run file, lock, socket and empty folders go; releasing twice does no harm; folders in use stay."""
+    """Run file, socket and empty folders go; releasing twice does no harm; folders in use and locks stay."""
     one, two = start("one"), start("two")
     (one.path / "control.sock").touch()
     one.release()
-    assert sorted(p.name for p in runtime_root().rglob("*")) == ["7", "lock", "run.json", "two"]
+    assert sorted(p.name for p in runtime_root().rglob("*")) == [*("7", "7.one.lock", "7.two.lock", "run.json", "two")]
     one.release()
     two.release()
-    assert list(runtime_root().iterdir()) == []
+    assert sorted(p.name for p in runtime_root().iterdir()) == ["7.one.lock", "7.two.lock"]
 
 
 def test_a_graph_runs_once() -> None:
@@ -207,7 +207,7 @@ def test_a_run_file_is_whole() -> None:
     directory = start()
     assert json.loads((directory.path / "run.json").read_text()) == asdict(a_run())
     assert read_run(directory.path / "run.json") == a_run()
-    assert sorted(p.name for p in directory.path.iterdir()) == ["lock", "run.json"]
+    assert sorted(p.name for p in directory.path.iterdir()) == ["run.json"]
     directory.release()
 
 

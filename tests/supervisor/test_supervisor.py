@@ -56,6 +56,17 @@ class Ends(Node):
         self.log.info("done")
         self.shutdown()
 
+class Leaves(Node):
+    def __init__(self, name=None, **options):
+        super().__init__(name, **options)
+        os._exit(0)
+
+class Parent(Node):
+    @task
+    async def beget(self) -> None:
+        pid = os.spawnlp(os.P_NOWAIT, "sleep", "sleep", "600")
+        self.log.info("child %d.", pid)
+
 class Fails(Node):
     @service(Trigger, "fails")
     async def fail(self, request: Trigger.Request) -> Trigger.Response:
@@ -366,3 +377,45 @@ def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, projec
 
 def children(pid: int) -> list[int]:
     return [child.pid for child in psutil.Process(pid).children()]
+
+
+def test_a_node_that_leaves_before_it_is_ready_has_failed(machine: Machine, project: Path) -> None:
+    """Exit code 0 or not: what waits for it would wait for ever."""
+    text = "nodes:\n  /gone: {class: nodes.lab:Leaves}\n  /good: {class: nodes.lab:Good, after: /gone}\n"
+    up = machine.start("up", write(project, text), cwd=project)
+    assert up.wait() == 1
+    assert "ended before it was ready: /gone" in up.text
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
+def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, how: int) -> None:
+    """A child process of a node does not outlive it, however the node ends."""
+    up = machine.start("up", write(project, "nodes:\n  /p: {class: nodes.lab:Parent}\n"), cwd=project)
+    machine.until(lambda: "child " in machine.run("logs", "/p", code=None), "it has a child")
+    child = int(machine.run("logs", "/p").split("child ")[1].split(".")[0])
+    assert alive(child)
+
+    os.kill(rows(machine)["/p"]["pid"], how)
+
+    machine.until(lambda: not alive(child), "the child is gone")
+    up.wait()
+
+
+def test_an_impossible_environment_fails_its_node_only(machine: Machine, project: Path) -> None:
+    """The process that starts nodes survives what cannot be started."""
+    text = 'nodes:\n  /bad: {class: nodes.lab:Good, env: {"LD_A=B": x}}\n'
+    up = machine.start("up", write(project, text), cwd=project)
+    assert up.wait() == 1
+    assert "cannot be started" in up.text
+
+
+def test_a_stopped_terminal_that_is_killed_takes_its_graph_along(machine: Machine, project: Path) -> None:
+    """Also when it had not read all that was told to it."""
+    up = machine.start("up", write(project, GOOD), cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    found = rows(machine)
+    up.process.send_signal(signal.SIGSTOP)
+    os.kill(found["/a"]["pid"], signal.SIGKILL)
+    machine.until(lambda: rows(machine)["/a"]["state"] == "failed", "it is seen")
+    up.process.kill()
+    nothing_is_left(machine, [row["pid"] for row in found.values()])
