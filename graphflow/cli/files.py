@@ -28,7 +28,8 @@ def find_graph(text: str) -> Path:
         found = bundled[text.removesuffix(".yaml")]
         output.talk(f"{text}: the one that comes with graphflow, {found}")
         return found
-    near = [str(p) for p in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
+    folder = path if path.is_dir() else path.parent
+    near = [str(p) for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))]
     what = "is a folder" if path.is_dir() else "there is no such file"
     raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled])}")
 

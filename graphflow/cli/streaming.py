@@ -123,7 +123,8 @@ class _Stream:
         elif what == "stopping":
             if self._logs is not None and not self._detach:
                 self._logs.show()
-            output.talk(f"stopping ({event['reason']}); Ctrl-C again kills")
+            again = "; Ctrl-C again kills" if event["reason"] == "Ctrl-C" else ""
+            output.talk(f"stopping ({event['reason']}){again}")
         elif what == "exited" and event["unexpected"]:
             self._tell_death(event)
         elif what == "error":

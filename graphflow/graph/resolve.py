@@ -69,6 +69,7 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         problems.raise_any()
     assert model is not None
     nodes = _nodes(src, model, problems)
+    _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
     ordered_nodes, ordered_steps = _order(src, model, nodes, steps, problems)
     problems.raise_any()
@@ -311,6 +312,17 @@ def _node_name(src: Source, key: str, spec: NodeSpec, problems: _Problems) -> st
     except InvalidName as error:
         problems.add(place, str(error))
         return None
+
+
+def _check_env(nodes: Iterable[PlannedNode], problems: _Problems) -> None:
+    """A process has one environment: nodes that share it must not contradict each other."""
+    seen: dict[tuple[str, str], tuple[str, str]] = {}
+    for node in nodes:
+        for name, value in node.env.items() if node.process else ():
+            first, owner = seen.setdefault((node.process, name), (value, node.name))
+            if first != value:
+                text = f"{name}={value} contradicts {name}={first} of {owner}, which shares process {node.process!r}"
+                problems.add(node.place, text)
 
 
 def _params(src: Source, params: Mapping[str, Any], path: source.Path, problems: _Problems) -> dict[str, Setting]:

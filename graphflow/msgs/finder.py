@@ -26,7 +26,8 @@ class _InterfaceFinder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
             return None
         if not registry.package_folders(package):
             hint = did_you_mean(package, registry.packages())
-            raise ModuleNotFoundError(f"there is no interface package {package!r}{hint}", name=fullname)
+            own = f"one of your own goes into interfaces/{package}/msg/*.msg"
+            raise ModuleNotFoundError(f"there is no interface package {package!r}{hint} ({own})", name=fullname)
         if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
             # `from package.msg import Nam` looks for a submodule when there is no such attribute: say what there is.
             known = registry.names_in(package, rest[0])

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import itertools
 import os
+import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from graphflow.domain import domain_id
@@ -35,9 +36,6 @@ class Context:
         self._takeover: Takeover | None = None
         self._listeners: list[Callable[[Change], None]] = []
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
-        self.busy_threads = 0
-        """Worker threads under way; the interpreter would wait for them at its end."""
-        self._threads: ThreadPoolExecutor | None = None
 
     @classmethod
     async def open(cls, domain: int | None = None, *, mode: str = "peer", checked: bool = False) -> Context:
@@ -75,24 +73,23 @@ class Context:
         return next(self._ids)
 
     async def in_thread(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` in a worker thread. It goes on there, and is counted as busy, if the waiting is cancelled."""
-        if self._threads is None:
-            self._threads = ThreadPoolExecutor(thread_name_prefix="graphflow")
-        self.busy_threads += 1
+        """Run `fn(*args)` in a thread of its own. It goes on there if the waiting is cancelled.
 
-        def counted() -> T:
+        The interpreter does not wait for such a thread when it ends, as it would for those of a pool.
+        """
+        future: asyncio.Future[T] = self.loop.create_future()
+        context = copy_context()
+
+        def work() -> None:
             try:
-                return fn(*args)
-            finally:
-                self.busy_threads -= 1
+                result, error = context.run(fn, *args), None
+            except BaseException as raised:
+                result, error = None, raised
+            if not self.loop.is_closed():
+                self.loop.call_soon_threadsafe(_settle, future, result, error)
 
-        future = self._threads.submit(counted)
-        future.add_done_callback(self._count_unstarted)
-        return await asyncio.wrap_future(future)
-
-    def _count_unstarted(self, future: Future[Any]) -> None:
-        if future.cancelled():  # it never ran
-            self.busy_threads -= 1
+        threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True).start()
+        return await future
 
     def on_change(self, listener: Callable[[Change], None]) -> Callable[[], None]:
         """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
@@ -127,8 +124,17 @@ class Context:
 
     async def close(self) -> None:
         """Leave the network. Nodes are to be stopped before."""
-        if self._threads is not None:
-            self._threads.shutdown(wait=False, cancel_futures=True)
         if self._takeover is not None:
             await self._takeover.close()
         await self.session.close()
+
+
+def _settle(future: asyncio.Future[Any], result: Any, error: BaseException | None) -> None:
+    if future.done():
+        return
+    if isinstance(error, StopIteration):  # no future can carry it
+        error = RuntimeError(f"a thread raised {error!r}")
+    if error is not None:
+        future.set_exception(error)
+    else:
+        future.set_result(result)

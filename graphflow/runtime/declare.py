@@ -295,7 +295,9 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     ]
     if len(positional) not in arguments:
         wanted = " or ".join(["self", "self and one argument"][n - 1] for n in arguments)
-        raise DeclarationError(f"{handler.place}: {name} must take {wanted}, it takes {len(positional)} arguments")
+        has = f"({', '.join(p.name for p in positional)})"
+        hint = "; it gets the request only, and returns a new response" if handler.kind == "service" else ""
+        raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}{hint}")
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = handler.kind == "timer" and len(positional) == 2
     object.__setattr__(handler, "place", place)

@@ -69,6 +69,8 @@ class Node:
     dynamic_names: ClassVar[bool | Sequence[str]] = False
     """Names the class makes at run time, which checks cannot know: True, or patterns such as `*/cmd_vel`."""
     __firstlineno__: ClassVar[int]
+    failure: BaseException | None = None
+    """The error that ended the node."""
     _made = False
 
     def __init__(
@@ -85,8 +87,6 @@ class Node:
         rules = [r if isinstance(r, Remap) else Remap.parse(r) for r in remap]
         self.names = Resolver(name or declared.default_name(type(self)), namespace, rules)
         self.id = 0
-        self.failure: BaseException | None = None
-        """The error that ended the node."""
         self.failure_taken = False
         """Whether somebody has waited for that error."""
         self.log = node_logger(self.full_name)
@@ -239,20 +239,29 @@ class Node:
 
     # its life
 
+    def ensure_made(self) -> None:
+        """See that the node was made as it should be.
+
+        Raises:
+            DeclarationError: Its `__init__` did not call `super().__init__`.
+            ParameterError: A value was given for a parameter that it does not have.
+        """
+        if not self._made:
+            raise DeclarationError(f"{type(self).__name__}.__init__ must call super().__init__(...)")
+        unused = self.parameters.unused_overrides()
+        if unused:
+            raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
+
     async def start(self, context: Context) -> None:
         """Go on the network: open what is declared, announce it, start timers and tasks.
 
         Raises:
             GraphflowError: An override names no parameter, or something cannot be opened; nothing is left open.
         """
-        if not self._made:
-            raise DeclarationError(f"{type(self).__name__}.__init__ must call super().__init__(...)")
+        self.ensure_made()
         if self._ended is not None:
             state = "is running already" if self.is_running else "has been stopped; make a new one"
             raise ClosedError(f"node {self.full_name} {state}")
-        unused = self.parameters.unused_overrides()
-        if unused:
-            raise GraphflowError(f"node {self.full_name}: " + "; ".join(unused))
         self._context = context
         self.id = context.next_id()
         self._ended = context.loop.create_future()
@@ -343,9 +352,9 @@ class Node:
     def report_error(self, label: str, error: BaseException) -> None:
         """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
         if isinstance(error, GraphflowError):
-            self.log.error("%s: %s", label, error)
+            self.log.error("%s: %s%s", label, error, _place(error))
         else:
-            trace = (type(error), error, _users_part(error.__traceback__))
+            trace = (type(error), error, users_part(error))
             self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
 
     # for its endpoints
@@ -469,10 +478,22 @@ def _label(callback: Callable[..., Any] | None, otherwise: str) -> str:
     return name if name and name != "<lambda>" else otherwise
 
 
-def _users_part(trace: TracebackType | None) -> TracebackType | None:
-    """A traceback without the frames of this package that it begins with; whole if there are no others."""
-    here = str(Path(__file__).parent)
-    rest = trace
-    while rest is not None and rest.tb_frame.f_code.co_filename.startswith(here):
+_PACKAGE = str(Path(__file__).parents[1])
+
+
+def users_part(error: BaseException) -> TracebackType | None:
+    """An error's traceback without the frames of graphflow that it begins with; whole if there are no others."""
+    rest = error.__traceback__
+    while rest is not None and rest.tb_frame.f_code.co_filename.startswith(_PACKAGE):
         rest = rest.tb_next
-    return rest or trace
+    return rest or error.__traceback__
+
+
+def _place(error: BaseException) -> str:
+    """The last line of the user's own code that an error passed through, to be put behind its text."""
+    place, trace = "", error.__traceback__
+    while trace is not None:
+        if not trace.tb_frame.f_code.co_filename.startswith(_PACKAGE):
+            place = f" ({trace.tb_frame.f_code.co_filename}:{trace.tb_lineno})"
+        trace = trace.tb_next
+    return place

@@ -7,21 +7,16 @@ import logging
 import os
 import signal
 import sys
-import threading
-import time
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node
+from graphflow.runtime.node import Node, users_part
 from graphflow.runtime.rosout import log_level, setup_console
 
 logger = logging.getLogger("graphflow")
-
-LINGER = 1.0
-"""Seconds that the interpreter gets to end when worker threads still run."""
 
 
 @asynccontextmanager
@@ -85,14 +80,30 @@ async def serve(
                 task.result()
 
 
-def catch_signals(stop: asyncio.Event) -> None:
-    """Set `stop` on SIGINT and SIGTERM."""
+def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
+    """Set `stop` on SIGINT or SIGTERM; a second one ends the process at once, also when the loop is blocked.
+
+    Returns:
+        What puts the former handlers back.
+    """
     loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        try:
-            loop.add_signal_handler(number, stop.set)
-        except (NotImplementedError, RuntimeError):  # no POSIX signals, or not the main thread
-            signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop.set))
+    came: list[int] = []
+
+    def caught(number: int, _: object) -> None:
+        came.append(number)
+        if len(came) > 1:
+            os.write(2, b"ended without cleanup: it was asked twice\n")
+            os._exit(1)
+        loop.call_soon_threadsafe(stop.set)
+
+    # Not the loop's own handlers, which would wait for a handler that does not return.
+    former = {number: signal.signal(number, caught) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def restore() -> None:
+        for number, handler in former.items():
+            signal.signal(number, handler)
+
+    return restore
 
 
 def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
@@ -115,6 +126,13 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     made: list[Node] = []
     try:
         made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
+    except GraphflowError as error:
+        print_error(error)
+        raise SystemExit(2) from None
+    except Exception as error:
+        logger.error("%s: %s", type(error).__name__, error, exc_info=(type(error), error, users_part(error)))
+        raise SystemExit(1) from None
+    try:
         asyncio.run(_run(made))
     except KeyboardInterrupt:
         return
@@ -133,25 +151,22 @@ def print_error(error: GraphflowError) -> None:
 
 
 def make(cls: type[Node], ros: RosArgs) -> Node:
-    """A node as the command line wants it."""
-    return cls(remap=ros.remaps, overrides=ros.params_for(cls))
+    """A node as the command line wants it.
+
+    Raises:
+        GraphflowError: A parameter does not exist or fit.
+    """
+    node = cls(remap=ros.remaps, overrides=ros.params_for(cls))
+    node.ensure_made()
+    return node
 
 
 async def _run(nodes: Sequence[Node]) -> None:
     context = await Context.open()
     stop = asyncio.Event()
-    catch_signals(stop)
+    restore = catch_signals(stop)
     try:
         await serve(nodes, context, stop)
     finally:
         await context.close()
-        if context.busy_threads:
-            logger.warning("%d thread(s) still run; the process ends without them", context.busy_threads)
-            threading.Thread(target=_end_without_threads, name="graphflow-linger", daemon=True).start()
-
-
-def _end_without_threads() -> None:
-    """End the process though worker threads still run, which the interpreter would wait for."""
-    threading.main_thread().join()
-    time.sleep(LINGER)
-    os._exit(0)
+        restore()

@@ -9,8 +9,9 @@ from pkgutil import iter_modules
 from typing import Any
 
 from graphflow.errors import GraphflowError, Place, Problem
-from graphflow.graph.project import add_interfaces
+from graphflow.graph.project import PACKAGE, add_interfaces
 from graphflow.interface import Interface
+from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 from graphflow.runtime.node import Node
 
@@ -77,10 +78,12 @@ def _where(error: BaseException) -> str:
     frame, place = error.__traceback__, ""
     while frame is not None:
         file = frame.tb_frame.f_code.co_filename
-        if not file.startswith("<frozen") and file != __file__ and not file.endswith("importlib/__init__.py"):
+        if not file.startswith(("<frozen", str(PACKAGE))) and not file.endswith("importlib/__init__.py"):
             place = f"{file}:{frame.tb_lineno}: "
         frame = frame.tb_next
     text = str(error)
+    if isinstance(error, ModuleNotFoundError) and error.name and error.name.partition(".")[0] in registry.packages():
+        text += f"; write graphflow.msgs.{error.name}"
     # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
     return text if text.startswith("/") else f"{place}{type(error).__name__}: {text}"
 

@@ -228,6 +228,8 @@ class Supervisor:
 
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
+        if event is Event.LATE and was is State.STOPPING:
+            self._tell(event="note", text=f"{process.name} did not end within {ALARMS[was]:.0f} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
             process.since = time.time()
@@ -252,6 +254,7 @@ class Supervisor:
         elif action is Action.GIVE_UP:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
+            self._tell(event="error", message=f"{process.error}\n  its log: {process.log}")
             self._fail(f"{process.name} did not get ready")
 
     def _spawn(self, process: Process) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import inspect
+import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,13 @@ if TYPE_CHECKING:
 
 LIMIT = 60.0
 """Seconds of real time that an asynchronous test may take."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have a project's own `nodes` found before those that come with an editable graphflow."""
+    root = str(config.rootpath)
+    if (config.rootpath / "nodes").is_dir() and root not in sys.path:
+        sys.path.insert(0, root)
 
 
 @pytest.fixture

@@ -57,9 +57,9 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
         (["nodes.talker"], 2, "write MODULE:CLASS"),
         (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
         (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
-        (["nodes.talker:Talker", "-p", "rtae:=2.0"], 1, "did you mean 'rate'?"),
-        (["nodes.talker:Talker", "-p", "rate:=fast"], 1, "parameter 'rate' is of type double, 'fast' is not"),
-        (["nodes.talker:Talker", "-p", "rate:=-1.0"], 1, "out of range"),
+        (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
+        (["nodes.talker:Talker", "-p", "rate:=fast"], 2, "parameter 'rate' is of type double, 'fast' is not"),
+        (["nodes.talker:Talker", "-p", "rate:=-1.0"], 2, "out of range"),
         (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
         (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
         (["nodes.talker:Talker", "--log-level", "loud"], 2, "is no log level"),
@@ -122,4 +122,28 @@ def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: P
     node = machine.start("run", "slow:Slow", cwd=tmp_path)
     node.wait_for("at work")
     assert node.end() == 0
-    assert "ends without" in node.text
+
+
+def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machine, tmp_path: Path) -> None:
+    """Whoever blocks the loop cannot be asked twice."""
+    (tmp_path / "stuck.py").write_text(
+        "from graphflow import Node, timer\n\n\nclass Stuck(Node):\n    @timer(0.01)\n"
+        "    def work(self) -> None:\n        self.log.info('at work')\n        while True:\n            pass\n"
+    )
+    node = machine.start("run", "stuck:Stuck", cwd=tmp_path)
+    node.wait_for("at work")
+    node.process.send_signal(signal.SIGINT)
+    status = Path(f"/proc/{node.pid}/status")
+    machine.until(lambda: "ShdPnd:\t0000000000000000" in status.read_text(), "the first signal has arrived")
+    assert node.end() == 1
+    assert "asked twice" in node.text
+
+
+def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
+    """The likeliest mistake in a constructor is one sentence."""
+    (tmp_path / "bare.py").write_text(
+        "from graphflow import Node\n\n\nclass Bare(Node):\n"
+        "    def __init__(self, name=None, **options):\n        pass\n"
+    )
+    text = machine.run("run", "bare:Bare", cwd=tmp_path, code=2)
+    assert text == "error: Bare.__init__ must call super().__init__(...)\n"

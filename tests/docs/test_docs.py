@@ -114,7 +114,7 @@ def write_files(page: Path, project: Path) -> None:
     """Put the page's files where it says."""
     for block in blocks(page):
         path = project / block.options.get("file", "")
-        if "file" in block.options and not (PROJECT / block.options["file"]).exists():
+        if "file" in block.options and not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, encoding="utf-8")
 

@@ -504,3 +504,14 @@ def test_processes_wait_as_a_whole() -> None:
     with pytest.raises(GraphFileError) as caught:
         resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"))
     assert "waits for itself: process p after /b after process p" in str(caught.value)
+
+
+def test_a_process_has_one_environment() -> None:
+    """Two nodes of one process cannot want two values of one variable."""
+    text = (
+        "nodes:\n  /a: {class: m:A, process: p, env: {X: 1, Y: 1}}\n"
+        "  /b: {class: m:A, process: p, env: {X: 2, Y: 1}}\n  /c: {class: m:A, env: {X: 3}}\n"
+    )
+    with pytest.raises(GraphFileError) as caught:
+        resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"))
+    assert str(caught.value) == "f.yaml:3:3: X=2 contradicts X=1 of /a, which shares process 'p'"

@@ -26,9 +26,9 @@ def picture(machine: Machine) -> ElementTree.Element:
 
 
 def test_every_graph_file_checks_out(machine: Machine) -> None:
-    """No file in graphs/ has a mistake, and none is left out of this directory's tests."""
+    """No file in graphs/ has a mistake."""
     files = sorted(p.name for p in (PROJECT / "graphs").glob("*.yaml"))
-    assert files == ["draw_circle.yaml", "talker_listener.yaml", "turtlesim.yaml"]
+    assert {"draw_circle.yaml", "talker_listener.yaml", "turtlesim.yaml"} <= set(files)
     for file in files:
         assert "no problems" in machine.run("check", f"graphs/{file}")
 

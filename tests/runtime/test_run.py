@@ -265,7 +265,7 @@ def test_a_node_as_the_command_line_wants_it() -> None:
     [
         (["-p", "rate=3"], 2, "error: -p 'rate=3': write name:=value"),
         (["--ros-args", "--log-level", "loud"], 2, "error: 'loud' is no log level"),
-        (["-p", "rate:=fast"], 1, "error: parameter 'rate' is of type double, 'fast' is not (from command line)"),
+        (["-p", "rate:=fast"], 2, "error: parameter 'rate' is of type double, 'fast' is not (from command line)"),
     ],
 )
 def test_run_says_what_is_wrong_with_its_words(
