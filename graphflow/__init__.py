@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         GraphflowError,
         ParameterError,
         RemoteError,
+        ServerBusy,
         ServerLost,
         ServiceUnavailable,
     )
@@ -48,6 +49,7 @@ _HOMES = {
         "GraphflowError",
         "ParameterError",
         "RemoteError",
+        "ServerBusy",
         "ServerLost",
         "ServiceUnavailable",
     ),
@@ -90,6 +92,7 @@ __all__ = [
     "Qos",
     "Reliability",
     "RemoteError",
+    "ServerBusy",
     "ServerLost",
     "ServiceUnavailable",
     "Subscription",

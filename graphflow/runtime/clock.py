@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from abc import ABC, abstractmethod
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from typing import Protocol
@@ -17,24 +18,24 @@ class Handle(Protocol):
     def cancel(self) -> None: ...
 
 
-class Clock:
+class Clock(ABC):
     """Time and waiting. Subclasses say what time it is and how to be called at one."""
 
     def now(self) -> Time:
         """The time of day."""
         return Time(self.time_ns())
 
+    @abstractmethod
     def time_ns(self) -> int:
         """The time of day in nanoseconds since 1970."""
-        raise NotImplementedError
 
+    @abstractmethod
     def monotonic_ns(self) -> int:
         """Nanoseconds since some fixed point; never goes back."""
-        raise NotImplementedError
 
+    @abstractmethod
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Handle:
         """Call `callback` on the loop once `monotonic_ns()` has reached `when_ns`."""
-        raise NotImplementedError
 
     async def sleep(self, seconds: float) -> None:
         """Wait for `seconds`."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
@@ -92,7 +93,7 @@ class Group:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
 
 
-class Held:
+class Held(ABC):
     """A declaration that is an attribute of the class; on a node it gives what the node holds."""
 
     attribute = ""
@@ -101,9 +102,9 @@ class Held:
     def __set_name__(self, owner: type, name: str) -> None:
         self.attribute = name
 
+    @abstractmethod
     def bind(self, node: Node) -> Any:
         """Make, for one node, what is declared."""
-        raise NotImplementedError
 
 
 class Publisher(Held, Generic[M]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from graphflow.errors import ClosedError
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
 
-class Endpoint:
+class Endpoint(ABC):
     """What a node holds on the network under one name, from `open` to `close`."""
 
     kind: Kind
@@ -56,8 +57,9 @@ class Endpoint:
         # After the declaration, so that whoever sees the token can reach what it announces.
         self._declared.append(context.session.announce(self.entity.token))
 
+    @abstractmethod
     def _open(self, key: str) -> None:
-        raise NotImplementedError
+        """Declare it on the network under its data key."""
 
     def close(self) -> None:
         """Withdraw it from the network. Closing twice is harmless."""

@@ -34,10 +34,10 @@ def address(endpoint: str) -> tuple[str, int]:
     """
     protocol, _, rest = endpoint.partition("/")
     host, _, port = rest.rpartition(":")
-    if protocol == "tcp" and not (host in ("localhost", "[::1]") or host.startswith("127.")):
-        raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: the rendezvous is on this machine only, at 127.0.0.1")
     if protocol != "tcp" or not port.isdecimal() or not 0 < int(port) < 65536:
         raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: write it as tcp/127.0.0.1:7447")
+    if not (host in ("localhost", "[::1]") or host.startswith("127.")):
+        raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: the rendezvous is on this machine only, at 127.0.0.1")
     return host, int(port)
 
 

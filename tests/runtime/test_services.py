@@ -16,6 +16,7 @@ from graphflow import (
     EncodeError,
     Node,
     RemoteError,
+    ServerBusy,
     ServerLost,
     ServiceUnavailable,
     service,
@@ -23,6 +24,7 @@ from graphflow import (
 from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
+from graphflow.runtime import services
 from graphflow.runtime.services import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer, Inbox
@@ -511,3 +513,47 @@ async def test_waiting_with_a_client_that_is_closed(graph: Graph) -> None:
     assert changes
     with pytest.raises(ClosedError):
         await waiting
+
+
+class Gate(Node):
+    """Answers nobody until it is opened."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open = asyncio.Event()
+
+    @service(Trigger, "pass")
+    async def let_in(self, _: Trigger.Request) -> Trigger.Response:
+        await self.open.wait()
+        return Trigger.Response(success=True)
+
+
+async def test_a_full_service_refuses_the_newest(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that wait already are answered in the end; the others are told at once."""
+    monkeypatch.setattr(services, "REQUEST_QUEUE", 2)
+    gate, caller = Gate(), Node("caller")
+    client = caller.create_client(Trigger, "pass")
+    await graph.start(gate, caller)
+    calls = [asyncio.ensure_future(client.call(Trigger.Request())) for _ in range(5)]
+    await graph.settle()
+
+    gate.open.set()
+    await graph.settle()
+    results = await asyncio.gather(*calls, return_exceptions=True)
+
+    assert [type(r) for r in results] == [Trigger.Response] * 3 + [ServerBusy] * 2
+    assert "2 requests waiting" in str(results[-1])
+
+
+async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
+    """Nobody waits for an answer that has nowhere to go to."""
+    caller = Node("caller")
+    client = caller.create_client(Trigger, "pass")
+    await graph.start(Gate(), caller)
+    call = asyncio.ensure_future(client.call(Trigger.Request(), timeout=None))
+    await graph.settle()
+
+    client.close()
+
+    with pytest.raises(ClosedError, match="the client of /pass was closed"):
+        await call

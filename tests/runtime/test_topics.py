@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import threading
 from collections.abc import Callable
@@ -21,6 +22,7 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import Durability, History
 from graphflow.runtime import topics
+from graphflow.runtime.scheduler import BURST
 from graphflow.runtime.topics import TopicSubscription
 from graphflow.testing import Graph
 from tests.runtime.cast import Log, Speaker, nothing
@@ -448,3 +450,29 @@ async def test_reprs_tell_name_and_type(graph: Graph) -> None:
     assert repr(node.heard) == "<TopicSubscription /chatter [std_msgs/msg/String]>"
     assert repr(node.create_client(Empty, "go")) == "<ServiceClient /go [std_srvs/srv/Empty]>"
     assert repr(node.create_timer(0.5, nothing)) == "<Timer nothing 0.5 s>"
+
+
+async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph) -> None:
+    """A reader whose queue is full lets others run after every BURST messages."""
+    node = Node("reader")
+    heard = node.create_subscription(String, "chatter", None, 5 * BURST)
+    await graph.start(node)
+    publisher = graph.publisher(String, "/chatter")
+    for _ in range(5 * BURST):
+        publisher.publish(String())
+    await graph.settle()
+    taken: list[int] = []
+    turns: list[int] = []
+
+    async def read() -> None:
+        async for _ in heard:
+            taken.append(len(turns))
+
+    reader = asyncio.ensure_future(read())
+    while len(taken) < 5 * BURST:
+        turns.append(len(taken))
+        await asyncio.sleep(0)
+    turns.append(len(taken))
+    reader.cancel()
+
+    assert all(later - earlier <= BURST for earlier, later in itertools.pairwise(turns))

@@ -104,6 +104,14 @@ def test_an_endpoint_that_is_none_is_refused(text: str, monkeypatch: pytest.Monk
         rendezvous.join()
 
 
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.0.2.7", "example.org"])
+def test_the_rendezvous_stays_on_this_machine(host: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing listens for others by a slip of a variable."""
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", f"tcp/{host}:7447")
+    with pytest.raises(TransportError, match="on this machine only"):
+        rendezvous.establish()
+
+
 def test_a_command_says_when_nothing_is_running(port: int) -> None:
     """And ends with code 3."""
     with pytest.raises(SupervisorError, match="nothing is running") as caught:
