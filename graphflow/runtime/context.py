@@ -58,7 +58,7 @@ class Context:
         takeover = Takeover(None if checked else establish())
         try:
             session = ZenohSession(loop, mode)
-        except BaseException:
+        except BaseException:  # a cancellation too: nothing stays open
             await takeover.close()
             raise
         context = cls(session, domain=domain)

@@ -88,7 +88,7 @@ class Node:
         self.names = Resolver(name or declared.default_name(type(self)), namespace, rules)
         self.id = 0
         self.failure_taken = False
-        """Whether somebody has waited for that error."""
+        """Whether somebody has waited for `failure`."""
         self.log = node_logger(self.full_name)
         """The node's logger; what it says goes to the console and to /rosout."""
         self.parameters = Parameters({**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}})
@@ -257,6 +257,7 @@ class Node:
 
         Raises:
             GraphflowError: An override names no parameter, or something cannot be opened; nothing is left open.
+            ClosedError: The node is running already, or has been stopped.
         """
         self.ensure_made()
         if self._ended is not None:
@@ -271,7 +272,7 @@ class Node:
             timers = [o for o in self._openables if isinstance(o, Timer)]
             for openable in [o for o in self._openables if not isinstance(o, Timer)] + timers:
                 openable.open()
-        except BaseException:
+        except BaseException:  # a cancellation too: nothing stays open
             await self.stop()
             raise
         self.warn_unused_remaps()

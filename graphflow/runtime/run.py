@@ -94,7 +94,8 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
         if len(came) > 1:
             os.write(2, b"ended without cleanup: it was asked twice\n")
             os._exit(1)
-        loop.call_soon_threadsafe(stop.set)
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(stop.set)
 
     # Not the loop's own handlers, which would wait for a handler that does not return.
     former = {number: signal.signal(number, caught) for number in (signal.SIGINT, signal.SIGTERM)}

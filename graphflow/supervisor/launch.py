@@ -94,7 +94,7 @@ class _Launch:
             return self._refuse(error.exit_code, str(error))
         except GraphflowError as error:
             return self._refuse(1, str(error))
-        except BaseException:
+        except BaseException:  # a forked child: it must answer whoever waits, not unwind into its parent's code
             import traceback
 
             return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")

@@ -56,7 +56,7 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
             for fd in keep:
                 os.close(fd)
             _Preload(its, status_write, parent).run()
-        except BaseException:
+        except BaseException:  # a forked child must not unwind into its parent's code
             import traceback
 
             traceback.print_exc()
@@ -184,7 +184,7 @@ class _Preload:
             try:
                 self._channel.close()
                 self._be_worker(request, parent)
-            except BaseException:
+            except BaseException:  # a forked child must not unwind into its parent's code
                 import traceback
 
                 traceback.print_exc()
@@ -202,15 +202,10 @@ class _Preload:
 
     def _spawn_fresh(self, request: dict[str, Any]) -> int:
         """A worker in a new interpreter, for environments that a running one cannot take on."""
-        os.set_inheritable(self._status, True)
         log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with open(log, "ab") as out:
             child = subprocess.Popen(
-                [
-                    *_WORKER,
-                    str(self._status),
-                    str(os.getpid()),
-                ],
+                [*_WORKER, str(self._status), str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
@@ -218,7 +213,6 @@ class _Preload:
                 pass_fds=[self._status],
                 start_new_session=True,
             )
-        os.set_inheritable(self._status, False)
         assert child.stdin is not None
         # By stdin, since an argument may have 128 KiB at the most.
         child.stdin.write(json.dumps(request["job"]).encode())

@@ -22,6 +22,7 @@ from graphflow.supervisor.classes import add_root, import_class
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """The preload process blocks these; a worker has them unblocked once it can act on them."""
 PIPE_BUF = 4096
+"""Bytes that a pipe takes in one piece on Linux (PIPE_BUF of pipe(7))."""
 EXIT_ERROR = 70
 """A node failed while it ran."""
 EXIT_CONFIGURATION = 78

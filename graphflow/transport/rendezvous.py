@@ -61,7 +61,7 @@ def join() -> zenoh.Session | None:
         return None
     try:
         _refuse_strangers(session, endpoint)
-    except BaseException:
+    except BaseException:  # an interrupt too: nothing stays open
         close_session(session)
         raise
     return session
