@@ -18,7 +18,7 @@ if TYPE_CHECKING:
         ServerLost,
         ServiceUnavailable,
     )
-    from graphflow.qos import Durability, History, Qos, Reliability
+    from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
     from graphflow.runtime.context import Context
     from graphflow.runtime.declare import (
         Client,
@@ -31,10 +31,12 @@ if TYPE_CHECKING:
         task,
         timer,
     )
+    from graphflow.runtime.events import QosEvent
     from graphflow.runtime.node import Node
     from graphflow.runtime.run import run, running
     from graphflow.runtime.timer import TimerInfo
     from graphflow.times import Duration, Time
+    from graphflow.wire.attachment import MessageInfo
 
 __version__ = "0.1.0"
 
@@ -53,7 +55,7 @@ _HOMES = {
         "ServerLost",
         "ServiceUnavailable",
     ),
-    "graphflow.qos": ("Durability", "History", "Qos", "Reliability"),
+    "graphflow.qos": ("Durability", "History", "Liveliness", "Qos", "Reliability"),
     "graphflow.runtime.context": ("Context",),
     "graphflow.runtime.declare": (
         "Client",
@@ -66,7 +68,9 @@ _HOMES = {
         "task",
         "timer",
     ),
+    "graphflow.runtime.events": ("QosEvent",),
     "graphflow.runtime.timer": ("TimerInfo",),
+    "graphflow.wire.attachment": ("MessageInfo",),
     "graphflow.runtime.node": ("Node",),
     "graphflow.runtime.run": ("run", "running"),
     "graphflow.times": ("Duration", "Time"),
@@ -85,11 +89,14 @@ __all__ = [
     "GraphflowError",
     "Group",
     "History",
+    "Liveliness",
+    "MessageInfo",
     "Node",
     "Param",
     "ParameterError",
     "Publisher",
     "Qos",
+    "QosEvent",
     "Reliability",
     "RemoteError",
     "ServerBusy",

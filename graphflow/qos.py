@@ -5,7 +5,8 @@ Source: rmw_qos_profile_t and the presets of rmw/qos_profiles.h.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 INFINITE_NS = 9_223_372_036_854_775_807
@@ -18,11 +19,15 @@ DEFAULT_DEPTH = 42
 class Reliability(IntEnum):
     RELIABLE = 1
     BEST_EFFORT = 2
+    BEST_AVAILABLE = 4
+    """What fits the other side as it is when the endpoint is opened; never announced."""
 
 
 class Durability(IntEnum):
     TRANSIENT_LOCAL = 1
     VOLATILE = 2
+    BEST_AVAILABLE = 4
+    """As `Reliability.BEST_AVAILABLE`."""
 
 
 class History(IntEnum):
@@ -68,9 +73,60 @@ class Qos:
         """
         return profile if isinstance(profile, Qos) else cls(depth=profile)
 
+    def adapted(self, others: Iterable[Qos]) -> Qos:
+        """The profile with each BEST_AVAILABLE settled: the strongest that fits all of `others`, as they are now.
+
+        Args:
+            others: The profiles of the publishers that a subscription finds, or the other way round.
+        """
+        found = list(others)
+        reliable = all(q.reliability is Reliability.RELIABLE for q in found)
+        latched = bool(found) and all(q.durability is Durability.TRANSIENT_LOCAL for q in found)
+        settled = self
+        if self.reliability is Reliability.BEST_AVAILABLE:
+            settled = replace(settled, reliability=Reliability.RELIABLE if reliable else Reliability.BEST_EFFORT)
+        if self.durability is Durability.BEST_AVAILABLE:
+            settled = replace(settled, durability=Durability.TRANSIENT_LOCAL if latched else Durability.VOLATILE)
+        return settled
+
+
+def incompatible(offered: Qos, requested: Qos) -> list[str]:
+    """The policies by which DDS would keep a publisher from a subscription that asks for more than it offers.
+
+    rmw_zenoh and graphflow deliver all the same; a graph that is to run on every middleware has none of these.
+
+    Source: OMG DDS 1.4, 2.2.3; rmw_dds_common qos_profile_check_compatible.
+    """
+    refused = {
+        "reliability": offered.reliability is Reliability.BEST_EFFORT and requested.reliability is Reliability.RELIABLE,
+        "durability": offered.durability is Durability.VOLATILE and requested.durability is Durability.TRANSIENT_LOCAL,
+        "deadline": offered.deadline_ns > requested.deadline_ns,
+        "liveliness": offered.liveliness is Liveliness.AUTOMATIC and requested.liveliness is Liveliness.MANUAL_BY_TOPIC,
+        "liveliness lease": offered.lease_ns > requested.lease_ns,
+    }
+    return [policy for policy, is_refused in refused.items() if is_refused]
+
 
 DEFAULT = Qos()
 SENSOR_DATA = Qos(depth=5, reliability=Reliability.BEST_EFFORT)
 SERVICES = Qos()
 PARAMETERS = Qos(depth=1000)
+PARAMETER_EVENTS = Qos(depth=1000)
 ROSOUT = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL, lifespan_ns=10_000_000_000)
+ACTION_STATUS = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
+CLOCK = Qos(depth=1, reliability=Reliability.BEST_EFFORT)
+BEST_AVAILABLE = Qos(reliability=Reliability.BEST_AVAILABLE, durability=Durability.BEST_AVAILABLE)
+SYSTEM_DEFAULT = Qos(depth=0)
+
+PROFILES: dict[str, Qos] = {
+    "default": DEFAULT,
+    "sensor_data": SENSOR_DATA,
+    "services_default": SERVICES,
+    "parameters": PARAMETERS,
+    "parameter_events": PARAMETER_EVENTS,
+    "action_status_default": ACTION_STATUS,
+    "rosout_default": ROSOUT,
+    "best_available": BEST_AVAILABLE,
+    "system_default": SYSTEM_DEFAULT,
+}
+"""ROS 2's profiles under the names that `ros2 topic pub --qos-profile` takes."""

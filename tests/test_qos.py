@@ -82,3 +82,60 @@ def test_a_profile_cannot_change() -> None:
     with pytest.raises(FrozenInstanceError):
         qos.DEFAULT.depth = 5  # type: ignore[misc]
     assert len({Qos(), qos.DEFAULT, qos.SERVICES}) == 1
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested", "policies"),
+    [
+        (Qos(), Qos(), []),
+        (Qos(), qos.SENSOR_DATA, []),
+        (qos.SENSOR_DATA, Qos(), ["reliability"]),
+        (qos.ROSOUT, Qos(), []),
+        (Qos(), qos.ROSOUT, ["durability"]),
+        (Qos(), Qos(deadline_ns=1), ["deadline"]),
+        (Qos(deadline_ns=2), Qos(deadline_ns=1), ["deadline"]),
+        (Qos(deadline_ns=1), Qos(deadline_ns=2), []),
+        (Qos(deadline_ns=1), Qos(), []),
+        (Qos(), Qos(liveliness=Liveliness.MANUAL_BY_TOPIC), ["liveliness"]),
+        (Qos(liveliness=Liveliness.MANUAL_BY_TOPIC), Qos(), []),
+        (Qos(lease_ns=2), Qos(lease_ns=1), ["liveliness lease"]),
+        (Qos(lifespan_ns=1), Qos(lifespan_ns=2), []),
+        (
+            qos.SENSOR_DATA,
+            Qos(durability=Durability.TRANSIENT_LOCAL, deadline_ns=1),
+            ["reliability", "durability", "deadline"],
+        ),
+    ],
+)
+def test_dds_refuses_less_than_is_asked_for(offered: Qos, requested: Qos, policies: list[str]) -> None:
+    """A publisher must offer at least what a subscription asks for, policy by policy."""
+    assert qos.incompatible(offered, requested) == policies
+
+
+@pytest.mark.parametrize(
+    ("others", "reliability", "durability"),
+    [
+        ([], Reliability.RELIABLE, Durability.VOLATILE),
+        ([Qos()], Reliability.RELIABLE, Durability.VOLATILE),
+        ([qos.SENSOR_DATA], Reliability.BEST_EFFORT, Durability.VOLATILE),
+        ([qos.ROSOUT], Reliability.RELIABLE, Durability.TRANSIENT_LOCAL),
+        ([qos.ROSOUT, qos.SENSOR_DATA], Reliability.BEST_EFFORT, Durability.VOLATILE),
+    ],
+)
+def test_best_available_is_the_strongest_that_fits_all(
+    others: list[Qos], reliability: Reliability, durability: Durability
+) -> None:
+    """BEST_AVAILABLE becomes what every counterpart that is there can meet; other policies stay."""
+    settled = qos.BEST_AVAILABLE.adapted(others)
+    assert settled == Qos(reliability=reliability, durability=durability)
+    assert Qos(depth=3).adapted(others) == Qos(depth=3)
+
+
+def test_ros_names_of_the_profiles() -> None:
+    """Each profile is found by the name that ROS 2's command line has for it."""
+    assert list(qos.PROFILES) == [
+        *("default", "sensor_data", "services_default", "parameters", "parameter_events", "action_status_default"),
+        *("rosout_default", "best_available", "system_default"),
+    ]
+    assert qos.PROFILES["sensor_data"].reliability is Reliability.BEST_EFFORT
+    assert qos.PROFILES["system_default"].depth == qos.DEFAULT_DEPTH

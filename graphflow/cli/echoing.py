@@ -13,7 +13,8 @@ from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.runtime.node import Node
-from graphflow.runtime.topics import MessageInfo, TopicSubscription
+from graphflow.runtime.topics import TopicSubscription
+from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind
 from graphflow.wire.schema import FieldType

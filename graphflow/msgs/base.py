@@ -17,6 +17,9 @@ class Message:
     The constructor takes fields by keyword, checks them, and widens: integers for floats, sequences for arrays,
     mappings or objects with the same fields for nested messages. Assignment does not check; a value that does not
     fit is reported, by its field's path, when the message is encoded.
+
+    A field may be called anything in small letters, so what every message has beside its fields is kept to a few
+    names that no definition is known to use.
     """
 
     __slots__ = ()
@@ -43,11 +46,6 @@ class Message:
         """
         message: Self = cls.CODEC().decode(payload)
         return message
-
-    @classmethod
-    def type_name(cls) -> str:
-        """`package/msg/Name`."""
-        return cls.SCHEMA.name
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:

@@ -15,6 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.wire import idl
 from graphflow.wire.cdr import Codec, compile_codec
 from graphflow.wire.codegen import Types
+from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import Action, Interface, Message, Service
 from graphflow.wire.typehash import type_hash
 
@@ -33,7 +34,13 @@ def add_root(folder: Path) -> None:
 
 
 def roots() -> Iterator[Path]:
-    """Folders of packages: the bundled one, those added, and every `interfaces/` where Python looks for modules."""
+    """Folders of packages: the bundled ones, those added, and every `interfaces/` where Python looks for modules.
+
+    What a wire profile defines otherwise lies in a folder of its name.
+    """
+    overlay = BUNDLED / wire_profile()
+    if overlay.is_dir():
+        yield overlay
     yield BUNDLED
     yield from _roots
     for entry in sys.path:
@@ -187,11 +194,14 @@ def hash_of(name: str) -> str:
 
 @cache
 def interface_class(name: str) -> type:
-    """The Python class of `package/kind/Name`, or of a derived message.
+    """The Python class of `package/kind/Name`, or of a derived message; the one that the wire profile has for it.
 
     Raises:
         UnknownInterface, InterfaceError: as `interface`.
     """
+    on_wire = wire_type(name, wire_profile())
+    if on_wire != name:
+        return interface_class(on_wire)
     if name.endswith(("_SendGoal", "_GetResult")):
         return build.service_class(service_schema(name), interface_class)
     if "/msg/" in name or "_" in name.rpartition("/")[2]:

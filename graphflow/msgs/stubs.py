@@ -6,6 +6,7 @@ its constructor takes: `base.Message` has the rules, `build.convert` keeps them.
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -45,9 +46,10 @@ def bundled_stubs() -> dict[Path, str]:
 def _imports(body: str) -> str:
     """The imports that `body` needs, in the order the linter wants. Nested types stand behind their package's name."""
     words = set(re.findall(r"\w+", body))
-    qualifiers = set(re.findall(r"\b(\w+)\.[A-Z]", body)) - {"np", "npt", "times"}
+    qualifiers = set(re.findall(r"\b(\w+)\.[A-Z]", body)) - {"np", "npt", "times", "base"}
     ours = [f"from graphflow.msgs.{package} import msg as {package}" for package in qualifiers]
-    ours += _import("graphflow.msgs.base", ("Action", "Message", "Service"), words)
+    # As a module: an interface may be called Service itself.
+    ours += ["from graphflow.msgs import base"]
     ours += ["from graphflow import times"] if "times." in body else []
     numpy = ["import numpy as np", "import numpy.typing as npt"] if "npt." in body else []
     standard = _import("collections.abc", ("Mapping", "Sequence"), words)
@@ -80,14 +82,24 @@ def _service_messages(service: Service) -> list[str]:
 def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] = ()) -> str:
     """A service or action. Without `TypeAlias` a checker takes its parts for variables, and refuses them as types."""
     aliases = [f"    {part}: TypeAlias = {name}_{part}" for part in (*parts, *more)]
-    return "\n".join([f"class {name}({base}[{', '.join(f'{name}_{part}' for part in parts)}]):", *aliases])
+    arguments = [f"{name}_{part}" for part in parts]
+    head = f"class {name}(base.{base}[{', '.join(arguments)}]):"
+    if len(head) > _LINE_LENGTH:
+        head = "\n".join([f"class {name}(", f"    base.{base}[", *(f"        {a}," for a in arguments), "    ],", "):"])
+    return "\n".join([head, *aliases])
 
 
 def _message(message: Message) -> str:
     module, _, name = message.name.rpartition("/")
-    constants = (f"{c.name}: Final = {c.value!r}" for c in message.constants)
+    constants = (f"{c.name}: Final = {_literal(c.value)}" for c in message.constants)
     attributes = (f"{f.name}: {_held(f.type, module)}" for f in message.fields)
-    return "\n    ".join([f"class {name}(Message):", *constants, *attributes, _constructor(message.fields, module)])
+    return "\n    ".join(
+        [f"class {name}(base.Message):", *constants, *attributes, _constructor(message.fields, module)]
+    )
+
+
+def _literal(value: bool | float | str) -> str:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
 
 
 def _constructor(fields: tuple[Field, ...], module: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import logging
 import os
 import threading
 from collections.abc import Callable
@@ -14,12 +15,15 @@ from graphflow.domain import domain_id
 from graphflow.machines.cache import Change, GraphCache
 from graphflow.runtime.clock import Clock, WallClock
 from graphflow.transport.base import Closable, Session
-from graphflow.wire.liveliness import watch_key
+from graphflow.wire.liveliness import Entity, watch_key
+from graphflow.wire.profile import advice, wire_profile
 
 if TYPE_CHECKING:
     from graphflow.transport.takeover import Takeover
 
 T = TypeVar("T")
+
+logger = logging.getLogger("graphflow")
 
 
 class Context:
@@ -30,11 +34,15 @@ class Context:
         self.domain = domain
         self.clock = clock or WallClock()
         self.loop = asyncio.get_running_loop()
+        self.profile = wire_profile()
+        """Which distribution's definitions this process offers."""
         self.cache = GraphCache()
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._listeners: list[Callable[[Change], None]] = []
+        self._by_name: dict[str, list[Callable[[Change], None]]] = {}
+        self._advised = False
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
     @classmethod
@@ -96,6 +104,18 @@ class Context:
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
+    def on_name(self, name: str, listener: Callable[[Change], None]) -> Callable[[], None]:
+        """Have `listener` called for every endpoint called `name` that comes or goes; returns what ends that."""
+        listeners = self._by_name.setdefault(name, [])
+        listeners.append(listener)
+
+        def stop() -> None:
+            listeners.remove(listener)
+            if not listeners and self._by_name.get(name) is listeners:
+                del self._by_name[name]
+
+        return stop
+
     async def wait_for(self, condition: Callable[[], bool]) -> None:
         """Wait until `condition` holds, looking again whenever the graph changes."""
         if condition():
@@ -119,8 +139,17 @@ class Context:
 
     def _token(self, token: str, alive: bool) -> None:
         for change in self.cache.apply(token, alive=alive):
-            for listener in list(self._listeners):
+            if alive and not self._advised:
+                self._advise(change.entity)
+            for listener in [*self._by_name.get(change.entity.name, ()), *self._listeners]:
                 listener(change)
+
+    def _advise(self, entity: Entity) -> None:
+        """Say once that somebody on the network speaks another wire profile."""
+        text = advice(entity, self.profile)
+        if text:
+            self._advised = True
+            logger.warning("%s has %s: %s", entity.node_name, entity.name, text)
 
     async def close(self) -> None:
         """Leave the network. Nodes are to be stopped before."""

@@ -68,6 +68,14 @@ def _qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
         raise DeclarationError(f"{place}: {error}") from None
 
 
+def _check_on_event(on_event: Any, what: str, place: Place) -> None:
+    if on_event is not None and not inspect.isfunction(on_event):
+        raise DeclarationError(
+            f"{place}: {what}: on_event= takes a method defined above it, `def noticed(self, event): ...`, "
+            f"not {on_event!r}"
+        )
+
+
 def _check_group(group: Any, what: str, place: Place) -> None:
     if group is not None and not isinstance(group, Group):
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
@@ -115,13 +123,24 @@ class Publisher(Held, Generic[M]):
         name: The topic: relative, absolute or `~/private`.
         qos: A profile, or a queue depth.
         depth: The same as a number for `qos`.
+        on_event: A method defined above it, called with each `QosEvent`.
     """
 
-    def __init__(self, type: type[M], name: str, qos: Qos | int = 10, *, depth: int | None = None) -> None:  # noqa: A002
+    def __init__(
+        self,
+        type: type[M],  # noqa: A002
+        name: str,
+        qos: Qos | int = 10,
+        *,
+        depth: int | None = None,
+        on_event: Callable[..., Any] | None = None,
+    ) -> None:
         self.place = _here()
         _check_type(type, Message, "Publisher", self.place)
         _check_name(name, "Publisher", self.place)
+        _check_on_event(on_event, "Publisher", self.place)
         self.type, self.name, self.qos = type, name, _qos(qos, depth, self.place)
+        self.on_event = on_event
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -131,17 +150,32 @@ class Publisher(Held, Generic[M]):
         return self if node is None else node._held[self.attribute]
 
     def bind(self, node: Node) -> TopicPublisher[M]:
-        return node.create_publisher(self.type, self.name, self.qos)
+        return node.create_publisher(self.type, self.name, self.qos, on_event=node.bound(self.on_event))
 
 
 class Subscription(Held, Generic[M]):
-    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as `Publisher`."""
+    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as `Publisher`.
 
-    def __init__(self, type: type[M], name: str, qos: Qos | int = 10, *, depth: int | None = None) -> None:  # noqa: A002
+    Args:
+        ignore_local: Leave out what this process publishes itself.
+    """
+
+    def __init__(
+        self,
+        type: type[M],  # noqa: A002
+        name: str,
+        qos: Qos | int = 10,
+        *,
+        depth: int | None = None,
+        ignore_local: bool = False,
+        on_event: Callable[..., Any] | None = None,
+    ) -> None:
         self.place = _here()
         _check_type(type, Message, "Subscription", self.place)
         _check_name(name, "Subscription", self.place)
+        _check_on_event(on_event, "Subscription", self.place)
         self.type, self.name, self.qos = type, name, _qos(qos, depth, self.place)
+        self.ignore_local, self.on_event = ignore_local, on_event
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -151,7 +185,10 @@ class Subscription(Held, Generic[M]):
         return self if node is None else node._held[self.attribute]
 
     def bind(self, node: Node) -> TopicSubscription[M]:
-        return node.create_subscription(self.type, self.name, None, self.qos)
+        on_event = node.bound(self.on_event)
+        return node.create_subscription(
+            self.type, self.name, None, self.qos, ignore_local=self.ignore_local, on_event=on_event
+        )
 
 
 class Client(Held, Generic[Request, Response]):
@@ -248,6 +285,8 @@ class Handler:
     name: str = ""
     qos: Qos = field(default_factory=Qos)
     takes_info: bool = False
+    ignore_local: bool = False
+    on_event: Callable[..., Any] | None = None
     rate: Rate | None = None
 
 
@@ -295,12 +334,12 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
         if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty
     ]
     if len(positional) not in arguments:
-        wanted = " or ".join(["self", "self and one argument"][n - 1] for n in arguments)
+        wanted = " or ".join(["self", "self and one argument", "self and two arguments"][n - 1] for n in arguments)
         has = f"({', '.join(p.name for p in positional)})"
         hint = "; it gets the request only, and returns a new response" if handler.kind == "service" else ""
         raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}{hint}")
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
-    takes_info = handler.kind == "timer" and len(positional) == 2
+    takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
     object.__setattr__(handler, "place", place)
     object.__setattr__(handler, "takes_info", takes_info)
     setattr(fn, MARK, handler)
@@ -315,14 +354,26 @@ def subscription(
     depth: int | None = None,
     group: Group | None = None,
     thread: bool = False,
+    ignore_local: bool = False,
+    on_event: Callable[..., Any] | None = None,
 ) -> Callable[[F], F]:
-    """Have the method called with each message of a topic: `async def heard(self, msg: String) -> None`."""
+    """Have the method called with each message of a topic: `async def heard(self, msg: String) -> None`.
+
+    With a third argument, `info: MessageInfo`, it is told too who sent the message, when, and its number in the row.
+
+    Args:
+        ignore_local: Leave out what this process publishes itself.
+        on_event: A method defined above it, called with each `QosEvent`.
+    """
     place = _here()
     _check_type(type, Message, "@subscription", place)
     _check_name(name, "@subscription", place)
     _check_group(group, "@subscription", place)
-    handler = Handler("subscription", place, group, thread, type, name, _qos(qos, depth, place))
-    return lambda fn: _mark(fn, handler, range(2, 3))
+    _check_on_event(on_event, "@subscription", place)
+    profile = _qos(qos, depth, place)
+    options: dict[str, Any] = {"ignore_local": ignore_local, "on_event": on_event}
+    handler = Handler("subscription", place, group, thread, type, name, profile, **options)
+    return lambda fn: _mark(fn, handler, range(2, 4))
 
 
 def timer(

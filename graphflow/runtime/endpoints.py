@@ -1,13 +1,19 @@
-"""What all endpoints of a node have in common: a full name, a token in the graph, and a life."""
+"""What all endpoints of a node have in common: a full name, a token in the graph, counterparts, and a life."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import ClosedError
+from graphflow.machines.cache import Change
+from graphflow.machines.matching import verdict
 from graphflow.msgs import registry
 from graphflow.qos import Qos
+from graphflow.runtime.events import OnEvent, QosEvent, QosEventKind
+from graphflow.runtime.scheduler import Runner
 from graphflow.transport.base import Closable
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -16,11 +22,15 @@ if TYPE_CHECKING:
 
 
 class Endpoint(ABC):
-    """What a node holds on the network under one name, from `open` to `close`."""
+    """What a node holds on the network under one name, from `open` to `close`.
+
+    Args:
+        on_event: Called with each `QosEvent`, one after the other; a `def` or an `async def`.
+    """
 
     kind: Kind
 
-    def __init__(self, node: Node, type_name: str, name: str, qos: Qos) -> None:
+    def __init__(self, node: Node, type_name: str, name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
         self.node = node
         self.type_name = type_name
         self.name = name
@@ -28,7 +38,14 @@ class Endpoint(ABC):
         self.qos = qos
         self.entity: Entity | None = None
         """How the endpoint is announced; None until the node runs."""
+        self.matched: dict[str, Entity] = {}
+        """The counterparts in the graph that this endpoint reaches, by token."""
         self._declared: list[Closable] = []
+        self._on_event = on_event
+        self._event_runner: Runner | None = None
+        self._events: deque[QosEvent] = deque()
+        self._event_totals: Counter[QosEventKind] = Counter()
+        self._stop_listening: Callable[[], None] = _nothing
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name} [{self.type_name}]>"
@@ -40,6 +57,8 @@ class Endpoint(ABC):
     def open(self) -> None:
         """Declare it on the network and announce it. Done by the node."""
         context, node = self.node.context, self.node
+        there = [e for e in context.cache if e.name == self.name]
+        self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
         self.entity = Entity(
             context.domain,
             context.session.zid,
@@ -53,9 +72,15 @@ class Endpoint(ABC):
             registry.hash_of(self.type_name),
             self.qos,
         )
+        if self._on_event is not None:
+            label = f"events of {self.name}"
+            self._event_runner = node.runner(label, None, self._events, self._on_event, self._event_handled)
         self._open(self.entity.data_key)
         # After the declaration, so that whoever sees the token can reach what it announces.
         self._declared.append(context.session.announce(self.entity.token))
+        self._stop_listening = context.on_name(self.name, self._counterpart)
+        for entity in there:
+            self._counterpart(Change(entity, True))
 
     @abstractmethod
     def _open(self, key: str) -> None:
@@ -63,11 +88,57 @@ class Endpoint(ABC):
 
     def close(self) -> None:
         """Withdraw it from the network. Closing twice is harmless."""
+        self._stop_listening()
+        self._stop_listening = _nothing
         declared, self._declared = self._declared, []
         for closable in reversed(declared):
             closable.close()
+        if self._event_runner is not None:
+            self._event_runner.cancel()
+        self.matched.clear()
         self.entity = None
         self.node.forget(self)
+
+    def event_total(self, kind: QosEventKind) -> int:
+        """How often a kind of event has happened since the start."""
+        return self._event_totals[kind]
+
+    def _counterpart(self, change: Change) -> None:
+        """Something of the same name came or went."""
+        other = change.entity
+        judged = verdict(self._announced(), other, self.node.context.profile)
+        if judged is None:
+            return
+        if judged.reaches and change.alive != (other.token in self.matched):
+            if change.alive:
+                self.matched[other.token] = other
+            else:
+                del self.matched[other.token]
+            step = 1 if change.alive else -1
+            self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
+            self._matched(other, change.alive)
+        if change.alive and judged.complaint:
+            self.node.log.warning("%s", judged.complaint)
+            if judged.reaches:
+                self._tell("incompatible_qos", detail=", ".join(judged.policies))
+            else:
+                self._tell("incompatible_type", detail=other.node_name)
+
+    def _matched(self, other: Entity, alive: bool) -> None:  # noqa: B027 - most endpoints have nothing to add
+        """A counterpart that is reached came or went."""
+
+    def _tell(
+        self, kind: QosEventKind, more: int = 1, change: int | None = None, current: int = 0, detail: str = ""
+    ) -> None:
+        self._event_totals[kind] += more
+        if self._event_runner is not None:
+            total = self._event_totals[kind]
+            self._events.append(QosEvent(kind, total, more if change is None else change, current, detail))
+            self._event_runner.wake()
+
+    def _event_handled(self, event: QosEvent, result: Any, error: BaseException | None) -> None:
+        if error is not None:
+            self.node.handler_failed(f"event {event.kind} of {self.name}", error)
 
     def _announced(self) -> Entity:
         if self.entity is None:
@@ -75,3 +146,7 @@ class Endpoint(ABC):
                 f"{self.name}: node {self.node.full_name} is not running; use this from its handlers and tasks"
             )
         return self.entity
+
+
+def _nothing() -> None:
+    """Nobody is listened to."""

@@ -20,12 +20,14 @@ from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare, declared
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
+from graphflow.runtime.events import OnEvent
 from graphflow.runtime.params import Parameters, ParameterServices
 from graphflow.runtime.rosout import Rosout, node_logger
 from graphflow.runtime.scheduler import Finished, Runner
 from graphflow.runtime.services import ServiceClient, ServiceServer
 from graphflow.runtime.timer import Timer, TimerInfo
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
+from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
@@ -155,25 +157,39 @@ class Node:
 
     # create_*: rclpy's names and argument order
 
-    def create_publisher(self, type_: type[M], name: str, qos: Qos | int = 10) -> TopicPublisher[M]:
-        """A publisher on `name`, remapped."""
-        return self._add(TopicPublisher(self, type_, self.names.resolve(name), Qos.of(qos)))
+    def create_publisher(
+        self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
+    ) -> TopicPublisher[M]:
+        """A publisher on `name`, remapped; `on_event` is called with each `QosEvent`."""
+        return self._add(TopicPublisher(self, type_, self.names.resolve(name), Qos.of(qos), on_event))
 
     def create_subscription(
         self,
         type_: type[M],
         name: str,
-        callback: Callable[[M], Any] | None,
+        callback: Callable[[M], Any] | Callable[[M, MessageInfo], Any] | None,
         qos: Qos | int = 10,
         *,
         group: declare.Group | None = None,
         thread: bool = False,
+        takes_info: bool = False,
+        ignore_local: bool = False,
+        on_event: OnEvent | None = None,
     ) -> TopicSubscription[M]:
-        """A subscription on `name`, remapped: calls `callback` (a `def` or an `async def`), or is iterated if None."""
+        """A subscription on `name`, remapped.
+
+        Args:
+            callback: A `def` or an `async def`, called with each message; None for a subscription to be iterated.
+            takes_info: Call it with the message and a `MessageInfo`: who sent it, when, its number in the row.
+            ignore_local: Leave out what this process publishes itself.
+            on_event: Called with each `QosEvent`.
+        """
         slot = self._slots(group) if callback is not None else None
         call = self._in_thread(callback) if thread and callback is not None else callback
         label = _label(callback, f"subscription {name}")
-        return self._add(TopicSubscription(self, type_, self.names.resolve(name), Qos.of(qos), call, label, slot))
+        resolved = self.names.resolve(name)
+        options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
+        return self._add(TopicSubscription(self, type_, resolved, Qos.of(qos), call, label, slot, **options))
 
     def create_service(
         self,
@@ -358,7 +374,11 @@ class Node:
             trace = (type(error), error, users_part(error))
             self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
 
-    # for its endpoints
+    # for its declarations and endpoints
+
+    def bound(self, fn: Callable[..., Any] | None) -> Callable[..., Any] | None:
+        """A function of the class body, as a method of this node; a child class may have another of the name."""
+        return None if fn is None else getattr(self, fn.__name__)
 
     def runner(
         self,
@@ -420,6 +440,8 @@ class Node:
     def _bind_handler(self, method: Callable[..., Any], handler: declare.Handler) -> None:
         options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
+            options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
+            options["on_event"] = self.bound(handler.on_event)
             self.create_subscription(handler.type, handler.name, method, handler.qos, **options)
         elif handler.kind == "service":
             self.create_service(handler.type, handler.name, method, **options)

@@ -110,7 +110,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             return
         asked = attachment.unpack(request.attachment)
-        now = self.node.clock.time_ns()
+        now = self.node.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
 
     def close(self) -> None:
@@ -223,7 +223,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if not future.done():
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
-        beside = attachment.pack(sequence, self.node.clock.time_ns(), entity.gid)
+        beside = attachment.pack(sequence, self.node.context.clock.time_ns(), entity.gid)
         self._pending.add(future)
         give_up = caller.call(payload, beside, answered)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)

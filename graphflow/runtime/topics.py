@@ -5,18 +5,20 @@ from __future__ import annotations
 import asyncio
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError, EncodeError
 from graphflow.machines.group import GroupState
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
-from graphflow.qos import History, Qos
+from graphflow.qos import DEFAULT, INFINITE_NS, History, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.events import OnEvent, Watchdog
 from graphflow.runtime.scheduler import BURST, Runner
-from graphflow.transport.base import Inbox, Sender
+from graphflow.transport.base import Closable, Inbox, Payload, Sender
 from graphflow.wire import attachment
-from graphflow.wire.liveliness import Kind
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -25,6 +27,8 @@ M = TypeVar("M", bound=Message)
 
 KEEP_ALL_BOUND = 10_000
 """Messages a KEEP_ALL subscription holds before it counts losses."""
+SOURCES_BOUND = 4096
+"""Publishers a subscription keeps count of."""
 
 
 class TopicPublisher(Endpoint, Generic[M]):
@@ -32,59 +36,124 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     kind = Kind.PUBLISHER
 
-    def __init__(self, node: Node, type_: type[M], name: str, qos: Qos) -> None:
-        super().__init__(node, type_.SCHEMA.name, name, qos)
+    def __init__(self, node: Node, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
+        super().__init__(node, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.published = 0
         """Messages sent since the start; also the last sequence number."""
         self._encode = registry.codec(self.type_name).encode
-        self._put: Callable[[bytes, bytes], None] = self._not_open
+        self._sender: Sender = _NOT_OPEN
+        self._deadline: Watchdog | None = None
+        self._lease: Watchdog | None = None
+        self._alive: Sender | None = None
 
     def _open(self, key: str) -> None:
-        sender: Sender = self.node.context.session.open_sender(key, self.qos)
-        self._declared.append(sender)
-        self._put = sender.put
+        session = self.node.context.session
+        self._sender = session.open_sender(key, self.qos)
+        self._declared.append(self._sender)
+        if self.qos.deadline_ns != INFINITE_NS:
+            self._deadline = self._watchdog(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+        if self.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and self.qos.lease_ns != INFINITE_NS:
+            self._lease = self._watchdog(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
+            self._alive = session.open_sender(_alive_key(self._announced()), DEFAULT)
+            self._declared.append(self._alive)
+
+    def _watchdog(self, period_ns: int, silent: Callable[[], None]) -> Watchdog:
+        dog = Watchdog(self.node.clock, period_ns, silent)
+        dog.start()
+        return dog
 
     def publish(self, message: M) -> None:
         """Send a message. Never waits: a subscriber that cannot keep up loses messages.
 
         Raises:
-            EncodeError: A field does not fit its type, or the message is of another type.
+            EncodeError: A field does not fit its type, or the message is of another type. A message that nobody
+                listens to is not encoded, and its fields are not looked at.
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
-        payload = self._encode(message)
-        entity = self._announced()
-        self.published += 1
-        self._put(payload, attachment.pack(self.published, self.node.clock.time_ns(), entity.gid))
+        sender = self._sender
+        if sender.is_wanted:
+            payload = self._encode(message)
+            entity = self._announced()
+            self.published += 1
+            now = self.node.context.clock.time_ns()
+            sender.put(payload, attachment.pack(self.published, now, entity.gid))
+        else:
+            self._announced()
+            self.published += 1
+        if self._deadline is not None:
+            self._deadline.touch()
+        if self._lease is not None:
+            self._lease.touch()
+
+    def assert_liveliness(self) -> None:
+        """Say that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
+
+        Raises:
+            ClosedError: The node is not running.
+        """
+        self._announced()
+        if self._lease is not None and self._alive is not None:
+            self._lease.touch()
+            self._alive.put(b"", b"")
 
     def get_subscription_count(self) -> int:
         """Subscriptions in the graph that get these messages."""
-        key = self._announced().data_key
-        return sum(1 for e in self.node.context.cache.endpoints(Kind.SUBSCRIPTION, self.name) if e.data_key == key)
+        self._announced()
+        return len(self.matched)
 
     def close(self) -> None:
-        self._put = self._not_open
+        for dog in (self._deadline, self._lease):
+            if dog is not None:
+                dog.stop()
+        self._sender = _NOT_OPEN
         super().close()
 
-    def _not_open(self, payload: bytes, attachment_: bytes) -> None:
-        self._announced()
+
+class _NotOpen:
+    """What a publisher sends with before and after it is on the network."""
+
+    is_wanted = False
+
+    def put(self, payload: Payload, attachment: bytes) -> None:
+        """Nothing is sent."""
+
+    def close(self) -> None:
+        """Nothing is held."""
 
 
-class MessageInfo(NamedTuple):
-    """What came beside a message."""
+_NOT_OPEN = _NotOpen()
 
-    sequence: int
-    """Counts the sender's messages from 1; 0 when the sender did not say."""
-    source_ns: int
-    """When it was sent, nanoseconds since 1970 on the sender's clock."""
-    gid: bytes
-    """Which publisher sent it."""
+
+def _alive_key(publisher: Entity) -> str:
+    """Where a publisher with manual liveliness says that it is alive. ROS 2 has no word for that over Zenoh."""
+    return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"
+
+
+_NO_INFO = MessageInfo(0, 0, bytes(16))
+
+
+class _Source:
+    """One publisher as a subscription knows it."""
+
+    __slots__ = ("alive", "lease", "lifespan_ns", "sequence")
+
+    def __init__(self, lifespan_ns: int) -> None:
+        self.sequence = 0
+        self.lifespan_ns = lifespan_ns
+        self.lease: Watchdog | None = None
+        self.alive: Closable | None = None
 
 
 class TopicSubscription(Endpoint, Generic[M]):
-    """A subscription at work: with a callback, or to be iterated: `async for message in subscription`."""
+    """A subscription at work: with a callback, or to be iterated: `async for message in subscription`.
+
+    Args:
+        takes_info: Whether the callback is called with the message and its `MessageInfo`.
+        ignore_local: Leave out what this process publishes.
+    """
 
     kind = Kind.SUBSCRIPTION
 
@@ -94,15 +163,23 @@ class TopicSubscription(Endpoint, Generic[M]):
         type_: type[M],
         name: str,
         qos: Qos,
-        callback: Callable[[M], Any] | None = None,
+        callback: Callable[..., Any] | None = None,
         label: str = "",
         group: GroupState[Runner] | None = None,
+        *,
+        takes_info: bool = False,
+        ignore_local: bool = False,
+        on_event: OnEvent | None = None,
     ) -> None:
-        super().__init__(node, type_.SCHEMA.name, name, qos)
+        super().__init__(node, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.malformed = 0
         """Payloads that were no message of the type, and were dropped."""
+        self.expired = 0
+        """Messages dropped because they were older than the publisher's lifespan, or the subscription's."""
         self._callback = callback
+        self._takes_info = takes_info
+        self._ignore_local = ignore_local
         self._label = label or f"subscription {name}"
         self._group = group
         self._decode = registry.codec(self.type_name).decode
@@ -110,6 +187,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._inbox: Inbox | None = None
         self._taken = 0
         self._waiters: set[Future[None]] = set()
+        self._sources: dict[bytes, _Source] = {}
+        self._gaps = 0
+        self._deadline: Watchdog | None = None
 
     def _open(self, key: str) -> None:
         context = self.node.context
@@ -117,10 +197,24 @@ class TopicSubscription(Endpoint, Generic[M]):
         if self._callback is None:
             self._inbox = Inbox(context.session.bell, bound, self._arrived)
         else:
-            self._inbox = Inbox(context.session.bell, bound, lambda: None)
+            self._inbox = Inbox(context.session.bell, bound, _nothing)
             self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
             self._inbox.ready = self.runner.wake
-        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox))
+        if self.qos.deadline_ns != INFINITE_NS:
+            self._watch_deadline(self._inbox)
+        receiver = context.session.open_receiver(key, self.qos, self._inbox, ignore_local=self._ignore_local)
+        self._declared.append(receiver)
+
+    def _watch_deadline(self, inbox: Inbox) -> None:
+        """Count a missed deadline for every period without a message, while there is a publisher to keep it."""
+        dog = Watchdog(self.node.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+        ready = inbox.ready
+
+        def heard() -> None:
+            dog.touch()
+            ready()
+
+        inbox.ready, self._deadline = heard, dog
 
     @property
     def received(self) -> int:
@@ -132,20 +226,116 @@ class TopicSubscription(Endpoint, Generic[M]):
         """Messages lost because the queue (`qos.depth`) was full."""
         return self._inbox.dropped if self._inbox is not None else 0
 
+    @property
+    def lost(self) -> int:
+        """Messages that never arrived, told by gaps in the publishers' sequence numbers."""
+        return self.event_total("message_lost")
+
     def get_publisher_count(self) -> int:
         """Publishers in the graph whose messages arrive here."""
-        key = self._announced().data_key
-        return sum(1 for e in self.node.context.cache.endpoints(Kind.PUBLISHER, self.name) if e.data_key == key)
+        self._announced()
+        return len(self.matched)
 
-    def _invoke(self, arrival: Any) -> Any:
-        assert self._callback is not None
-        payload, _ = self.node.context.session.read(arrival)
+    # its publishers
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        if not alive:
+            source = self._sources.pop(other.gid, None)
+            was_alive = source is None or source.lease is None or source.lease.is_running
+            self._end(source)
+        else:
+            was_alive = False
+            source = self._sources.setdefault(other.gid, _Source(INFINITE_NS))
+            source.lifespan_ns = min(other.qos.lifespan_ns, self.qos.lifespan_ns)
+            if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.lease_ns != INFINITE_NS:
+                self._watch_lease(other, source)
+        if self._deadline is not None:
+            self._deadline.start() if self.matched else self._deadline.stop()
+        if alive or was_alive:
+            self._liveliness_changed(1 if alive else -1, other.node_name)
+
+    def _watch_lease(self, other: Entity, source: _Source) -> None:
+        def silent() -> None:
+            assert source.lease is not None
+            if any(_gid_of(beside) == other.gid for _, beside in map(read, waiting.items)):
+                source.lease.touch()  # it has spoken: the handler is late, not the publisher
+                return
+            source.lease.stop()
+            self._liveliness_changed(-1, other.node_name)
+
+        assert self._inbox is not None
+        session, waiting = self.node.context.session, self._inbox
+        read = session.read
+        source.lease = Watchdog(self.node.clock, other.qos.lease_ns, silent)
+        source.lease.start()
+        inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
+        source.alive = session.open_receiver(_alive_key(other), DEFAULT, inbox)
+
+    def _revive(self, gid: bytes) -> None:
+        """A publisher with manual liveliness was heard."""
+        source = self._sources.get(gid)
+        if source is None or source.lease is None:
+            return
+        source.lease.touch()
+        if not source.lease.is_running:
+            source.lease.start()
+            self._liveliness_changed(1, next((e.node_name for e in self.matched.values() if e.gid == gid), ""))
+
+    def _liveliness_changed(self, change: int, node: str) -> None:
+        silent = sum(1 for s in self._sources.values() if s.lease is not None and not s.lease.is_running)
+        self._tell("liveliness_changed", change=change, current=len(self.matched) - silent, detail=node)
+
+    @staticmethod
+    def _end(source: _Source | None) -> None:
+        if source is not None and source.lease is not None and source.alive is not None:
+            source.lease.stop()
+            source.alive.close()
+
+    # taking messages
+
+    def _take(self, arrival: Any) -> tuple[M, MessageInfo] | None:
+        """Open what has arrived; None when it is too old or malformed."""
+        payload, beside = self.node.context.session.read(arrival)
+        info = _info(beside)
+        if info is not _NO_INFO and not self._is_fresh(info):
+            self.expired += 1
+            return None
         try:
-            message = self._decode(payload)
+            return self._decode(payload), info
         except DecodeError as error:
             self._count_malformed(error)
             return None
-        return self._callback(message)
+
+    def _is_fresh(self, info: MessageInfo) -> bool:
+        """Note where a message stands among its publisher's; False when it has outlived its lifespan."""
+        source = self._sources.get(info.gid)
+        if source is None:
+            if len(self._sources) >= SOURCES_BOUND:  # whoever invents senders must not fill the memory
+                return True
+            source = self._sources[info.gid] = _Source(self.qos.lifespan_ns)
+        missing = info.sequence - source.sequence - 1
+        if missing > 0 and source.sequence:
+            self._count_missing(missing)
+        source.sequence = info.sequence
+        if source.lease is not None:
+            self._revive(info.gid)
+        if source.lifespan_ns == INFINITE_NS:
+            return True
+        return self.node.context.clock.time_ns() - info.source_ns <= source.lifespan_ns
+
+    def _count_missing(self, missing: int) -> None:
+        """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
+        self._gaps += missing
+        lost = self._gaps - self.dropped - self.lost
+        if lost > 0:
+            self._tell("message_lost", lost)
+
+    def _invoke(self, arrival: Any) -> Any:
+        taken = self._take(arrival)
+        if taken is None:
+            return None
+        assert self._callback is not None
+        return self._callback(*taken) if self._takes_info else self._callback(taken[0])
 
     def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
         if error is not None:
@@ -182,11 +372,9 @@ class TopicSubscription(Endpoint, Generic[M]):
                     await asyncio.sleep(0)  # a sender that is faster than the reader must not hold the loop
                     if not self._inbox.items:
                         break
-                payload, beside = self.node.context.session.read(self._inbox.items.popleft())
-                try:
-                    return self._decode(payload), _info(beside)
-                except DecodeError as error:
-                    self._count_malformed(error)
+                taken = self._take(self._inbox.items.popleft())
+                if taken is not None:
+                    return taken
             waiter: Future[None] = self.node.context.loop.create_future()
             self._waiters.add(waiter)
             try:
@@ -197,12 +385,27 @@ class TopicSubscription(Endpoint, Generic[M]):
     def close(self) -> None:
         if self.runner is not None:
             self.runner.cancel()
+        if self._deadline is not None:
+            self._deadline.stop()
+        for source in self._sources.values():
+            self._end(source)
+        self._sources.clear()
         super().close()
         self._arrived()
 
 
 def _info(beside: bytes | None) -> MessageInfo:
+    """What an attachment says; peers that send none, or one of another layout, are heard all the same."""
     try:
-        return MessageInfo(*attachment.unpack(beside or b""))
+        return attachment.unpack(beside or b"")
     except DecodeError:
-        return MessageInfo(0, 0, bytes(16))
+        return _NO_INFO
+
+
+def _gid_of(beside: bytes | None) -> bytes:
+    """The sender named by an attachment; empty when there is none."""
+    return beside[-16:] if beside is not None else b""
+
+
+def _nothing() -> None:
+    """Nobody waits yet."""

@@ -29,6 +29,10 @@ class Closable(Protocol):
 class Sender(Closable, Protocol):
     """A publication on one key."""
 
+    @property
+    def is_wanted(self) -> bool:
+        """Whether anything sent now would reach or be kept for somebody."""
+
     def put(self, payload: Payload, attachment: bytes) -> None:
         """Send without waiting. A receiver that cannot keep up loses messages; the sender is not held."""
 
@@ -94,8 +98,12 @@ class Session(Protocol):
 
     def open_sender(self, key: str, qos: Qos) -> Sender: ...
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> Closable:
-        """Put every publication on `key` into `inbox`; `read` opens what is found there."""
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> Closable:
+        """Put every publication on `key` into `inbox`; `read` opens what is found there.
+
+        Args:
+            ignore_local: Leave out what this session sends itself.
+        """
 
     def open_server(self, key: str, inbox: Inbox) -> Closable:
         """Put every request on `key` into `inbox`, as `Request`s."""

@@ -11,10 +11,12 @@ import itertools
 from asyncio import AbstractEventLoop
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from graphflow.qos import Durability, Qos
 from graphflow.transport.base import Answer, Bell, Inbox, Payload
+
+T = TypeVar("T")
 
 _zids = itertools.count(1)
 
@@ -24,12 +26,19 @@ class _Sample(NamedTuple):
     attachment: bytes | None
 
 
+class _Receiver(NamedTuple):
+    inbox: Inbox
+    zid: str
+    """The session's."""
+    ignore_local: bool
+
+
 class Network:
     """The medium that memory sessions share."""
 
     def __init__(self) -> None:
         self.senders: dict[str, list[_Sender]] = {}
-        self.receivers: dict[str, list[Inbox]] = {}
+        self.receivers: dict[str, list[_Receiver]] = {}
         self.servers: dict[str, list[Inbox]] = {}
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
@@ -52,17 +61,22 @@ class _Declared:
 
 
 class _Sender:
-    def __init__(self, network: Network, key: str, qos: Qos) -> None:
-        self._network, self._key = network, key
+    def __init__(self, network: Network, key: str, qos: Qos, zid: str) -> None:
+        self._network, self._key, self.zid = network, key, zid
         keeps = qos.durability is Durability.TRANSIENT_LOCAL
         self.history: deque[_Sample] = deque(maxlen=qos.depth if keeps else 0)
         network.senders.setdefault(key, []).append(self)
 
+    @property
+    def is_wanted(self) -> bool:
+        return bool(self.history.maxlen or self._network.receivers.get(self._key))
+
     def put(self, payload: Payload, attachment: bytes) -> None:
         sample = _Sample(bytes(payload), attachment)
         self.history.append(sample)
-        for inbox in self._network.receivers.get(self._key, ()):
-            inbox.put(sample)
+        for receiver in self._network.receivers.get(self._key, ()):
+            if not (receiver.ignore_local and receiver.zid == self.zid):
+                receiver.inbox.put(sample)
 
     def close(self) -> None:
         if self in self._network.senders.get(self._key, ()):
@@ -141,16 +155,18 @@ class MemorySession:
         self._declared: list[_Declared] = []
 
     def open_sender(self, key: str, qos: Qos) -> _Sender:
-        sender = _Sender(self._network, key, qos)
+        sender = _Sender(self._network, key, qos, self.zid)
         self._keep(_Declared(sender.close))
         return sender
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> _Declared:
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> _Declared:
         if qos.durability is Durability.TRANSIENT_LOCAL:
             for sender in self._network.senders.get(key, ()):
                 for sample in list(sender.history)[-qos.depth :]:
-                    inbox.put(sample)
-        return self._list(self._network.receivers.setdefault(key, []), inbox)
+                    if not (ignore_local and sender.zid == self.zid):
+                        inbox.put(sample)
+        receiver = _Receiver(inbox, self.zid, ignore_local)
+        return self._list(self._network.receivers.setdefault(key, []), receiver)
 
     def open_server(self, key: str, inbox: Inbox) -> _Declared:
         return self._list(self._network.servers.setdefault(key, []), inbox)
@@ -190,9 +206,9 @@ class MemorySession:
             if _matches(key, token) and not self._loop.is_closed():
                 self._loop.call_soon(changed, token, alive)
 
-    def _list(self, members: list[Inbox], inbox: Inbox) -> _Declared:
-        members.append(inbox)
-        return self._keep(_Declared(lambda: members.remove(inbox)))
+    def _list(self, members: list[T], member: T) -> _Declared:
+        members.append(member)
+        return self._keep(_Declared(lambda: members.remove(member)))
 
     def _keep(self, declared: _Declared) -> _Declared:
         self._declared.append(declared)

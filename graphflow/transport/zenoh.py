@@ -49,6 +49,30 @@ class _Declared:
 
 
 class _ZenohSender(_Declared):
+    """A plain publisher, which knows whether anybody listens."""
+
+    def __init__(self, publisher: Any) -> None:
+        self.is_wanted = False
+        # On Zenoh's thread, and nothing but an assignment.
+        listener = publisher.declare_matching_listener(Callback(self._matching, indirect=False))
+        super().__init__(listener, publisher)
+        self._put = publisher.put
+        # Those who listened before: the listener may have told of them, and never of their going, by now.
+        if publisher.matching_status.matching:
+            self.is_wanted = True
+
+    def _matching(self, status: Any) -> None:
+        self.is_wanted = status.matching
+
+    def put(self, payload: Payload, attachment: bytes) -> None:
+        self._put(payload, attachment=attachment)
+
+
+class _KeepingSender(_Declared):
+    """An advanced publisher: it keeps what it sends for those who come later."""
+
+    is_wanted = True
+
     def __init__(self, publisher: Any) -> None:
         super().__init__(publisher)
         self._put = publisher.put
@@ -147,7 +171,7 @@ class ZenohSession:
         self.bell = Bell(loop)
         self._loop = loop
 
-    def open_sender(self, key: str, qos: Qos) -> _ZenohSender:
+    def open_sender(self, key: str, qos: Qos) -> _ZenohSender | _KeepingSender:
         reliable = qos.reliability is Reliability.RELIABLE
         # DROP even for reliable topics: with BLOCK one stopped receiver holds the sending loop for seconds.
         options: dict[str, Any] = {
@@ -165,11 +189,12 @@ class ZenohSession:
             sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
             **options,
         )
-        return _ZenohSender(publisher)
+        return _KeepingSender(publisher)
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox) -> _Declared:
+    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> _Declared:
+        origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
-            return _Declared(self.raw.declare_subscriber(key, inbox.put))
+            return _Declared(self.raw.declare_subscriber(key, inbox.put, allowed_origin=origin))
         ext = _ext()
         reliable = qos.reliability is Reliability.RELIABLE
         history = ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth)
@@ -181,6 +206,7 @@ class ZenohSession:
                 history=history,
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
                 subscriber_detection=True,
+                allowed_origin=origin,
             )
         )
 

@@ -17,7 +17,9 @@ _LAYOUT = struct.Struct("<qqB16s")
 SIZE = _LAYOUT.size
 
 
-class Attachment(NamedTuple):
+class MessageInfo(NamedTuple):
+    """What comes beside a message."""
+
     sequence: int
     """Counts from 1 per publisher or client."""
     source_ns: int
@@ -35,7 +37,7 @@ def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
     return _LAYOUT.pack(sequence, source_ns, 16, gid)
 
 
-def unpack(data: bytes) -> Attachment:
+def unpack(data: bytes) -> MessageInfo:
     """Read an attachment.
 
     Raises:
@@ -46,4 +48,4 @@ def unpack(data: bytes) -> Attachment:
     if data[16] != 16:
         raise DecodeError(f"attachment with a GID of {data[16]} bytes; rmw_zenoh's has 16")
     sequence, source_ns, _, gid = _LAYOUT.unpack(data)
-    return Attachment(sequence, source_ns, gid)
+    return MessageInfo(sequence, source_ns, gid)

@@ -12,7 +12,7 @@ from graphflow.cli.exits import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Point, Polygon, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.topics import MessageInfo
+from graphflow.wire.attachment import MessageInfo
 
 TWIST = Twist(linear=Vector3(x=2.0), angular=Vector3(z=1.8))
 INFO = MessageInfo(sequence=7, source_ns=1_500_000_000, gid=bytes(range(16)))

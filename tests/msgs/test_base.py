@@ -41,7 +41,7 @@ def test_to_bytes_refuses_wrong_values() -> None:
 
 def test_a_type_knows_its_name_and_fields() -> None:
     """A class tells its ROS name, and its fields as ROS prints them."""
-    assert Twist.type_name() == "geometry_msgs/msg/Twist"
+    assert Twist.SCHEMA.name == "geometry_msgs/msg/Twist"
     assert Float32MultiArray.get_fields_and_field_types() == {
         "layout": "std_msgs/MultiArrayLayout",
         "data": "float32[]",

@@ -129,7 +129,7 @@ def test_what_was_read_is_kept() -> None:
 def test_derived_messages_have_schemas_and_classes(name: str) -> None:
     """The messages made from services and actions are found by their names."""
     assert registry.message_schema(name).name == name
-    assert registry.example(name).type_name() == name
+    assert registry.example(name).SCHEMA.name == name
 
 
 @pytest.mark.parametrize(

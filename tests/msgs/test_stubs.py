@@ -46,5 +46,5 @@ def test_nested_type_of_another_package_keeps_its_package(tmp_path: Path, monkey
     text = stubs.stub("stub_test_msgs", "msg")
     assert "from graphflow.msgs.geometry_msgs import msg as geometry_msgs\n" in text
     assert "    pose: geometry_msgs.Pose\n" in text
-    assert "    FRAME: Final = 'map'\n    poses: list[Pose]\n    raw: npt.NDArray[np.uint8]\n" in text
+    assert '    FRAME: Final = "map"\n    poses: list[Pose]\n    raw: npt.NDArray[np.uint8]\n' in text
     assert "poses: Sequence[Pose | Mapping[str, object]] = ...," in text

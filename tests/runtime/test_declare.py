@@ -43,6 +43,10 @@ def plain(self: Any) -> None: ...
 def plain_of_two(self: Any, one: Any) -> None: ...
 
 
+def of_four(self: Any, one: Any, two: Any, three: Any) -> None:
+    """Take three arguments too many."""
+
+
 def generates(self: Any, one: Any) -> Iterator[int]:
     yield 1
 
@@ -99,8 +103,11 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: service(AddTwoInts, "x y"), "@service: 'x y' is no topic or service name"),
     (lambda: task(anything(plain)), "@task goes on an `async def` method, without parentheses"),
     (lambda: task(of_two), "of_two must take self, not (self, one)"),
-    (lambda: subscription(String, "x")(of_self), "of_self must take self and one argument, not (self)"),
-    (lambda: subscription(String, "x")(of_three), "of_three must take self and one argument, not (self, one, two)"),
+    (lambda: subscription(String, "x")(of_self), "of_self must take self and one argument or self and two arguments"),
+    (lambda: subscription(String, "x")(of_four), "of_four must take self and one argument or self and two"),
+    (lambda: service(AddTwoInts, "x")(of_three), "of_three must take self and one argument, not (self, one"),
+    (lambda: subscription(String, "x", on_event=anything("heard")), "@subscription: on_event= takes a method def"),
+    (lambda: Publisher(String, "x", on_event=anything(3)), "Publisher: on_event= takes a method defined above it"),
     (lambda: subscription(String, "x", thread=True)(of_two), "of_two: thread=True is for `def`, an `async def` runs"),
     (lambda: subscription(String, "x")(anything(staticmethod(of_self))), "@subscription goes on a method, not on <s"),
     (lambda: subscription(String, "x")(anything(String)), "@subscription goes on a method, not on <class"),

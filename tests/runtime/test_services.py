@@ -382,7 +382,7 @@ class RawServer:
             session.announce(client.entity._replace(kind=Kind.SERVICE, zid=session.zid).token),
         ]
 
-    def beside(self) -> attachment.Attachment:
+    def beside(self) -> attachment.MessageInfo:
         return attachment.unpack(self.requests[0].attachment)
 
 

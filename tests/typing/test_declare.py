@@ -24,8 +24,9 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.runtime.services import ServiceClient, ServiceServer
 from graphflow.runtime.timer import Timer
-from graphflow.runtime.topics import MessageInfo, TopicPublisher, TopicSubscription
+from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.testing import Graph, Tap
+from graphflow.wire.attachment import MessageInfo
 
 
 class Everything(Node):

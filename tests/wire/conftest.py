@@ -21,3 +21,11 @@ def fixture_interfaces() -> Iterator[None]:
     registry.add_root(INTERFACES)
     yield
     registry._roots.remove(INTERFACES)
+
+
+@pytest.fixture
+def fresh_registry() -> Iterator[None]:
+    """Definitions are read anew in this test, and again after it: it changes where they come from."""
+    registry.forget()
+    yield
+    registry.forget()

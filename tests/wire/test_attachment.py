@@ -18,7 +18,7 @@ def test_packs_the_recorded_bytes() -> None:
 
 def test_reads_the_recorded_bytes() -> None:
     """The recorded bytes give back what was packed."""
-    assert attachment.unpack(RECORDED) == attachment.Attachment(1, 1_700_000_000_123_456_789, GID)
+    assert attachment.unpack(RECORDED) == attachment.MessageInfo(1, 1_700_000_000_123_456_789, GID)
 
 
 @pytest.mark.parametrize("sequence", [0, 1, 2**63 - 1, -1])

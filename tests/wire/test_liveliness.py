@@ -244,8 +244,8 @@ _NS = st.integers(0, INFINITE_NS)
     st.builds(
         Qos,
         depth=st.integers(1, 2**40),
-        reliability=st.sampled_from(Reliability),
-        durability=st.sampled_from(Durability),
+        reliability=st.sampled_from([Reliability.RELIABLE, Reliability.BEST_EFFORT]),
+        durability=st.sampled_from([Durability.TRANSIENT_LOCAL, Durability.VOLATILE]),
         history=st.sampled_from(History),
         deadline_ns=_NS,
         lifespan_ns=_NS,

@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import random
+from functools import cache
 
 import pytest
+from rosbags.typesys import Stores, get_typestore
 
 from graphflow.msgs import registry
 from graphflow.wire import idl
@@ -111,6 +113,36 @@ State goal_state
 def test_hash_is_upstreams(name: str, digest: str) -> None:
     """The hash of a message, service or action, or of a type derived from one, is the one ROS 2 computes."""
     assert registry.hash_of(name) == f"RIHS01_{digest}"
+
+
+@cache
+def in_rosbags(store: Stores) -> dict[str, str]:
+    """Hashes by message name, as rosbags computes them from the definitions it carries."""
+    types = get_typestore(store)
+    return {name: types.hash_rihs01(name) for name in types.types}
+
+
+def holds_char(name: str) -> bool:
+    """Whether a `char` is somewhere in the message: rosbags gives it another number than the specification."""
+    message = registry.message_schema(name)
+    parts = [message, *referenced(message, registry.message_schema).values()]
+    return any(field.type.base == "char" for part in parts for field in part.fields)
+
+
+@pytest.mark.parametrize(
+    ("profile", "store"),
+    [("jazzy", Stores.ROS2_JAZZY), ("kilted", Stores.ROS2_KILTED), ("lyrical", Stores.ROS2_LYRICAL)],
+)
+def test_every_message_of_a_distribution_has_its_hash(
+    profile: str, store: Stores, monkeypatch: pytest.MonkeyPatch, fresh_registry: None
+) -> None:
+    """Every message that rosbags knows of a distribution is bundled, and its hash is the one rosbags computes."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    theirs = in_rosbags(store)
+    assert len(theirs) > 160
+    differ = {name for name, digest in theirs.items() if registry.hash_of(name) != digest}
+    assert differ == {name for name in theirs if holds_char(name)}
+    assert len(differ) == {"jazzy": 5, "kilted": 5, "lyrical": 5}[profile]
 
 
 def test_hash_follows_the_definition() -> None:

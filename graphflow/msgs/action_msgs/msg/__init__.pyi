@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from graphflow import times
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 from graphflow.msgs.unique_identifier_msgs import msg as unique_identifier_msgs
 
-class GoalInfo(Message):
+class GoalInfo(base.Message):
     goal_id: unique_identifier_msgs.UUID
     stamp: builtin_interfaces.Time
     def __init__(
@@ -18,7 +18,7 @@ class GoalInfo(Message):
         stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
     ) -> None: ...
 
-class GoalStatus(Message):
+class GoalStatus(base.Message):
     STATUS_UNKNOWN: Final = 0
     STATUS_ACCEPTED: Final = 1
     STATUS_EXECUTING: Final = 2
@@ -30,6 +30,6 @@ class GoalStatus(Message):
     status: int
     def __init__(self, *, goal_info: GoalInfo | Mapping[str, object] = ..., status: int = ...) -> None: ...
 
-class GoalStatusArray(Message):
+class GoalStatusArray(base.Message):
     status_list: list[GoalStatus]
     def __init__(self, *, status_list: Sequence[GoalStatus | Mapping[str, object]] = ...) -> None: ...

@@ -3,15 +3,15 @@
 from collections.abc import Mapping, Sequence
 from typing import Final, TypeAlias
 
+from graphflow.msgs import base
 from graphflow.msgs.action_msgs import msg as action_msgs
-from graphflow.msgs.base import Message, Service
 from graphflow.msgs.service_msgs import msg as service_msgs
 
-class CancelGoal_Request(Message):
+class CancelGoal_Request(base.Message):
     goal_info: action_msgs.GoalInfo
     def __init__(self, *, goal_info: action_msgs.GoalInfo | Mapping[str, object] = ...) -> None: ...
 
-class CancelGoal_Response(Message):
+class CancelGoal_Response(base.Message):
     ERROR_NONE: Final = 0
     ERROR_REJECTED: Final = 1
     ERROR_UNKNOWN_GOAL_ID: Final = 2
@@ -25,7 +25,7 @@ class CancelGoal_Response(Message):
         goals_canceling: Sequence[action_msgs.GoalInfo | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class CancelGoal_Event(Message):
+class CancelGoal_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[CancelGoal_Request]
     response: list[CancelGoal_Response]
@@ -37,7 +37,7 @@ class CancelGoal_Event(Message):
         response: Sequence[CancelGoal_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class CancelGoal(Service[CancelGoal_Request, CancelGoal_Response]):
+class CancelGoal(base.Service[CancelGoal_Request, CancelGoal_Response]):
     Request: TypeAlias = CancelGoal_Request
     Response: TypeAlias = CancelGoal_Response
     Event: TypeAlias = CancelGoal_Event

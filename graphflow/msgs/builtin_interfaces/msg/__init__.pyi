@@ -1,13 +1,13 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 
-class Duration(Message):
+class Duration(base.Message):
     sec: int
     nanosec: int
     def __init__(self, *, sec: int = ..., nanosec: int = ...) -> None: ...
 
-class Time(Message):
+class Time(base.Message):
     sec: int
     nanosec: int
     def __init__(self, *, sec: int = ..., nanosec: int = ...) -> None: ...

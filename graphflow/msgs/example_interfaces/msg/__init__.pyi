@@ -5,17 +5,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 
-class Bool(Message):
+class Bool(base.Message):
     data: bool
     def __init__(self, *, data: bool = ...) -> None: ...
 
-class Byte(Message):
+class Byte(base.Message):
     data: int
     def __init__(self, *, data: int | bytes = ...) -> None: ...
 
-class ByteMultiArray(Message):
+class ByteMultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint8]
     def __init__(
@@ -25,18 +25,18 @@ class ByteMultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Char(Message):
+class Char(base.Message):
     data: int
     def __init__(self, *, data: int | bytes = ...) -> None: ...
 
-class Empty(Message):
+class Empty(base.Message):
     def __init__(self) -> None: ...
 
-class Float32(Message):
+class Float32(base.Message):
     data: float
     def __init__(self, *, data: float = ...) -> None: ...
 
-class Float32MultiArray(Message):
+class Float32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.float32]
     def __init__(
@@ -46,11 +46,11 @@ class Float32MultiArray(Message):
         data: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class Float64(Message):
+class Float64(base.Message):
     data: float
     def __init__(self, *, data: float = ...) -> None: ...
 
-class Float64MultiArray(Message):
+class Float64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.float64]
     def __init__(
@@ -60,11 +60,11 @@ class Float64MultiArray(Message):
         data: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class Int16(Message):
+class Int16(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int16MultiArray(Message):
+class Int16MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int16]
     def __init__(
@@ -74,11 +74,11 @@ class Int16MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int32(Message):
+class Int32(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int32MultiArray(Message):
+class Int32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int32]
     def __init__(
@@ -88,11 +88,11 @@ class Int32MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int64(Message):
+class Int64(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int64MultiArray(Message):
+class Int64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int64]
     def __init__(
@@ -102,11 +102,11 @@ class Int64MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int8(Message):
+class Int8(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int8MultiArray(Message):
+class Int8MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int8]
     def __init__(
@@ -116,13 +116,13 @@ class Int8MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class MultiArrayDimension(Message):
+class MultiArrayDimension(base.Message):
     label: str
     size: int
     stride: int
     def __init__(self, *, label: str = ..., size: int = ..., stride: int = ...) -> None: ...
 
-class MultiArrayLayout(Message):
+class MultiArrayLayout(base.Message):
     dim: list[MultiArrayDimension]
     data_offset: int
     def __init__(
@@ -132,15 +132,15 @@ class MultiArrayLayout(Message):
         data_offset: int = ...,
     ) -> None: ...
 
-class String(Message):
+class String(base.Message):
     data: str
     def __init__(self, *, data: str = ...) -> None: ...
 
-class UInt16(Message):
+class UInt16(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt16MultiArray(Message):
+class UInt16MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint16]
     def __init__(
@@ -150,11 +150,11 @@ class UInt16MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt32(Message):
+class UInt32(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt32MultiArray(Message):
+class UInt32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint32]
     def __init__(
@@ -164,11 +164,11 @@ class UInt32MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt64(Message):
+class UInt64(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt64MultiArray(Message):
+class UInt64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint64]
     def __init__(
@@ -178,11 +178,11 @@ class UInt64MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt8(Message):
+class UInt8(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt8MultiArray(Message):
+class UInt8MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint8]
     def __init__(
@@ -192,6 +192,6 @@ class UInt8MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class WString(Message):
+class WString(base.Message):
     data: str
     def __init__(self, *, data: str = ...) -> None: ...

@@ -3,19 +3,19 @@
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-from graphflow.msgs.base import Message, Service
+from graphflow.msgs import base
 from graphflow.msgs.service_msgs import msg as service_msgs
 
-class AddTwoInts_Request(Message):
+class AddTwoInts_Request(base.Message):
     a: int
     b: int
     def __init__(self, *, a: int = ..., b: int = ...) -> None: ...
 
-class AddTwoInts_Response(Message):
+class AddTwoInts_Response(base.Message):
     sum: int
     def __init__(self, *, sum: int = ...) -> None: ...
 
-class AddTwoInts_Event(Message):
+class AddTwoInts_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[AddTwoInts_Request]
     response: list[AddTwoInts_Response]
@@ -27,21 +27,21 @@ class AddTwoInts_Event(Message):
         response: Sequence[AddTwoInts_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class AddTwoInts(Service[AddTwoInts_Request, AddTwoInts_Response]):
+class AddTwoInts(base.Service[AddTwoInts_Request, AddTwoInts_Response]):
     Request: TypeAlias = AddTwoInts_Request
     Response: TypeAlias = AddTwoInts_Response
     Event: TypeAlias = AddTwoInts_Event
 
-class SetBool_Request(Message):
+class SetBool_Request(base.Message):
     data: bool
     def __init__(self, *, data: bool = ...) -> None: ...
 
-class SetBool_Response(Message):
+class SetBool_Response(base.Message):
     success: bool
     message: str
     def __init__(self, *, success: bool = ..., message: str = ...) -> None: ...
 
-class SetBool_Event(Message):
+class SetBool_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[SetBool_Request]
     response: list[SetBool_Response]
@@ -53,20 +53,20 @@ class SetBool_Event(Message):
         response: Sequence[SetBool_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class SetBool(Service[SetBool_Request, SetBool_Response]):
+class SetBool(base.Service[SetBool_Request, SetBool_Response]):
     Request: TypeAlias = SetBool_Request
     Response: TypeAlias = SetBool_Response
     Event: TypeAlias = SetBool_Event
 
-class Trigger_Request(Message):
+class Trigger_Request(base.Message):
     def __init__(self) -> None: ...
 
-class Trigger_Response(Message):
+class Trigger_Response(base.Message):
     success: bool
     message: str
     def __init__(self, *, success: bool = ..., message: str = ...) -> None: ...
 
-class Trigger_Event(Message):
+class Trigger_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[Trigger_Request]
     response: list[Trigger_Response]
@@ -78,7 +78,7 @@ class Trigger_Event(Message):
         response: Sequence[Trigger_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class Trigger(Service[Trigger_Request, Trigger_Response]):
+class Trigger(base.Service[Trigger_Request, Trigger_Response]):
     Request: TypeAlias = Trigger_Request
     Response: TypeAlias = Trigger_Response
     Event: TypeAlias = Trigger_Event

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 from graphflow.msgs.std_msgs import msg as std_msgs
 
-class Accel(Message):
+class Accel(base.Message):
     linear: Vector3
     angular: Vector3
     def __init__(
@@ -18,7 +18,7 @@ class Accel(Message):
         angular: Vector3 | Mapping[str, object] = ...,
     ) -> None: ...
 
-class AccelStamped(Message):
+class AccelStamped(base.Message):
     header: std_msgs.Header
     accel: Accel
     def __init__(
@@ -28,7 +28,7 @@ class AccelStamped(Message):
         accel: Accel | Mapping[str, object] = ...,
     ) -> None: ...
 
-class AccelWithCovariance(Message):
+class AccelWithCovariance(base.Message):
     accel: Accel
     covariance: npt.NDArray[np.float64]
     def __init__(
@@ -38,7 +38,7 @@ class AccelWithCovariance(Message):
         covariance: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class AccelWithCovarianceStamped(Message):
+class AccelWithCovarianceStamped(base.Message):
     header: std_msgs.Header
     accel: AccelWithCovariance
     def __init__(
@@ -48,7 +48,7 @@ class AccelWithCovarianceStamped(Message):
         accel: AccelWithCovariance | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Inertia(Message):
+class Inertia(base.Message):
     m: float
     com: Vector3
     ixx: float
@@ -70,7 +70,7 @@ class Inertia(Message):
         izz: float = ...,
     ) -> None: ...
 
-class InertiaStamped(Message):
+class InertiaStamped(base.Message):
     header: std_msgs.Header
     inertia: Inertia
     def __init__(
@@ -80,19 +80,19 @@ class InertiaStamped(Message):
         inertia: Inertia | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Point(Message):
+class Point(base.Message):
     x: float
     y: float
     z: float
     def __init__(self, *, x: float = ..., y: float = ..., z: float = ...) -> None: ...
 
-class Point32(Message):
+class Point32(base.Message):
     x: float
     y: float
     z: float
     def __init__(self, *, x: float = ..., y: float = ..., z: float = ...) -> None: ...
 
-class PointStamped(Message):
+class PointStamped(base.Message):
     header: std_msgs.Header
     point: Point
     def __init__(
@@ -102,16 +102,16 @@ class PointStamped(Message):
         point: Point | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Polygon(Message):
+class Polygon(base.Message):
     points: list[Point32]
     def __init__(self, *, points: Sequence[Point32 | Mapping[str, object]] = ...) -> None: ...
 
-class PolygonInstance(Message):
+class PolygonInstance(base.Message):
     polygon: Polygon
     id: int
     def __init__(self, *, polygon: Polygon | Mapping[str, object] = ..., id: int = ...) -> None: ...
 
-class PolygonInstanceStamped(Message):
+class PolygonInstanceStamped(base.Message):
     header: std_msgs.Header
     polygon: PolygonInstance
     def __init__(
@@ -121,7 +121,7 @@ class PolygonInstanceStamped(Message):
         polygon: PolygonInstance | Mapping[str, object] = ...,
     ) -> None: ...
 
-class PolygonStamped(Message):
+class PolygonStamped(base.Message):
     header: std_msgs.Header
     polygon: Polygon
     def __init__(
@@ -131,7 +131,7 @@ class PolygonStamped(Message):
         polygon: Polygon | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Pose(Message):
+class Pose(base.Message):
     position: Point
     orientation: Quaternion
     def __init__(
@@ -141,13 +141,13 @@ class Pose(Message):
         orientation: Quaternion | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Pose2D(Message):
+class Pose2D(base.Message):
     x: float
     y: float
     theta: float
     def __init__(self, *, x: float = ..., y: float = ..., theta: float = ...) -> None: ...
 
-class PoseArray(Message):
+class PoseArray(base.Message):
     header: std_msgs.Header
     poses: list[Pose]
     def __init__(
@@ -157,7 +157,7 @@ class PoseArray(Message):
         poses: Sequence[Pose | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class PoseStamped(Message):
+class PoseStamped(base.Message):
     header: std_msgs.Header
     pose: Pose
     def __init__(
@@ -167,7 +167,7 @@ class PoseStamped(Message):
         pose: Pose | Mapping[str, object] = ...,
     ) -> None: ...
 
-class PoseWithCovariance(Message):
+class PoseWithCovariance(base.Message):
     pose: Pose
     covariance: npt.NDArray[np.float64]
     def __init__(
@@ -177,7 +177,7 @@ class PoseWithCovariance(Message):
         covariance: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class PoseWithCovarianceStamped(Message):
+class PoseWithCovarianceStamped(base.Message):
     header: std_msgs.Header
     pose: PoseWithCovariance
     def __init__(
@@ -187,14 +187,14 @@ class PoseWithCovarianceStamped(Message):
         pose: PoseWithCovariance | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Quaternion(Message):
+class Quaternion(base.Message):
     x: float
     y: float
     z: float
     w: float
     def __init__(self, *, x: float = ..., y: float = ..., z: float = ..., w: float = ...) -> None: ...
 
-class QuaternionStamped(Message):
+class QuaternionStamped(base.Message):
     header: std_msgs.Header
     quaternion: Quaternion
     def __init__(
@@ -204,7 +204,7 @@ class QuaternionStamped(Message):
         quaternion: Quaternion | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Transform(Message):
+class Transform(base.Message):
     translation: Vector3
     rotation: Quaternion
     def __init__(
@@ -214,7 +214,7 @@ class Transform(Message):
         rotation: Quaternion | Mapping[str, object] = ...,
     ) -> None: ...
 
-class TransformStamped(Message):
+class TransformStamped(base.Message):
     header: std_msgs.Header
     child_frame_id: str
     transform: Transform
@@ -226,7 +226,7 @@ class TransformStamped(Message):
         transform: Transform | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Twist(Message):
+class Twist(base.Message):
     linear: Vector3
     angular: Vector3
     def __init__(
@@ -236,7 +236,7 @@ class Twist(Message):
         angular: Vector3 | Mapping[str, object] = ...,
     ) -> None: ...
 
-class TwistStamped(Message):
+class TwistStamped(base.Message):
     header: std_msgs.Header
     twist: Twist
     def __init__(
@@ -246,7 +246,7 @@ class TwistStamped(Message):
         twist: Twist | Mapping[str, object] = ...,
     ) -> None: ...
 
-class TwistWithCovariance(Message):
+class TwistWithCovariance(base.Message):
     twist: Twist
     covariance: npt.NDArray[np.float64]
     def __init__(
@@ -256,7 +256,7 @@ class TwistWithCovariance(Message):
         covariance: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class TwistWithCovarianceStamped(Message):
+class TwistWithCovarianceStamped(base.Message):
     header: std_msgs.Header
     twist: TwistWithCovariance
     def __init__(
@@ -266,13 +266,13 @@ class TwistWithCovarianceStamped(Message):
         twist: TwistWithCovariance | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Vector3(Message):
+class Vector3(base.Message):
     x: float
     y: float
     z: float
     def __init__(self, *, x: float = ..., y: float = ..., z: float = ...) -> None: ...
 
-class Vector3Stamped(Message):
+class Vector3Stamped(base.Message):
     header: std_msgs.Header
     vector: Vector3
     def __init__(
@@ -282,7 +282,7 @@ class Vector3Stamped(Message):
         vector: Vector3 | Mapping[str, object] = ...,
     ) -> None: ...
 
-class VelocityStamped(Message):
+class VelocityStamped(base.Message):
     header: std_msgs.Header
     body_frame_id: str
     reference_frame_id: str
@@ -296,7 +296,21 @@ class VelocityStamped(Message):
         velocity: Twist | Mapping[str, object] = ...,
     ) -> None: ...
 
-class Wrench(Message):
+class VelocityWithCovarianceStamped(base.Message):
+    header: std_msgs.Header
+    body_frame_id: str
+    reference_frame_id: str
+    velocity: TwistWithCovariance
+    def __init__(
+        self,
+        *,
+        header: std_msgs.Header | Mapping[str, object] = ...,
+        body_frame_id: str = ...,
+        reference_frame_id: str = ...,
+        velocity: TwistWithCovariance | Mapping[str, object] = ...,
+    ) -> None: ...
+
+class Wrench(base.Message):
     force: Vector3
     torque: Vector3
     def __init__(
@@ -306,7 +320,7 @@ class Wrench(Message):
         torque: Vector3 | Mapping[str, object] = ...,
     ) -> None: ...
 
-class WrenchStamped(Message):
+class WrenchStamped(base.Message):
     header: std_msgs.Header
     wrench: Wrench
     def __init__(

@@ -7,27 +7,27 @@ import numpy as np
 import numpy.typing as npt
 
 from graphflow import times
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 
-class FloatingPointRange(Message):
+class FloatingPointRange(base.Message):
     from_value: float
     to_value: float
     step: float
     def __init__(self, *, from_value: float = ..., to_value: float = ..., step: float = ...) -> None: ...
 
-class IntegerRange(Message):
+class IntegerRange(base.Message):
     from_value: int
     to_value: int
     step: int
     def __init__(self, *, from_value: int = ..., to_value: int = ..., step: int = ...) -> None: ...
 
-class ListParametersResult(Message):
+class ListParametersResult(base.Message):
     names: list[str]
     prefixes: list[str]
     def __init__(self, *, names: Sequence[str] = ..., prefixes: Sequence[str] = ...) -> None: ...
 
-class Log(Message):
+class Log(base.Message):
     DEBUG: Final = 10
     INFO: Final = 20
     WARN: Final = 30
@@ -52,7 +52,7 @@ class Log(Message):
         line: int = ...,
     ) -> None: ...
 
-class LoggerLevel(Message):
+class LoggerLevel(base.Message):
     LOG_LEVEL_UNKNOWN: Final = 0
     LOG_LEVEL_DEBUG: Final = 10
     LOG_LEVEL_INFO: Final = 20
@@ -63,12 +63,12 @@ class LoggerLevel(Message):
     level: int
     def __init__(self, *, name: str = ..., level: int = ...) -> None: ...
 
-class Parameter(Message):
+class Parameter(base.Message):
     name: str
     value: ParameterValue
     def __init__(self, *, name: str = ..., value: ParameterValue | Mapping[str, object] = ...) -> None: ...
 
-class ParameterDescriptor(Message):
+class ParameterDescriptor(base.Message):
     name: str
     type: int
     description: str
@@ -90,7 +90,7 @@ class ParameterDescriptor(Message):
         integer_range: Sequence[IntegerRange | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class ParameterEvent(Message):
+class ParameterEvent(base.Message):
     stamp: builtin_interfaces.Time
     node: str
     new_parameters: list[Parameter]
@@ -106,7 +106,7 @@ class ParameterEvent(Message):
         deleted_parameters: Sequence[Parameter | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class ParameterEventDescriptors(Message):
+class ParameterEventDescriptors(base.Message):
     new_parameters: list[ParameterDescriptor]
     changed_parameters: list[ParameterDescriptor]
     deleted_parameters: list[ParameterDescriptor]
@@ -118,7 +118,7 @@ class ParameterEventDescriptors(Message):
         deleted_parameters: Sequence[ParameterDescriptor | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class ParameterType(Message):
+class ParameterType(base.Message):
     PARAMETER_NOT_SET: Final = 0
     PARAMETER_BOOL: Final = 1
     PARAMETER_INTEGER: Final = 2
@@ -131,7 +131,7 @@ class ParameterType(Message):
     PARAMETER_STRING_ARRAY: Final = 9
     def __init__(self) -> None: ...
 
-class ParameterValue(Message):
+class ParameterValue(base.Message):
     type: int
     bool_value: bool
     integer_value: int
@@ -157,12 +157,12 @@ class ParameterValue(Message):
         string_array_value: Sequence[str] = ...,
     ) -> None: ...
 
-class SetLoggerLevelsResult(Message):
+class SetLoggerLevelsResult(base.Message):
     successful: bool
     reason: str
     def __init__(self, *, successful: bool = ..., reason: str = ...) -> None: ...
 
-class SetParametersResult(Message):
+class SetParametersResult(base.Message):
     successful: bool
     reason: str
     def __init__(self, *, successful: bool = ..., reason: str = ...) -> None: ...

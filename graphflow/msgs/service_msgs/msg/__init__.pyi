@@ -7,10 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from graphflow import times
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 
-class ServiceEventInfo(Message):
+class ServiceEventInfo(base.Message):
     REQUEST_SENT: Final = 0
     REQUEST_RECEIVED: Final = 1
     RESPONSE_SENT: Final = 2

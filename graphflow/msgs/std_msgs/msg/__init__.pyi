@@ -6,18 +6,18 @@ import numpy as np
 import numpy.typing as npt
 
 from graphflow import times
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 
-class Bool(Message):
+class Bool(base.Message):
     data: bool
     def __init__(self, *, data: bool = ...) -> None: ...
 
-class Byte(Message):
+class Byte(base.Message):
     data: int
     def __init__(self, *, data: int | bytes = ...) -> None: ...
 
-class ByteMultiArray(Message):
+class ByteMultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint8]
     def __init__(
@@ -27,25 +27,25 @@ class ByteMultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Char(Message):
+class Char(base.Message):
     data: int
     def __init__(self, *, data: int | bytes = ...) -> None: ...
 
-class ColorRGBA(Message):
+class ColorRGBA(base.Message):
     r: float
     g: float
     b: float
     a: float
     def __init__(self, *, r: float = ..., g: float = ..., b: float = ..., a: float = ...) -> None: ...
 
-class Empty(Message):
+class Empty(base.Message):
     def __init__(self) -> None: ...
 
-class Float32(Message):
+class Float32(base.Message):
     data: float
     def __init__(self, *, data: float = ...) -> None: ...
 
-class Float32MultiArray(Message):
+class Float32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.float32]
     def __init__(
@@ -55,11 +55,11 @@ class Float32MultiArray(Message):
         data: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class Float64(Message):
+class Float64(base.Message):
     data: float
     def __init__(self, *, data: float = ...) -> None: ...
 
-class Float64MultiArray(Message):
+class Float64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.float64]
     def __init__(
@@ -69,7 +69,7 @@ class Float64MultiArray(Message):
         data: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
 
-class Header(Message):
+class Header(base.Message):
     stamp: builtin_interfaces.Time
     frame_id: str
     def __init__(
@@ -79,11 +79,11 @@ class Header(Message):
         frame_id: str = ...,
     ) -> None: ...
 
-class Int16(Message):
+class Int16(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int16MultiArray(Message):
+class Int16MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int16]
     def __init__(
@@ -93,11 +93,11 @@ class Int16MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int32(Message):
+class Int32(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int32MultiArray(Message):
+class Int32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int32]
     def __init__(
@@ -107,11 +107,11 @@ class Int32MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int64(Message):
+class Int64(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int64MultiArray(Message):
+class Int64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int64]
     def __init__(
@@ -121,11 +121,11 @@ class Int64MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class Int8(Message):
+class Int8(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class Int8MultiArray(Message):
+class Int8MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.int8]
     def __init__(
@@ -135,13 +135,13 @@ class Int8MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class MultiArrayDimension(Message):
+class MultiArrayDimension(base.Message):
     label: str
     size: int
     stride: int
     def __init__(self, *, label: str = ..., size: int = ..., stride: int = ...) -> None: ...
 
-class MultiArrayLayout(Message):
+class MultiArrayLayout(base.Message):
     dim: list[MultiArrayDimension]
     data_offset: int
     def __init__(
@@ -151,15 +151,15 @@ class MultiArrayLayout(Message):
         data_offset: int = ...,
     ) -> None: ...
 
-class String(Message):
+class String(base.Message):
     data: str
     def __init__(self, *, data: str = ...) -> None: ...
 
-class UInt16(Message):
+class UInt16(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt16MultiArray(Message):
+class UInt16MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint16]
     def __init__(
@@ -169,11 +169,11 @@ class UInt16MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt32(Message):
+class UInt32(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt32MultiArray(Message):
+class UInt32MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint32]
     def __init__(
@@ -183,11 +183,11 @@ class UInt32MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt64(Message):
+class UInt64(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt64MultiArray(Message):
+class UInt64MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint64]
     def __init__(
@@ -197,11 +197,11 @@ class UInt64MultiArray(Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
 
-class UInt8(Message):
+class UInt8(base.Message):
     data: int
     def __init__(self, *, data: int = ...) -> None: ...
 
-class UInt8MultiArray(Message):
+class UInt8MultiArray(base.Message):
     layout: MultiArrayLayout
     data: npt.NDArray[np.uint8]
     def __init__(

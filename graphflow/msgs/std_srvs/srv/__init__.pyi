@@ -3,16 +3,16 @@
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-from graphflow.msgs.base import Message, Service
+from graphflow.msgs import base
 from graphflow.msgs.service_msgs import msg as service_msgs
 
-class Empty_Request(Message):
+class Empty_Request(base.Message):
     def __init__(self) -> None: ...
 
-class Empty_Response(Message):
+class Empty_Response(base.Message):
     def __init__(self) -> None: ...
 
-class Empty_Event(Message):
+class Empty_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[Empty_Request]
     response: list[Empty_Response]
@@ -24,21 +24,21 @@ class Empty_Event(Message):
         response: Sequence[Empty_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class Empty(Service[Empty_Request, Empty_Response]):
+class Empty(base.Service[Empty_Request, Empty_Response]):
     Request: TypeAlias = Empty_Request
     Response: TypeAlias = Empty_Response
     Event: TypeAlias = Empty_Event
 
-class SetBool_Request(Message):
+class SetBool_Request(base.Message):
     data: bool
     def __init__(self, *, data: bool = ...) -> None: ...
 
-class SetBool_Response(Message):
+class SetBool_Response(base.Message):
     success: bool
     message: str
     def __init__(self, *, success: bool = ..., message: str = ...) -> None: ...
 
-class SetBool_Event(Message):
+class SetBool_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[SetBool_Request]
     response: list[SetBool_Response]
@@ -50,20 +50,20 @@ class SetBool_Event(Message):
         response: Sequence[SetBool_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class SetBool(Service[SetBool_Request, SetBool_Response]):
+class SetBool(base.Service[SetBool_Request, SetBool_Response]):
     Request: TypeAlias = SetBool_Request
     Response: TypeAlias = SetBool_Response
     Event: TypeAlias = SetBool_Event
 
-class Trigger_Request(Message):
+class Trigger_Request(base.Message):
     def __init__(self) -> None: ...
 
-class Trigger_Response(Message):
+class Trigger_Response(base.Message):
     success: bool
     message: str
     def __init__(self, *, success: bool = ..., message: str = ...) -> None: ...
 
-class Trigger_Event(Message):
+class Trigger_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[Trigger_Request]
     response: list[Trigger_Response]
@@ -75,7 +75,7 @@ class Trigger_Event(Message):
         response: Sequence[Trigger_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class Trigger(Service[Trigger_Request, Trigger_Response]):
+class Trigger(base.Service[Trigger_Request, Trigger_Response]):
     Request: TypeAlias = Trigger_Request
     Response: TypeAlias = Trigger_Response
     Event: TypeAlias = Trigger_Event

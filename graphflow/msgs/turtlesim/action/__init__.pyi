@@ -4,24 +4,24 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 from graphflow import times
-from graphflow.msgs.base import Action, Message
+from graphflow.msgs import base
 from graphflow.msgs.builtin_interfaces import msg as builtin_interfaces
 from graphflow.msgs.service_msgs import msg as service_msgs
 from graphflow.msgs.unique_identifier_msgs import msg as unique_identifier_msgs
 
-class RotateAbsolute_Goal(Message):
+class RotateAbsolute_Goal(base.Message):
     theta: float
     def __init__(self, *, theta: float = ...) -> None: ...
 
-class RotateAbsolute_Result(Message):
+class RotateAbsolute_Result(base.Message):
     delta: float
     def __init__(self, *, delta: float = ...) -> None: ...
 
-class RotateAbsolute_Feedback(Message):
+class RotateAbsolute_Feedback(base.Message):
     remaining: float
     def __init__(self, *, remaining: float = ...) -> None: ...
 
-class RotateAbsolute_FeedbackMessage(Message):
+class RotateAbsolute_FeedbackMessage(base.Message):
     goal_id: unique_identifier_msgs.UUID
     feedback: RotateAbsolute_Feedback
     def __init__(
@@ -31,7 +31,7 @@ class RotateAbsolute_FeedbackMessage(Message):
         feedback: RotateAbsolute_Feedback | Mapping[str, object] = ...,
     ) -> None: ...
 
-class RotateAbsolute_SendGoal_Request(Message):
+class RotateAbsolute_SendGoal_Request(base.Message):
     goal_id: unique_identifier_msgs.UUID
     goal: RotateAbsolute_Goal
     def __init__(
@@ -41,7 +41,7 @@ class RotateAbsolute_SendGoal_Request(Message):
         goal: RotateAbsolute_Goal | Mapping[str, object] = ...,
     ) -> None: ...
 
-class RotateAbsolute_SendGoal_Response(Message):
+class RotateAbsolute_SendGoal_Response(base.Message):
     accepted: bool
     stamp: builtin_interfaces.Time
     def __init__(
@@ -51,7 +51,7 @@ class RotateAbsolute_SendGoal_Response(Message):
         stamp: builtin_interfaces.Time | Mapping[str, object] | times.Time = ...,
     ) -> None: ...
 
-class RotateAbsolute_SendGoal_Event(Message):
+class RotateAbsolute_SendGoal_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[RotateAbsolute_SendGoal_Request]
     response: list[RotateAbsolute_SendGoal_Response]
@@ -63,16 +63,16 @@ class RotateAbsolute_SendGoal_Event(Message):
         response: Sequence[RotateAbsolute_SendGoal_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class RotateAbsolute_GetResult_Request(Message):
+class RotateAbsolute_GetResult_Request(base.Message):
     goal_id: unique_identifier_msgs.UUID
     def __init__(self, *, goal_id: unique_identifier_msgs.UUID | Mapping[str, object] = ...) -> None: ...
 
-class RotateAbsolute_GetResult_Response(Message):
+class RotateAbsolute_GetResult_Response(base.Message):
     status: int
     result: RotateAbsolute_Result
     def __init__(self, *, status: int = ..., result: RotateAbsolute_Result | Mapping[str, object] = ...) -> None: ...
 
-class RotateAbsolute_GetResult_Event(Message):
+class RotateAbsolute_GetResult_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[RotateAbsolute_GetResult_Request]
     response: list[RotateAbsolute_GetResult_Response]
@@ -84,7 +84,7 @@ class RotateAbsolute_GetResult_Event(Message):
         response: Sequence[RotateAbsolute_GetResult_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class RotateAbsolute(Action[RotateAbsolute_Goal, RotateAbsolute_Result, RotateAbsolute_Feedback]):
+class RotateAbsolute(base.Action[RotateAbsolute_Goal, RotateAbsolute_Result, RotateAbsolute_Feedback]):
     Goal: TypeAlias = RotateAbsolute_Goal
     Result: TypeAlias = RotateAbsolute_Result
     Feedback: TypeAlias = RotateAbsolute_Feedback

@@ -1,14 +1,14 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 
-class Color(Message):
+class Color(base.Message):
     r: int
     g: int
     b: int
     def __init__(self, *, r: int = ..., g: int = ..., b: int = ...) -> None: ...
 
-class Pose(Message):
+class Pose(base.Message):
     x: float
     y: float
     theta: float

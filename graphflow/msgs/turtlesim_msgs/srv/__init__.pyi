@@ -3,17 +3,17 @@
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-from graphflow.msgs.base import Message, Service
+from graphflow.msgs import base
 from graphflow.msgs.service_msgs import msg as service_msgs
 
-class Kill_Request(Message):
+class Kill_Request(base.Message):
     name: str
     def __init__(self, *, name: str = ...) -> None: ...
 
-class Kill_Response(Message):
+class Kill_Response(base.Message):
     def __init__(self) -> None: ...
 
-class Kill_Event(Message):
+class Kill_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[Kill_Request]
     response: list[Kill_Response]
@@ -25,12 +25,12 @@ class Kill_Event(Message):
         response: Sequence[Kill_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class Kill(Service[Kill_Request, Kill_Response]):
+class Kill(base.Service[Kill_Request, Kill_Response]):
     Request: TypeAlias = Kill_Request
     Response: TypeAlias = Kill_Response
     Event: TypeAlias = Kill_Event
 
-class SetPen_Request(Message):
+class SetPen_Request(base.Message):
     r: int
     g: int
     b: int
@@ -38,10 +38,10 @@ class SetPen_Request(Message):
     off: int
     def __init__(self, *, r: int = ..., g: int = ..., b: int = ..., width: int = ..., off: int = ...) -> None: ...
 
-class SetPen_Response(Message):
+class SetPen_Response(base.Message):
     def __init__(self) -> None: ...
 
-class SetPen_Event(Message):
+class SetPen_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[SetPen_Request]
     response: list[SetPen_Response]
@@ -53,23 +53,23 @@ class SetPen_Event(Message):
         response: Sequence[SetPen_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class SetPen(Service[SetPen_Request, SetPen_Response]):
+class SetPen(base.Service[SetPen_Request, SetPen_Response]):
     Request: TypeAlias = SetPen_Request
     Response: TypeAlias = SetPen_Response
     Event: TypeAlias = SetPen_Event
 
-class Spawn_Request(Message):
+class Spawn_Request(base.Message):
     x: float
     y: float
     theta: float
     name: str
     def __init__(self, *, x: float = ..., y: float = ..., theta: float = ..., name: str = ...) -> None: ...
 
-class Spawn_Response(Message):
+class Spawn_Response(base.Message):
     name: str
     def __init__(self, *, name: str = ...) -> None: ...
 
-class Spawn_Event(Message):
+class Spawn_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[Spawn_Request]
     response: list[Spawn_Response]
@@ -81,21 +81,21 @@ class Spawn_Event(Message):
         response: Sequence[Spawn_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class Spawn(Service[Spawn_Request, Spawn_Response]):
+class Spawn(base.Service[Spawn_Request, Spawn_Response]):
     Request: TypeAlias = Spawn_Request
     Response: TypeAlias = Spawn_Response
     Event: TypeAlias = Spawn_Event
 
-class TeleportAbsolute_Request(Message):
+class TeleportAbsolute_Request(base.Message):
     x: float
     y: float
     theta: float
     def __init__(self, *, x: float = ..., y: float = ..., theta: float = ...) -> None: ...
 
-class TeleportAbsolute_Response(Message):
+class TeleportAbsolute_Response(base.Message):
     def __init__(self) -> None: ...
 
-class TeleportAbsolute_Event(Message):
+class TeleportAbsolute_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[TeleportAbsolute_Request]
     response: list[TeleportAbsolute_Response]
@@ -107,20 +107,20 @@ class TeleportAbsolute_Event(Message):
         response: Sequence[TeleportAbsolute_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class TeleportAbsolute(Service[TeleportAbsolute_Request, TeleportAbsolute_Response]):
+class TeleportAbsolute(base.Service[TeleportAbsolute_Request, TeleportAbsolute_Response]):
     Request: TypeAlias = TeleportAbsolute_Request
     Response: TypeAlias = TeleportAbsolute_Response
     Event: TypeAlias = TeleportAbsolute_Event
 
-class TeleportRelative_Request(Message):
+class TeleportRelative_Request(base.Message):
     linear: float
     angular: float
     def __init__(self, *, linear: float = ..., angular: float = ...) -> None: ...
 
-class TeleportRelative_Response(Message):
+class TeleportRelative_Response(base.Message):
     def __init__(self) -> None: ...
 
-class TeleportRelative_Event(Message):
+class TeleportRelative_Event(base.Message):
     info: service_msgs.ServiceEventInfo
     request: list[TeleportRelative_Request]
     response: list[TeleportRelative_Response]
@@ -132,7 +132,7 @@ class TeleportRelative_Event(Message):
         response: Sequence[TeleportRelative_Response | Mapping[str, object]] = ...,
     ) -> None: ...
 
-class TeleportRelative(Service[TeleportRelative_Request, TeleportRelative_Response]):
+class TeleportRelative(base.Service[TeleportRelative_Request, TeleportRelative_Response]):
     Request: TypeAlias = TeleportRelative_Request
     Response: TypeAlias = TeleportRelative_Response
     Event: TypeAlias = TeleportRelative_Event

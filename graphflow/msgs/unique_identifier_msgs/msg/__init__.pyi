@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from graphflow.msgs.base import Message
+from graphflow.msgs import base
 
-class UUID(Message):
+class UUID(base.Message):
     uuid: npt.NDArray[np.uint8]
     def __init__(self, *, uuid: Sequence[int] | npt.NDArray[np.integer] = ...) -> None: ...

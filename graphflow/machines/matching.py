@@ -1,0 +1,80 @@
+"""Which endpoints reach each other, and what to tell when two that share a name do not.
+
+Delivery is decided by the data key alone: name, type and the hash of its definition. What a profile asks beyond that
+no Zenoh peer enforces, yet DDS would; both kinds of trouble are silent in ROS 2, so both are put into words here.
+
+Source: rmw_zenoh graph_cache (matching by data key); OMG DDS 1.4, 2.2.3 (requested and offered).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from graphflow.qos import incompatible
+from graphflow.wire.liveliness import Entity, Kind
+from graphflow.wire.profile import PROFILES, advice
+
+_COUNTERPARTS = {
+    Kind.PUBLISHER: Kind.SUBSCRIPTION,
+    Kind.SUBSCRIPTION: Kind.PUBLISHER,
+    Kind.SERVICE: Kind.CLIENT,
+    Kind.CLIENT: Kind.SERVICE,
+}
+_WORDS = {
+    Kind.PUBLISHER: "publisher",
+    Kind.SUBSCRIPTION: "subscription",
+    Kind.SERVICE: "server",
+    Kind.CLIENT: "client",
+}
+
+
+class Verdict(NamedTuple):
+    """How an endpoint stands to a counterpart of the same name."""
+
+    reaches: bool
+    """Whether what one of them sends arrives at the other."""
+    policies: tuple[str, ...] = ()
+    """Policies by which DDS would keep them apart."""
+    complaint: str = ""
+    """What is wrong and what to do, in a sentence; empty when nothing is."""
+
+
+def verdict(own: Entity, other: Entity, profile: str = PROFILES[0]) -> Verdict | None:
+    """How `own` and `other` stand to each other; None when they have nothing to do with each other.
+
+    Args:
+        profile: The wire profile of this process.
+    """
+    if other.name != own.name or other.kind is not _COUNTERPARTS.get(own.kind):
+        return None
+    who, what = f"the {_WORDS[other.kind]} of {other.node_name}", f"the {_WORDS[own.kind]} here"
+    if other.type != own.type:
+        remedy = advice(other, profile) or "give both one type, or one of them another name"
+        return Verdict(
+            False,
+            complaint=f"{own.name}: nothing passes between {who}, of type {other.type}, and {what}, of type "
+            f"{own.type}: {remedy}",
+        )
+    if other.hash != own.hash:
+        remedy = advice(other, profile) or "use the same definition file on both sides"
+        return Verdict(
+            False,
+            complaint=f"{own.name}: nothing passes between {who} and {what}: they have two definitions of {own.type} "
+            f"({_short(other.hash)} there, {_short(own.hash)} here): {remedy}",
+        )
+    if own.kind not in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
+        return Verdict(True)
+    offered, requested = (own, other) if own.kind is Kind.PUBLISHER else (other, own)
+    policies = tuple(incompatible(offered.qos, requested.qos))
+    if not policies:
+        return Verdict(True)
+    return Verdict(
+        True,
+        policies,
+        f"{own.name}: the publisher of {offered.node_name} offers less than the subscription of "
+        f"{requested.node_name} asks for: {', '.join(policies)}. Over Zenoh messages pass; over DDS none would",
+    )
+
+
+def _short(hash_: str) -> str:
+    return hash_[:15]

@@ -1,0 +1,71 @@
+"""Wire profiles: whose definitions stand in keys and tokens, since a few differ between ROS 2's distributions.
+
+| | jazzy | kilted | lyrical |
+|---|---|---|---|
+| package of turtlesim's interfaces | turtlesim | turtlesim_msgs | turtlesim_msgs |
+| lifecycle_msgs/msg/TransitionEvent | uint64 timestamp | uint64 timestamp | Time stamp |
+| a chunk about buffers in tokens of uint8[] topics | no | no | yes |
+
+Everything else on the wire is the same in all three. Humble has no type hashes at all, and is told by that.
+
+Source: rcl_interfaces 2.4.3; ros_tutorials 1.9.2; rmw_zenoh_cpp 0.10.
+"""
+
+from __future__ import annotations
+
+import os
+
+from graphflow.errors import GraphflowError
+from graphflow.names import did_you_mean
+from graphflow.wire.liveliness import Entity
+
+PROFILES = ("jazzy", "kilted", "lyrical")
+VARIABLE = "GRAPHFLOW_WIRE"
+
+_TRANSITION_EVENT = "lifecycle_msgs/msg/TransitionEvent"
+_LYRICAL_TRANSITION_EVENT = "RIHS01_78b19e2be41a797fc009c96bda68944182edabec7852cccd928a40bc06f6f9d7"
+
+
+def wire_profile() -> str:
+    """This process's profile: GRAPHFLOW_WIRE, else jazzy.
+
+    Raises:
+        GraphflowError: The variable holds something else than a profile's name.
+    """
+    profile = os.environ.get(VARIABLE, "").strip() or PROFILES[0]
+    if profile not in PROFILES:
+        hint = did_you_mean(profile, PROFILES)
+        raise GraphflowError(f"{VARIABLE}={profile!r} is no wire profile{hint}; there are {', '.join(PROFILES)}")
+    return profile
+
+
+def wire_type(name: str, profile: str) -> str:
+    """The name that an interface has on the wire of a profile."""
+    package, _, rest = name.partition("/")
+    return f"turtlesim_msgs/{rest}" if package == "turtlesim" and profile != "jazzy" else name
+
+
+def speakers(entity: Entity) -> tuple[str, ...]:
+    """The profiles that an endpoint with such a token can belong to; empty when that cannot be told."""
+    if entity.hash == "TypeHashNotSupported":
+        return ("humble",)
+    if "/backends:" in entity.token:
+        return ("lyrical",)
+    if entity.type == _TRANSITION_EVENT:
+        return ("lyrical",) if entity.hash == _LYRICAL_TRANSITION_EVENT else ("jazzy", "kilted")
+    package = entity.type.partition("/")[0]
+    return {"turtlesim": ("jazzy",), "turtlesim_msgs": ("kilted", "lyrical")}.get(package, ())
+
+
+def advice(entity: Entity, profile: str) -> str:
+    """What to do when a peer's token is of another profile than this process's; empty when it is not."""
+    spoken = speakers(entity)
+    if not spoken or profile in spoken:
+        return ""
+    if spoken == ("humble",):
+        return "it speaks ROS 2 Humble's wire, which has no type hashes and is not supported"
+    theirs = " or ".join(p.capitalize() for p in spoken)
+    return (
+        f"it speaks the wire of ROS 2 {theirs}, this process {profile.capitalize()}'s: "
+        f"start with --wire {spoken[0]}, or set {VARIABLE}={spoken[0]}"
+    )

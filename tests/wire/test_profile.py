@@ -1,0 +1,100 @@
+"""Wire profiles: what each distribution offers, and how a peer of another one is told."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.errors import GraphflowError
+from graphflow.msgs import registry
+from graphflow.wire.liveliness import Entity, Kind, parse_token
+from graphflow.wire.profile import PROFILES, advice, speakers, wire_profile, wire_type
+
+NEW_EVENT = "RIHS01_78b19e2be41a797fc009c96bda68944182edabec7852cccd928a40bc06f6f9d7"
+OLD_EVENT = "RIHS01_d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38"
+EVENT = "lifecycle_msgs/msg/TransitionEvent"
+
+
+def entity(type_: str, hash_: str = "RIHS01_0", more: str = "") -> Entity:
+    """A publisher's token, read."""
+    made = Entity(0, "a1", 0, 1, Kind.PUBLISHER, "/", "n", "/t", type_, hash_)
+    parsed = parse_token(made.token + more)
+    assert parsed is not None
+    return parsed
+
+
+def test_jazzy_is_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the variable, or with an empty one, definitions are Jazzy's."""
+    monkeypatch.delenv("GRAPHFLOW_WIRE", raising=False)
+    assert wire_profile() == "jazzy"
+    monkeypatch.setenv("GRAPHFLOW_WIRE", " ")
+    assert wire_profile() == "jazzy"
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_profile_is_chosen_by_its_name(profile: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The variable names the profile."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    assert wire_profile() == profile
+
+
+def test_a_mistyped_profile_is_an_error_that_helps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another word is refused, with the nearest that is right."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", "lyrial")
+    with pytest.raises(GraphflowError, match=r"GRAPHFLOW_WIRE='lyrial' is no wire profile.*lyrical"):
+        wire_profile()
+
+
+@pytest.mark.parametrize(
+    ("profile", "digest", "first_field"),
+    [("jazzy", OLD_EVENT, "timestamp"), ("kilted", OLD_EVENT, "timestamp"), ("lyrical", NEW_EVENT, "stamp")],
+)
+def test_transition_event_is_the_profiles(
+    profile: str, digest: str, first_field: str, monkeypatch: pytest.MonkeyPatch, fresh_registry: None
+) -> None:
+    """TransitionEvent has the fields and the hash that the distribution gives it."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    assert registry.hash_of(EVENT) == digest
+    assert registry.message_schema(EVENT).fields[0].name == first_field
+
+
+@pytest.mark.parametrize(("profile", "package"), [("jazzy", "turtlesim"), ("lyrical", "turtlesim_msgs")])
+def test_turtlesims_classes_are_the_profiles(
+    profile: str, package: str, monkeypatch: pytest.MonkeyPatch, fresh_registry: None
+) -> None:
+    """A node that uses `turtlesim` announces the package that the distribution's turtlesim has."""
+    monkeypatch.setenv("GRAPHFLOW_WIRE", profile)
+    assert registry.interface_class("turtlesim/msg/Pose").SCHEMA.name == f"{package}/msg/Pose"  # type: ignore[attr-defined]
+    assert f"{package}/srv/Spawn" == registry.interface_class("turtlesim/srv/Spawn").NAME  # type: ignore[attr-defined]
+
+
+def test_other_names_are_the_same_everywhere() -> None:
+    """Only turtlesim's package differs."""
+    assert {wire_type("std_msgs/msg/String", p) for p in PROFILES} == {"std_msgs/msg/String"}
+
+
+@pytest.mark.parametrize(
+    ("peer", "told"),
+    [
+        (entity("std_msgs/msg/String"), ()),
+        (entity("turtlesim/msg/Pose"), ("jazzy",)),
+        (entity("turtlesim_msgs/msg/Pose"), ("kilted", "lyrical")),
+        (entity(EVENT, OLD_EVENT), ("jazzy", "kilted")),
+        (entity(EVENT, NEW_EVENT), ("lyrical",)),
+        (entity("sensor_msgs/msg/Image", more="/backends:cpu:"), ("lyrical",)),
+        (entity("std_msgs/msg/String", "TypeHashNotSupported"), ("humble",)),
+    ],
+)
+def test_a_token_tells_who_can_have_written_it(peer: Entity, told: tuple[str, ...]) -> None:
+    """Names, hashes and chunks that only some distributions have give them away."""
+    assert speakers(peer) == told
+
+
+def test_the_advice_says_what_to_type() -> None:
+    """A peer of another profile is answered with the option to start with; one of the same with nothing."""
+    peer = entity("turtlesim_msgs/msg/Pose")
+    assert advice(peer, "jazzy") == (
+        "it speaks the wire of ROS 2 Kilted or Lyrical, this process Jazzy's: "
+        "start with --wire kilted, or set GRAPHFLOW_WIRE=kilted"
+    )
+    assert advice(peer, "kilted") == ""
+    assert "Humble" in advice(entity("std_msgs/msg/String", "TypeHashNotSupported"), "jazzy")
