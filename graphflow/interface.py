@@ -5,6 +5,7 @@ Checks, plans and listings speak this; nothing here refers to a class or a funct
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from fnmatch import fnmatchcase
@@ -63,6 +64,10 @@ class Parameter:
     gt: float | None = None
     lt: float | None = None
     read_only: bool = False
+    step: float = 0.0
+    """Distance between allowed values, counted from `ge`, or from 0; 0 for all. The limits are always allowed."""
+    dynamic: bool = False
+    """Takes values of every type, and may be deleted (ROS 2's dynamic typing)."""
 
     def fit(self, value: Any) -> Any:
         """`value` as the declared type, integers widened to floats.
@@ -70,10 +75,17 @@ class Parameter:
         Raises:
             ParameterError: It is of another type or out of range; the text says what is allowed.
         """
+        if self.dynamic:
+            return None if value is None else self._any(value)
         if self.type.startswith("list[") and isinstance(value, (list, tuple)):
             element: ParamType = self.type[5:-1]  # type: ignore[assignment]
             return [self._scalar(element, item) for item in value]
         return self._scalar(self.type, value)
+
+    @staticmethod
+    def _any(value: Any) -> Any:
+        type_of(value)
+        return list(value) if isinstance(value, tuple) else value
 
     def _scalar(self, type_: ParamType, value: Any) -> Any:
         if type_ == "float" and isinstance(value, int) and not isinstance(value, bool):
@@ -106,6 +118,18 @@ class Parameter:
         if not inside:
             unit = f" {self.unit}" if self.unit else ""
             raise ParameterError(f"parameter {self.name!r} = {number} is out of range: {self.range_text()}{unit}")
+        if self.step and number not in (self.ge, self.le) and math.isfinite(number):
+            start = self.ge or 0
+            nearest = start + round((number - start) / self.step) * self.step
+            # As rclpy: whole numbers exactly, others within a millionth.
+            fits = (
+                nearest == number if self.type in ("int", "list[int]") else math.isclose(nearest, number, rel_tol=1e-6)
+            )
+            if not fits:
+                raise ParameterError(
+                    f"parameter {self.name!r} = {number} is not a valid step: {start:g} and multiples of {self.step:g} "
+                    f"more, such as {nearest:g}"
+                )
 
     def range_text(self) -> str:
         """The range in words, empty when there is none: `0 to 255`, `more than 0`."""
@@ -114,6 +138,19 @@ class Parameter:
         words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
         limits = [(word, getattr(self, key)) for key, word in words.items()]
         return " and ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)
+
+
+_NOWHERE = Place("graphflow")
+COMMON_PARAMETERS: dict[str, Parameter] = {
+    p.name: p
+    for p in (
+        Parameter("use_sim_time", "bool", False, _NOWHERE, doc="Go by the time that /clock tells."),
+        Parameter(
+            "start_type_description_service", "bool", True, _NOWHERE, doc="Describe types to others.", read_only=True
+        ),
+    )
+}
+"""Parameters that every node has, as every ROS 2 node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +173,8 @@ class Interface:
     """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
 
     def param(self, name: str) -> Parameter | None:
-        return next((p for p in self.params if p.name == name), None)
+        """A parameter that nodes of the class have, by its name."""
+        return next((p for p in self.params if p.name == name), COMMON_PARAMETERS.get(name))
 
     def to_json(self) -> dict[str, Any]:
         """Plain data that `from_json` reads back."""
@@ -184,6 +222,11 @@ def type_of(value: Any) -> ParamType:
     raise ParameterError(
         f"{value!r} cannot be a parameter: use a bool, int, float, str, bytes, or a list of one of them"
     )
+
+
+def type_id(value: Any) -> int:
+    """The number of rcl_interfaces/msg/ParameterType for a value; 0 for None, which is not set."""
+    return 0 if value is None else TYPE_IDS[type_of(value)]
 
 
 def may_make(dynamic_names: bool | Sequence[str], full_name: str) -> bool:

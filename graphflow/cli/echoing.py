@@ -11,7 +11,8 @@ from graphflow.cli.visiting import visit
 from graphflow.introspect.echo import block, csv, flow, plain, truncated
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
-from graphflow.qos import Durability, Qos, Reliability
+from graphflow.qos import BEST_AVAILABLE, Qos
+from graphflow.runtime.events import QosEvent
 from graphflow.runtime.node import Node
 from graphflow.runtime.topics import TopicSubscription
 from graphflow.wire.attachment import MessageInfo
@@ -37,7 +38,9 @@ class EchoOptions:
     full_length: bool = False
     truncate_length: int = 128
     include_message_info: bool = False
+    no_lost_messages: bool = False
     as_json: bool = False
+    qos: Qos = BEST_AVAILABLE
 
 
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
@@ -53,7 +56,9 @@ def run(topic: str, type_name: str, options: EchoOptions) -> int:
 async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, path: list[str | int]) -> int:
     await _known(node, topic)
     type_: Any = registry.interface_class(type_name)
-    subscription: TopicSubscription[Any] = node.create_subscription(type_, topic, None, _matching_qos(node, topic))
+    subscription: TopicSubscription[Any] = node.create_subscription(
+        type_, topic, None, options.qos, on_event=None if options.no_lost_messages else _tell_loss
+    )
     try:
         async with node.clock.timeout(options.timeout or float(10**9)):
             message, info = await subscription.next_with_info()
@@ -67,6 +72,11 @@ async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, pa
         message, info = await subscription.next_with_info()
 
 
+def _tell_loss(event: QosEvent) -> None:
+    if event.kind == "message_lost":
+        output.talk(f"A message was lost!!!\n\ttotal count change:{event.change}\n\ttotal count: {event.total}---")
+
+
 async def _known(node: Node, topic: str) -> None:
     """Give the graph a moment to tell of the topic's publishers, whose QoS decides ours."""
     try:
@@ -74,18 +84,6 @@ async def _known(node: Node, topic: str) -> None:
             await node.context.wait_for(lambda: bool(node.context.cache.endpoints(Kind.PUBLISHER, topic)))
     except TimeoutError:
         return
-
-
-def _matching_qos(node: Node, topic: str) -> Qos:
-    """A profile that fits all publishers there are: reliable, or latched, only if all of them are."""
-    offered = [e.qos for e in node.context.cache.endpoints(Kind.PUBLISHER, topic)]
-    reliable = all(q.reliability is Reliability.RELIABLE for q in offered)
-    latched = bool(offered) and all(q.durability is Durability.TRANSIENT_LOCAL for q in offered)
-    return Qos(
-        depth=100,
-        reliability=Reliability.RELIABLE if reliable else Reliability.BEST_EFFORT,
-        durability=Durability.TRANSIENT_LOCAL if latched else Durability.VOLATILE,
-    )
 
 
 def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str | int]) -> str:

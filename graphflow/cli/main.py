@@ -26,7 +26,7 @@ _VERBS = {
     "node": ("node", "List and describe nodes."),
     "topic": ("topic", "List, describe, show and publish topics."),
     "service": ("service", "List and call services."),
-    "param": ("param", "List, get and set parameters."),
+    "param": ("param", "List, get, set, describe, dump and load parameters."),
     "interface": ("interface", "Show message, service and action types."),
 }
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""

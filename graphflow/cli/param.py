@@ -1,25 +1,30 @@
-"""`graphflow param list`, `get` and `set`."""
+"""`graphflow param`: list, get, set, describe, delete, dump and load."""
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.words import ValueCommand
 from graphflow.domain import domain_id
-from graphflow.errors import CallError, GraphflowError, ParameterError
+from graphflow.errors import CallError, GraphflowError
+from graphflow.introspect.parameters import RemoteParameters
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
 _WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
 @click.group()
 def param() -> None:
-    """List, get and set parameters."""
+    """List, get, set, describe, dump and load parameters."""
 
 
 _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
@@ -41,14 +46,15 @@ def list_(name: str | None, param_type: bool, include_hidden_nodes: bool, timeou
         nodes = [view.node(name)] if name else sorted(n for n in servers if include_hidden_nodes or not is_hidden(n))
         for node in nodes:
             try:
-                names = _names(view, node, timeout)
-                types = _types(view, node, names, timeout) if param_type or as_json else {}
+                remote = RemoteParameters(view, node, timeout)
+                names = remote.names()
+                described = remote.describe(names) if param_type or as_json else {}
             except CallError as error:
                 if name:
                     raise
                 output.talk(f"{node}: {error}")
                 continue
-            found[node] = {n: TYPE_NAMES[types[n]] if types else "" for n in names}
+            found[node] = {n: TYPE_NAMES[described[n].type] if n in described else "" for n in names}
     if as_json:
         output.as_json(found)
         return
@@ -69,16 +75,18 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
     from graphflow.runtime.values import from_message, type_word
 
     with View(domain_id()) as view:
-        node = view.node(name)
-        message = _call(view, node, "GetParameters", {"names": [parameter]}, timeout).values
-        if not message or message[0].type == 0:
-            raise ParameterError(_unknown(view, node, parameter, timeout))
-    value = from_message(message[0])
+        remote = RemoteParameters(view, view.node(name), timeout)
+        message = remote.get([parameter])[0]
+        if message.type == 0:
+            remote.known(parameter)  # a parameter without a value, if it is one
+            output.as_json(None) if as_json else output.data("Parameter not set.")
+            return
+    value = from_message(message)
+    plain = list(value) if isinstance(value, bytes) else value
     if as_json:
-        output.as_json(value)
+        output.as_json(plain)
     else:
-        text = str(list(value)) if isinstance(value, bytes) else str(value)
-        output.data(text if hide_type else f"{type_word(message[0].type)}: {text}")
+        output.data(f"{plain}" if hide_type else f"{type_word(message.type)}: {plain}")
 
 
 @param.command(name="set", cls=ValueCommand)
@@ -88,18 +96,11 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
 @_timeout
 def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> int:
     """Set a parameter: VALUE is YAML, read as the type the parameter has."""
-    from graphflow.interface import TYPE_IDS, type_of
-    from graphflow.runtime.values import to_message
-
     with View(domain_id()) as view:
-        node = view.node(name)
-        described = _call(view, node, "DescribeParameters", {"names": [parameter]}, timeout).descriptors
-        if not described or described[0].type == 0:
-            raise ParameterError(_unknown(view, node, parameter, timeout))
-        read = read_value(" ".join(value), described[0].type)
-        message = to_message(read, TYPE_IDS[type_of(read)])
-        request = {"parameters": [{"name": parameter, "value": message}]}
-        result = _call(view, node, "SetParameters", request, timeout).results[0]
+        remote = RemoteParameters(view, view.node(name), timeout)
+        declared = remote.known(parameter)
+        read = read_value(" ".join(value), 0 if declared.dynamic_typing else declared.type)
+        result = remote.set({parameter: _message(read, declared)})[0]
     if result.successful:
         output.data("Set parameter successful" + (f": {result.reason}" if result.reason else ""))
         return exits.OK
@@ -107,11 +108,135 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
     return exits.FAILED
 
 
+@param.command()
+@click.argument("name", metavar="NODE")
+@click.argument("parameter")
+@_timeout
+def delete(name: str, parameter: str, timeout: float) -> int:
+    """Delete a parameter that was declared with dynamic typing."""
+    from graphflow.msgs.rcl_interfaces.msg import ParameterValue
+
+    with View(domain_id()) as view:
+        remote = RemoteParameters(view, view.node(name), timeout)
+        remote.known(parameter)
+        result = remote.set({parameter: ParameterValue()})[0]
+    if result.successful:
+        output.data("Deleted parameter successfully")
+        return exits.OK
+    output.talk(f"Deleting parameter failed: {result.reason}")
+    return exits.FAILED
+
+
+@param.command()
+@click.argument("name", metavar="NODE")
+@click.argument("parameters", nargs=-1, metavar="[PARAMETER]...")
+@_timeout
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
+    """Show the type, the description and the limits of parameters; of all, without a name."""
+    from graphflow.introspect.echo import plain
+
+    with View(domain_id()) as view:
+        remote = RemoteParameters(view, view.node(name), timeout)
+        wanted = list(parameters) or remote.names()
+        found = remote.describe(wanted)
+        missing = [str(remote.unknown(n)) for n in wanted if n not in found]
+    if as_json:
+        output.as_json([plain(found[n]) for n in wanted if n in found])
+    else:
+        output.lines(_described(found[n]) for n in wanted if n in found)
+    for text in missing:
+        output.error(text)
+    return exits.FAILED if missing else exits.OK
+
+
+def _described(d: ParameterDescriptor) -> str:
+    from graphflow.interface import TYPE_NAMES
+
+    lines = [f"Parameter name: {d.name}", f"  Type: {TYPE_NAMES[d.type]}"]
+    lines += [f"  Description: {d.description}"] if d.description else []
+    lines.append("  Constraints:")
+    lines += ["    Read only: true"] if d.read_only else []
+    lines += ["    Dynamic typing: true"] if d.dynamic_typing else []
+    ranges: list[Any] = [*d.integer_range, *d.floating_point_range]
+    for limits in ranges:
+        lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
+        lines += [f"    Step: {limits.step}"] if limits.step else []
+    lines += [f"    Additional constraints: {d.additional_constraints}"] if d.additional_constraints else []
+    return "\n".join(lines[:-1] if lines[-1] == "  Constraints:" else lines)
+
+
+@param.command()
+@click.argument("name", metavar="NODE")
+@_timeout
+def dump(name: str, timeout: float) -> None:
+    """Write the parameters of a node as a file that `param load`, `--params-file` and ROS 2 read."""
+    from graphflow.graph.params_file import write
+    from graphflow.runtime.values import from_message
+
+    with View(domain_id()) as view:
+        node = view.node(name)
+        remote = RemoteParameters(view, node, timeout)
+        names = remote.names()
+        values = dict(zip(names, map(from_message, remote.get(names)), strict=True))
+    output.data(write(node, {n: v for n, v in values.items() if v is not None}).rstrip())
+
+
+@param.command()
+@click.argument("name", metavar="NODE")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--no-use-wildcard", is_flag=True, help="Only what is there for the node by its name.")
+@_timeout
+def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
+    """Set the parameters of a node to those in a file."""
+    from graphflow.graph import params_file
+
+    sections = params_file.read(file, str(file))
+    with View(domain_id()) as view:
+        node = view.node(name)
+        fitting = [s for s in sections if s.fits(node) and (s.is_exact or not no_use_wildcard)]
+        if not fitting:
+            raise exits.UsageFault(f"{file} has nothing for {node}{did_you_mean(node, [s.pattern for s in sections])}")
+        failed = _load(RemoteParameters(view, node, timeout), params_file.params_for(fitting, node))
+    return exits.FAILED if failed else exits.OK
+
+
+def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
+    """Set what can be set; returns whether something could not."""
+    described = remote.describe(list(settings))
+    present = dict(zip(described, remote.get(list(described)), strict=True))
+    failed = False
+    for name, setting in settings.items():
+        if name not in described:
+            output.error(f"{setting.place}: {remote.unknown(name)}")
+            failed = failed or not setting.is_optional
+            continue
+        message = _message(_as_declared(setting.value, described[name].type), described[name])
+        if described[name].read_only and message == present[name]:
+            output.data(f"Parameter {name} is read-only, and has this value")
+            continue
+        result = remote.set({name: message})[0]
+        if result.successful:
+            output.data(f"Set parameter {name} successful")
+        else:
+            output.talk(f"Set parameter {name} failed: {result.reason}")
+            failed = True
+    return failed
+
+
+def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
+    """A value as message; an empty list has the declared type."""
+    from graphflow.interface import type_id
+    from graphflow.runtime.values import to_message
+
+    return to_message(value, declared.type if value == [] else type_id(value))
+
+
 def read_value(text: str, type_: int) -> Any:
     """A value from the command line as the declared type wants it: quoted or not, `on` for a bool, 2 for a double.
 
     Args:
-        type_: A number of rcl_interfaces/msg/ParameterType.
+        type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter that takes all.
 
     Raises:
         UsageFault: It is not YAML.
@@ -130,6 +255,15 @@ def read_value(text: str, type_: int) -> Any:
         value = parse_value(text)
     except GraphflowError as error:
         raise exits.UsageFault(str(error)) from None
+    return _as_declared(value, type_)
+
+
+def _as_declared(value: Any, type_: int) -> Any:
+    """A YAML value as a parameter of the type takes it: integers widened, numbers for bytes.
+
+    Args:
+        type_: A number of rcl_interfaces/msg/ParameterType.
+    """
     if type_ == 3 and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if type_ == 8 and isinstance(value, list):
@@ -137,33 +271,3 @@ def read_value(text: str, type_: int) -> Any:
     if type_ == 5 and isinstance(value, list) and all(type(v) is int and v in range(256) for v in value):
         return bytes(value)
     return value
-
-
-def _call(view: View, node: str, what: str, request: dict[str, Any], timeout: float) -> Any:
-    from graphflow.msgs import registry
-    from graphflow.msgs.values import from_plain
-
-    type_name = f"rcl_interfaces/srv/{what}"
-    name = {
-        "GetParameters": "get_parameters",
-        "SetParameters": "set_parameters",
-        "ListParameters": "list_parameters",
-        "DescribeParameters": "describe_parameters",
-    }[what]
-    service = f"{node}/{name}"
-    view.service_type(service)
-    message = from_plain(registry.interface_class(f"{type_name}_Request"), request)
-    return view.call(service, type_name, message, timeout)
-
-
-def _names(view: View, node: str, timeout: float) -> list[str]:
-    return sorted(_call(view, node, "ListParameters", {}, timeout).result.names)
-
-
-def _types(view: View, node: str, names: list[str], timeout: float) -> dict[str, int]:
-    descriptors = _call(view, node, "DescribeParameters", {"names": names}, timeout).descriptors
-    return {d.name: d.type for d in descriptors}
-
-
-def _unknown(view: View, node: str, parameter: str, timeout: float) -> str:
-    return f"node {node} has no parameter {parameter!r}{did_you_mean(parameter, _names(view, node, timeout))}"

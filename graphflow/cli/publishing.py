@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
 from graphflow.msgs.base import Message
+from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.node import Node
 from graphflow.wire.liveliness import Kind
 
@@ -23,6 +24,7 @@ class PubOptions:
     max_wait_time_secs: float | None = None
     keep_alive: float = 0.1
     node_name: str | None = None
+    qos: Qos = DEFAULT
 
 
 def run(topic: str, message: Message, options: PubOptions) -> int:
@@ -36,7 +38,7 @@ def run(topic: str, message: Message, options: PubOptions) -> int:
 
 async def _publish(node: Node, topic: str, message: Message, options: PubOptions) -> int:
     times = 1 if options.once else options.times
-    publisher = node.create_publisher(type(message), topic)
+    publisher = node.create_publisher(type(message), topic, options.qos)
     needed = options.wait_matching_subscriptions
     if needed is None:
         needed = 1 if times else 0

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import Any
 
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import CallError
 from graphflow.introspect.view import View
+from graphflow.machines.cache import GraphCache
+from graphflow.machines.matching import verdict
 from graphflow.names import did_you_mean, expand, is_hidden
-from graphflow.qos import INFINITE_NS
+from graphflow.qos import BEST_AVAILABLE, DEFAULT, INFINITE_NS
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
-
-if TYPE_CHECKING:
-    from graphflow.cli.echoing import EchoOptions
 
 
 @click.group()
@@ -70,17 +71,32 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
     publishers, subscriptions = cache.endpoints(Kind.PUBLISHER, full), cache.endpoints(Kind.SUBSCRIPTION, full)
     if as_json:
         endpoints = {"publishers": publishers, "subscriptions": subscriptions}
-        output.as_json({"name": full, "types": types, **{k: [_row(e) for e in v] for k, v in endpoints.items()}})
+        rows = {k: [_row(e, cache) for e in v] for k, v in endpoints.items()}
+        output.as_json({"name": full, "types": types, **rows})
         return exits.OK
     output.data(f"Type: {types[0]}" if len(types) == 1 else f"Types: {', '.join(types)}")
     for title, endpoints_of_kind in (("Publisher count", publishers), ("Subscription count", subscriptions)):
         output.data(f"{chr(10) if verbose else ''}{title}: {len(endpoints_of_kind)}")
         if verbose:
-            output.lines(f"\n{_described(e)}" for e in endpoints_of_kind)
+            output.lines(f"\n{_described(e, cache)}" for e in endpoints_of_kind)
     return exits.OK
 
 
-def _row(e: Entity) -> dict[str, object]:
+def _misfits(e: Entity, cache: GraphCache) -> list[str]:
+    """What keeps an endpoint from counterparts on its topic, here or over DDS."""
+    judged = [(other, verdict(e, other)) for other in cache.named(e.name)]
+    return [
+        f"INCOMPATIBLE with {other.node_name}: {', '.join(found.policies) or _difference(e, other)}"
+        for other, found in judged
+        if found is not None and found.complaint
+    ]
+
+
+def _difference(e: Entity, other: Entity) -> str:
+    return f"type {other.type}" if e.type != other.type else f"another definition of the type, {other.hash}"
+
+
+def _row(e: Entity, cache: GraphCache) -> dict[str, object]:
     return {
         "node": e.node_name,
         "type": e.type,
@@ -92,10 +108,11 @@ def _row(e: Entity) -> dict[str, object]:
             "history": e.qos.history.name,
             "depth": e.qos.depth,
         },
+        "incompatible": _misfits(e, cache),
     }
 
 
-def _described(e: Entity) -> str:
+def _described(e: Entity, cache: GraphCache) -> str:
     def span(ns: int) -> str:
         return "Infinite" if ns == INFINITE_NS else f"{ns} nanoseconds"
 
@@ -116,6 +133,7 @@ def _described(e: Entity) -> str:
             f"  Deadline: {span(e.qos.deadline_ns)}",
             f"  Liveliness: {e.qos.liveliness.name}",
             f"  Liveliness lease duration: {span(e.qos.lease_ns)}",
+            *_misfits(e, cache),
         ]
     )
 
@@ -133,15 +151,19 @@ def _described(e: Entity) -> str:
 @click.option("-f", "--full-length", is_flag=True, help="Long arrays and strings whole.")
 @click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Else cut here.")
 @click.option("-i", "--include-message-info", is_flag=True, help="With sequence number, time and sender.")
+@click.option("--no-lost-messages", is_flag=True, help="Do not tell of messages that were lost on the way.")
+@qos_options
 @click.option("--json", "as_json", is_flag=True, help="One JSON object a line.")
-def echo(name: str, type_name: str | None, **options: object) -> int:
+def echo(name: str, type_name: str | None, **options: Any) -> int:
     """Show the messages of a topic as they come. Ctrl-C ends it."""
     from graphflow.cli import echoing
     from graphflow.cli.types import use_project
 
     use_project()
     full = expand(name, "/", "cli")
-    chosen: EchoOptions = echoing.EchoOptions(**options)  # type: ignore[arg-type]  # click made them of these types
+    # Without a word about it, whatever fits all the publishers there are.
+    options["qos"] = take_qos(options, replace(BEST_AVAILABLE, depth=100))
+    chosen = echoing.EchoOptions(**options)
     return echoing.run(full, _echo_type(full, type_name), chosen)
 
 
@@ -189,7 +211,8 @@ def _echo_type(full: str, given: str | None) -> str:
 @click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Give up that waiting after.")
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
-def pub(name: str, type_name: str, values: tuple[str, ...], **options: object) -> int:
+@qos_options
+def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
     """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; it need not be quoted."""
     from graphflow.cli import publishing
     from graphflow.cli.types import agree, use_project
@@ -208,5 +231,6 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: object) -
     if known and wanted not in known:
         wanted = agree(wanted, known[0], full)
     message = from_plain(registry.interface_class(wanted), message_values(values))
-    chosen = publishing.PubOptions(**options)  # type: ignore[arg-type]  # click made them of these types
+    options["qos"] = take_qos(options, DEFAULT)
+    chosen = publishing.PubOptions(**options)
     return publishing.run(full, message, chosen)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.interface import Endpoint, Interface, may_make
+from graphflow.interface import COMMON_PARAMETERS, Endpoint, Interface, may_make
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
@@ -20,6 +20,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     problems: list[Problem] = []
     for node in plan.nodes:
         problems += _check_node(node, interfaces)
+    problems += _check_optional(plan, interfaces)
     problems += _check_types(plan, interfaces)
     for step in plan.steps:
         problems += _check_step(step, plan, interfaces)
@@ -47,7 +48,7 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     for name, setting in node.params.items():
         declared = interface.param(name)
         if declared is None:
-            if interface.dynamic_names is not True:
+            if interface.dynamic_names is not True and not setting.is_optional:
                 yield Problem(
                     setting.place, f"{_class(interface)} has no parameter {name!r}{did_you_mean(name, known)}"
                 )
@@ -56,6 +57,19 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
             declared.fit(setting.value)
         except ParameterError as error:
             yield Problem(setting.place, str(error))
+
+
+def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Parameters written for many nodes at once, which not one node of the graph has."""
+    known = set(COMMON_PARAMETERS)
+    for interface in interfaces.values():
+        if isinstance(interface, Problem) or interface.dynamic_names is True:
+            return
+        known.update(p.name for p in interface.params)
+    optional = {(n, s.place) for node in plan.nodes for n, s in node.params.items() if s.is_optional}
+    for name, place in sorted(optional):
+        if name not in known:
+            yield Problem(place, f"no node of this graph has a parameter {name!r}{did_you_mean(name, known)}")
 
 
 def _class(interface: Interface) -> str:

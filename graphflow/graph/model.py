@@ -74,6 +74,7 @@ class NodeSpec(_Model):
     class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
     namespace: StrictStr = ""
     params: dict[str, Any] = {}
+    params_file: StrictStr | list[StrictStr] = []
     remap: dict[str, StrictStr] = {}
     process: StrictStr = ""
     env: dict[str, EnvValue] = {}

@@ -16,6 +16,8 @@ class Setting:
 
     value: Any
     place: Place
+    is_optional: bool = False
+    """Whether nodes without such a parameter leave it out: it was written for many nodes at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +135,7 @@ def node_from_json(data: dict[str, Any]) -> PlannedNode:
         **{k: v for k, v in data.items() if k in ("name", "class_path", "process", "env")},
         place=Place(*data["place"]),
         class_place=Place(*data["class_place"]),
-        params={k: Setting(s["value"], Place(*s["place"])) for k, s in data["params"].items()},
+        params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
         remaps=tuple(Rule(r["match"], r["replacement"], Place(*r["place"])) for r in data["remaps"]),
         after=tuple(data["after"]),
     )

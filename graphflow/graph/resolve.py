@@ -10,8 +10,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
-from graphflow.graph import source
+from graphflow.graph import params_file, source
 from graphflow.graph.model import Arg, GraphFile, NodeSpec, StepSpec, keys_of
+from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.source import Source
@@ -68,7 +69,9 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     if model is None:
         problems.raise_any()
     assert model is not None
-    nodes = _nodes(src, model, problems)
+    files = _ParamsFiles(src, path.resolve().parent, problems)
+    nodes = _nodes(src, model, files, problems)
+    files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
     ordered_nodes, ordered_steps = _order(src, model, nodes, steps, problems)
@@ -251,6 +254,7 @@ _EXAMPLES: dict[source.Path, str] = {
     ("nodes",): "nodes: {/talker: {class: nodes.talker:Talker}}",
     ("nodes", ""): "{class: nodes.talker:Talker}",
     ("nodes", "", "params"): "params: {rate: 2.0}",
+    ("nodes", "", "params_file"): "params_file: params.yaml",
     ("nodes", "", "remap"): "remap: {goal: /turtle1/pose}",
     ("nodes", "", "env"): "env: {LANG: C}",
     ("nodes", "", "after"): "after: /talker",
@@ -265,7 +269,51 @@ def _example(*path: str | int) -> str:
     return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
 
 
-def _nodes(src: Source, model: GraphFile, problems: _Problems) -> dict[str, PlannedNode]:
+class _ParamsFiles:
+    """The parameter files of a graph; each is read once.
+
+    Args:
+        folder: Where relative paths begin: the graph file's folder.
+    """
+
+    def __init__(self, src: Source, folder: Path, problems: _Problems) -> None:
+        self._src, self._folder, self._problems = src, folder, problems
+        self._files: dict[Path, list[Section]] = {}
+
+    def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
+        """What a node's files have for it, the later ones before the earlier."""
+        found: dict[str, Setting] = {}
+        names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
+        for i, name in enumerate(names):
+            path = self._folder / name
+            place = self._src.place((*at, i))
+            if path not in self._files:
+                self._files[path] = self._read(path, place)
+            sections = self._files[path]
+            if sections and not any(s.fits(node) for s in sections):
+                patterns = [s.pattern for s in sections]
+                self._problems.add(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
+            found |= params_file.params_for(sections, node)
+        return found
+
+    def _read(self, path: Path, place: Place) -> list[Section]:
+        if not path.is_file():
+            near = did_you_mean(path.name, [f.name for f in path.parent.glob("*.yaml")])
+            self._problems.add(place, f"there is no file {shown(path)}{near}")
+            return []
+        try:
+            return params_file.read(path, shown(path))
+        except GraphFileError as error:
+            self._problems += error.problems
+            return []
+
+    def refuse_strays(self, nodes: list[str]) -> None:
+        """Report sections for nodes that the graph does not have."""
+        for sections in self._files.values():
+            self._problems += params_file.strays(sections, nodes)
+
+
+def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: _Problems) -> dict[str, PlannedNode]:
     """The nodes by their keys in the file."""
     nodes: dict[str, PlannedNode] = {}
     taken: dict[str, Place] = {}
@@ -283,7 +331,8 @@ def _nodes(src: Source, model: GraphFile, problems: _Problems) -> dict[str, Plan
             class_path=spec.class_,
             place=place,
             class_place=src.place((*base, "class")),
-            params=_params(src, spec.params, (*base, "params"), problems),
+            params=files.params(spec, (*base, "params_file"), name)
+            | params_file.flatten(src, spec.params, (*base, "params"), problems),
             remaps=_remaps(src, spec.remap, (*base, "remap"), name, problems),
             process=spec.process,
             env={k: str(v) for k, v in spec.env.items()},
@@ -323,27 +372,6 @@ def _check_env(nodes: Iterable[PlannedNode], problems: _Problems) -> None:
             if first != value:
                 text = f"{name}={value} contradicts {name}={first} of {owner}, which shares process {node.process!r}"
                 problems.add(node.place, text)
-
-
-def _params(src: Source, params: Mapping[str, Any], path: source.Path, problems: _Problems) -> dict[str, Setting]:
-    """Parameters with nested mappings flattened by dots, as in ROS's parameter files."""
-    found: dict[str, Setting] = {}
-
-    def walk(prefix: str, values: Mapping[str, Any], at: source.Path) -> None:
-        for key, value in values.items():
-            place = src.place((*at, key))
-            if isinstance(value, dict):
-                walk(f"{prefix}{key}.", value, (*at, key))
-            elif value is None:
-                problems.add(src.key_place((*at, key)), f"parameter {prefix + key!r} has no value; an empty text is ''")
-            elif prefix + key in found:
-                first = found[prefix + key].place.line
-                problems.add(place, f"parameter {prefix + key!r} is given twice, first in line {first}; remove one")
-            else:
-                found[prefix + key] = Setting(value, place)
-
-    walk("", params, path)
-    return found
 
 
 def _remaps(

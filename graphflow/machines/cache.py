@@ -75,6 +75,10 @@ class GraphCache:
         ]
         return sorted(found, key=lambda e: (e.name, e.node_name, e.type, e.eid))
 
+    def named(self, name: str) -> list[Entity]:
+        """Every endpoint of one topic or service, of whatever kind."""
+        return sorted((e for e in self if e.name == name), key=lambda e: (e.kind, e.node_name, e.eid))
+
     def owners(self, name: str) -> list[Entity]:
         """The node tokens of everything called `name`."""
         return [e for e in self if e.kind is Kind.NODE and e.node_name == name]

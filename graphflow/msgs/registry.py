@@ -180,16 +180,28 @@ def service_schema(name: str) -> Service:
     raise UnknownInterface(f"{name} is no service")
 
 
+def whole_schema(name: str) -> Message:
+    """The type that stands for `name` in keys and tokens: a message itself, a service or action as a whole.
+
+    Raises:
+        UnknownInterface, InterfaceError: as `interface`.
+    """
+    base = name.rpartition("/")[2]
+    if name.rpartition("/")[0].endswith("/msg"):
+        return message_schema(name)
+    if base.endswith(("_SendGoal", "_GetResult")):
+        return service_schema(name).whole
+    if "_" in base:
+        return message_schema(name)
+    found = interface(name)
+    assert not isinstance(found, Message)
+    return found.whole
+
+
 @cache
 def hash_of(name: str) -> str:
     """RIHS01 of a message, or of a service or action as a whole."""
-    base = name.rpartition("/")[2]
-    if "_" in base and not base.endswith(("_SendGoal", "_GetResult")):
-        return type_hash(message_schema(name), message_schema)
-    if "_" in base:
-        return type_hash(service_schema(name).whole, message_schema)
-    found = interface(name)
-    return type_hash(found if isinstance(found, Message) else found.whole, message_schema)
+    return type_hash(whole_schema(name), message_schema)
 
 
 @cache

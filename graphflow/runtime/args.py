@@ -5,18 +5,23 @@ Source: rcl arguments; `ros2 run ... --help` and the "Passing ROS arguments" gui
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from graphflow.errors import GraphflowError, InvalidName
+from graphflow.errors import GraphFileError, GraphflowError, InvalidName
+from graphflow.graph import params_file
 from graphflow.graph.source import parse_value
-from graphflow.names import Remap, did_you_mean
+from graphflow.names import Remap, Resolver, did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
-_OPTIONS = ("-r", "--remap", "-p", "--param", "--log-level", "--ros-args", "--")
+logger = logging.getLogger("graphflow")
+
+_OPTIONS = ("-r", "--remap", "-p", "--param", "--params-file", "--log-level", "--ros-args", "--")
 
 
 @dataclass
@@ -26,15 +31,31 @@ class RosArgs:
     remaps: list[Remap] = field(default_factory=list)
     params: list[tuple[str | None, str, Any, str]] = field(default_factory=list)
     """(node or None for all, parameter, value, where it was written)."""
+    params_files: list[str] = field(default_factory=list)
     log_level: str = "info"
     rest: list[str] = field(default_factory=list)
     """Words that are not for ROS."""
 
     def params_for(self, cls: type[Node]) -> dict[str, tuple[Any, str]]:
-        """Values for a node of the class, by parameter."""
-        name = cls.interface().node_name
-        renamed = [r.replacement for r in self.remaps if r.match in ("__node", "__name")]
-        return {p: (v, source) for node, p, v, source in self.params if node in (None, name, *renamed)}
+        """Values for a node of the class, by parameter, each with where it was written.
+
+        Raises:
+            GraphFileError: A parameter file is wrong, or has nothing for this node.
+        """
+        interface = cls.interface()
+        full_name = Resolver(interface.node_name, "/", self.remaps).full_name
+        found: dict[str, tuple[Any, str]] = {}
+        for file in self.params_files:
+            sections = params_file.read(Path(file), file)
+            if not any(s.fits(full_name) for s in sections):
+                raise GraphFileError(params_file.strays(sections, [full_name]))
+            for name, setting in params_file.params_for(sections, full_name).items():
+                if not setting.is_optional or interface.param(name) is not None:
+                    found[name] = (setting.value, str(setting.place))
+                else:
+                    logger.warning("%s: %s has no parameter %r; it is left out", setting.place, full_name, name)
+        names = (None, interface.node_name, full_name.rpartition("/")[2])
+        return found | {p: (v, source) for node, p, v, source in self.params if node in names}
 
 
 def parse_ros_args(words: Sequence[str]) -> RosArgs:
@@ -52,14 +73,12 @@ def parse_ros_args(words: Sequence[str]) -> RosArgs:
             in_ros = True
         elif word == "--" and in_ros:
             in_ros = False
-        elif word in ("-r", "--remap", "-p", "--param", "--log-level"):
+        elif word in ("-r", "--remap", "-p", "--param", "--params-file", "--log-level"):
             if not todo:
                 raise GraphflowError(f"{word} needs a value after it, such as pose:=/turtle1/pose")
             _option(result, word, todo.pop(0))
         elif ":=" in word and not word.startswith("-"):
             _remap(result, word)
-        elif in_ros and word.lstrip("-") == "params-file":
-            raise GraphflowError(f"{word}: parameter files are not there yet; write -p name:=value for each parameter")
         elif in_ros:
             raise GraphflowError(f"{word!r} is no ROS argument{did_you_mean(word, _OPTIONS)}")
         else:
@@ -72,6 +91,8 @@ def _option(result: RosArgs, option: str, value: str) -> None:
         _remap(result, value)
     elif option == "--log-level":
         result.log_level = value
+    elif option == "--params-file":
+        result.params_files.append(value)
     else:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:

@@ -10,8 +10,8 @@ import inspect
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
 from graphflow.interface import Parameter, type_of
@@ -20,6 +20,7 @@ from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import expand
 from graphflow.qos import Qos
 from graphflow.runtime.clock import period_ns
+from graphflow.runtime.service_events import Introspection
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -147,7 +148,7 @@ class Publisher(Held, Generic[M]):
     @overload
     def __get__(self, node: Node, owner: type) -> TopicPublisher[M]: ...
     def __get__(self, node: Node | None, owner: type) -> Any:
-        return self if node is None else node._held[self.attribute]
+        return self if node is None else node.held(self.attribute)
 
     def bind(self, node: Node) -> TopicPublisher[M]:
         return node.create_publisher(self.type, self.name, self.qos, on_event=node.bound(self.on_event))
@@ -182,7 +183,7 @@ class Subscription(Held, Generic[M]):
     @overload
     def __get__(self, node: Node, owner: type) -> TopicSubscription[M]: ...
     def __get__(self, node: Node | None, owner: type) -> Any:
-        return self if node is None else node._held[self.attribute]
+        return self if node is None else node.held(self.attribute)
 
     def bind(self, node: Node) -> TopicSubscription[M]:
         on_event = node.bound(self.on_event)
@@ -192,23 +193,33 @@ class Subscription(Held, Generic[M]):
 
 
 class Client(Held, Generic[Request, Response]):
-    """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`."""
+    """A service the node calls: `await self.adder.call(AddTwoInts.Request(a=1, b=2))`.
 
-    def __init__(self, type: type[Service[Request, Response]], name: str) -> None:  # noqa: A002
+    Args:
+        introspection: What is published of each call on `name`/_service_event.
+    """
+
+    def __init__(
+        self,
+        type: type[Service[Request, Response]],  # noqa: A002
+        name: str,
+        *,
+        introspection: Introspection = "off",
+    ) -> None:
         self.place = _here()
         _check_type(type, Service, "Client", self.place)
         _check_name(name, "Client", self.place)
-        self.type, self.name = type, name
+        self.type, self.name, self.introspection = type, name, introspection
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
     @overload
     def __get__(self, node: Node, owner: type) -> ServiceClient[Request, Response]: ...
     def __get__(self, node: Node | None, owner: type) -> Any:
-        return self if node is None else node._held[self.attribute]
+        return self if node is None else node.held(self.attribute)
 
     def bind(self, node: Node) -> ServiceClient[Request, Response]:
-        return node.create_client(self.type, self.name)
+        return node.create_client(self.type, self.name, introspection=self.introspection)
 
 
 class Param(Held, Generic[V]):
@@ -220,6 +231,7 @@ class Param(Held, Generic[V]):
         doc: One sentence.
         ge, le, gt, lt: Limits: at least, at most, more than, less than.
         read_only: Settable only from outside and at the start.
+        step: Distance between allowed values, counted from `ge`, or from 0.
         name: If it is not that of the attribute.
     """
 
@@ -234,27 +246,28 @@ class Param(Held, Generic[V]):
         gt: float | None = None,
         lt: float | None = None,
         read_only: bool = False,
+        step: float = 0.0,
         name: str = "",
     ) -> None:
         self.place = _here()
         self._name = name
+        limits: dict[str, Any] = {"ge": ge, "le": le, "gt": gt, "lt": lt, "step": step}
         try:
             self.parameter = Parameter(
-                name or "unnamed", type_of(default), default, self.place, unit, doc, ge, le, gt, lt, read_only
+                name or "unnamed", type_of(default), default, self.place, unit, doc, read_only=read_only, **limits
             )
             self.parameter.fit(default)
-            if self.parameter.range_text() and self.parameter.type not in _NUMBERS:
+            if (self.parameter.range_text() or step) and self.parameter.type not in _NUMBERS:
                 raise ParameterError(f"limits are for numbers, and {default!r} is none")
+            if step < 0 or (step % 1 and self.parameter.type in ("int", "list[int]")):
+                raise ParameterError(f"a step of {step} cannot be")
         except GraphflowError as error:
             text = str(error).replace("parameter 'unnamed'", "the default")
             raise DeclarationError(f"{self.place}: {text}") from None
 
     def __set_name__(self, owner: type, name: str) -> None:
         super().__set_name__(owner, name)
-        p = self.parameter
-        self.parameter = Parameter(
-            self._name or name, p.type, p.default, p.place, p.unit, p.doc, p.ge, p.le, p.gt, p.lt, p.read_only
-        )
+        self.parameter = replace(self.parameter, name=self._name or name)
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -268,6 +281,22 @@ class Param(Held, Generic[V]):
 
     def bind(self, node: Node) -> Any:
         return node.parameters.declare(self.parameter)
+
+    def check(self, fn: F) -> F:
+        """Have the method called with each new value before it is set; a ValueError that it raises refuses the value.
+
+        rclpy's add_on_set_parameters_callback.
+        """
+        if inspect.iscoroutinefunction(fn):
+            raise DeclarationError(f"{_here()}: {fn.__name__}: a check decides at once; make it a `def`")
+        return _mark_hook(fn, "check", self, ("self", "value"), _here())
+
+    def on_change(self, fn: F) -> F:
+        """Have the method, `def` or `async def`, called with the old and the new value after each change.
+
+        rclpy's add_post_set_parameters_callback.
+        """
+        return _mark_hook(fn, "on_change", self, ("self", "old", "new"), _here())
 
 
 # What a node does: decorators leave a mark on the function and return it as it was.
@@ -287,6 +316,7 @@ class Handler:
     takes_info: bool = False
     ignore_local: bool = False
     on_event: Callable[..., Any] | None = None
+    introspection: Introspection = "off"
     rate: Rate | None = None
 
 
@@ -314,6 +344,32 @@ class Rate:
 
         period, hz = self._sources
         return period_ns(plain(period), plain(hz))
+
+
+HookKind = Literal["check", "on_change"]
+
+
+@dataclass(frozen=True)
+class ParamHook:
+    """A method that follows a parameter."""
+
+    kind: HookKind
+    param: Param[Any]
+    place: Place
+
+
+HOOK_MARK = "__graphflow_hook__"
+
+
+def _mark_hook(
+    fn: F, kind: Literal["check", "on_change"], param: Param[Any], words: tuple[str, ...], place: Place
+) -> F:
+    if not inspect.isfunction(fn):
+        raise DeclarationError(f"{place}: .{kind} goes on a method, not on {fn!r}")
+    if len(inspect.signature(fn).parameters) != len(words):
+        raise DeclarationError(f"{place}: {fn.__name__} must take ({', '.join(words)})")
+    setattr(fn, HOOK_MARK, ParamHook(kind, param, place))
+    return fn
 
 
 def _mark(fn: F, handler: Handler, arguments: range) -> F:
@@ -406,13 +462,18 @@ def service(
     *,
     group: Group | None = None,
     thread: bool = False,
+    introspection: Introspection = "off",
 ) -> Callable[[F], F]:
-    """Have the method answer a service: `async def add(self, request: X.Request) -> X.Response`."""
+    """Have the method answer a service: `async def add(self, request: X.Request) -> X.Response`.
+
+    Args:
+        introspection: What is published of each call on `name`/_service_event.
+    """
     place = _here()
     _check_type(type, Service, "@service", place)
     _check_name(name, "@service", place)
     _check_group(group, "@service", place)
-    handler = Handler("service", place, group, thread, type, name)
+    handler = Handler("service", place, group, thread, type, name, introspection=introspection)
     return lambda fn: _mark(fn, handler, range(2, 3))
 
 

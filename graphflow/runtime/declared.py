@@ -9,8 +9,19 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import DeclarationError, Place
-from graphflow.interface import Endpoint, Interface, Parameter
-from graphflow.runtime.declare import MARK, Client, Group, Handler, Held, Param, Publisher, Subscription
+from graphflow.interface import COMMON_PARAMETERS, Endpoint, Interface, Parameter
+from graphflow.runtime.declare import (
+    HOOK_MARK,
+    MARK,
+    Client,
+    Group,
+    Handler,
+    Held,
+    Param,
+    ParamHook,
+    Publisher,
+    Subscription,
+)
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -46,6 +57,18 @@ def handlers(cls: type) -> dict[str, Handler]:
     for attribute, value in _members(cls):
         mark = getattr(value, MARK, None)
         if isinstance(mark, Handler):
+            found[attribute] = mark
+        elif attribute in found and not inspect.isfunction(value):
+            del found[attribute]
+    return found
+
+
+def param_hooks(cls: type) -> dict[str, ParamHook]:
+    """The checks and followers of parameters by method name; overriding works as with handlers."""
+    found: dict[str, ParamHook] = {}
+    for attribute, value in _members(cls):
+        mark = getattr(value, HOOK_MARK, None)
+        if isinstance(mark, ParamHook):
             found[attribute] = mark
         elif attribute in found and not inspect.isfunction(value):
             del found[attribute]
@@ -104,6 +127,10 @@ def interface_of(cls: type[Node]) -> Interface:
     for attribute, declared in held(cls).items():
         if isinstance(declared, Param):
             p = declared.parameter
+            if p.name in COMMON_PARAMETERS:
+                raise DeclarationError(
+                    f"{p.place}: every node has the parameter {p.name!r}; give this one another name"
+                )
             if p.name in params:
                 raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
             params[p.name] = p

@@ -57,7 +57,7 @@ class Endpoint(ABC):
     def open(self) -> None:
         """Declare it on the network and announce it. Done by the node."""
         context, node = self.node.context, self.node
-        there = [e for e in context.cache if e.name == self.name]
+        there = context.cache.named(self.name)
         self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
         self.entity = Entity(
             context.domain,
@@ -98,6 +98,18 @@ class Endpoint(ABC):
         self.matched.clear()
         self.entity = None
         self.node.forget(self)
+
+    def clock_changed(self) -> None:  # noqa: B027 - most endpoints go by no clock
+        """The node goes by another clock."""
+
+    async def wait_matched(self, count: int = 1) -> None:
+        """Wait until `count` counterparts are reached: for a publisher, so many subscriptions.
+
+        Raises:
+            ClosedError: The node is not running.
+        """
+        self._announced()
+        await self.node.context.wait_for(lambda: len(self.matched) >= count)
 
     def event_total(self, kind: QosEventKind) -> int:
         """How often a kind of event has happened since the start."""

@@ -71,6 +71,14 @@ class Watchdog:
             self._alarm.cancel()
             self._alarm = None
 
+    def move(self, clock: Clock) -> None:
+        """Go by another clock; a period under way begins anew."""
+        was_running = self.is_running
+        self.stop()
+        self._clock = clock
+        if was_running:
+            self.start()
+
     def _arm(self) -> None:
         self._alarm = self._clock.call_at(self._last_ns + self._period_ns, self._look)
 

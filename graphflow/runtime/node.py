@@ -7,6 +7,8 @@ import inspect
 from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
+from contextlib import AbstractAsyncContextManager, AbstractContextManager, AsyncExitStack
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, ClassVar, Protocol, TypeVar
@@ -14,19 +16,27 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
 from graphflow.interface import Interface, may_make
 from graphflow.machines.group import GroupState
+from graphflow.msgs import registry
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import Remap, Resolver, did_you_mean
-from graphflow.qos import PARAMETERS, SERVICES, Qos
+from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare, declared
+from graphflow.runtime.binding import Binding
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
+from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
-from graphflow.runtime.params import Parameters, ParameterServices
+from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
+from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
+from graphflow.runtime.params import Change, Parameters
 from graphflow.runtime.rosout import Rosout, node_logger
 from graphflow.runtime.scheduler import Finished, Runner
+from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceClient, ServiceServer
+from graphflow.runtime.sim_time import SimClock
 from graphflow.runtime.timer import Timer, TimerInfo
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
+from graphflow.times import NANOSECONDS
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -56,7 +66,8 @@ class Node:
         namespace: Where it lives: `/` or `/robot1`.
         remap: Rules, first match wins; as objects or as text `from:=to`.
         overrides: Parameter values from outside with where they were written, for graph files and command lines.
-        start_parameter_services, enable_rosout: False for a tool that nobody sets parameters of or reads the log of.
+        start_parameter_services, enable_rosout, enable_logger_service: False for a tool that nobody sets parameters
+            of, reads the log of, or asks to say more.
         **params: Parameter values by name.
 
     Raises:
@@ -84,6 +95,7 @@ class Node:
         overrides: Mapping[str, tuple[Any, str]] | None = None,
         start_parameter_services: bool = True,
         enable_rosout: bool = True,
+        enable_logger_service: bool = True,
         **params: Any,
     ) -> None:
         rules = [r if isinstance(r, Remap) else Remap.parse(r) for r in remap]
@@ -95,16 +107,23 @@ class Node:
         """The node's logger; what it says goes to the console and to /rosout."""
         self.parameters = Parameters({**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}})
         self._context: Context | None = None
-        self._held: dict[str, Any] = {}
+        self._binding = Binding(self)
         self._openables: list[_Openable] = []
+        self._late: list[_Openable] | None = []
+        """What is opened once `on_start` has returned; None from then on."""
+        self._entered = AsyncExitStack()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._ended: asyncio.Future[None] | None = None
         self._token: Any = None
+        self._own_services: set[str] = set()
         self._rosout: Rosout | None = None
+        self._parameter_events: ParameterEvents | None = None
+        self._sim_clock: tuple[SimClock, TopicSubscription[Any]] | None = None
         self._groups: dict[declare.Group, GroupState[Runner]] = {}
-        self._handler_timers: list[tuple[declare.Rate, Timer]] = []
         self._made = True
-        self._bind_declarations(start_parameter_services, enable_rosout)
+        self._bind_declarations(
+            parameter_services=start_parameter_services, rosout=enable_rosout, logger_service=enable_logger_service
+        )
 
     @classmethod
     def interface(cls) -> Interface:
@@ -149,7 +168,8 @@ class Node:
 
     @property
     def clock(self) -> Clock:
-        return self.context.clock
+        """The clock that its timers, sleeps and deadlines go by: simulated time when `use_sim_time` is true."""
+        return self.context.clock if self._sim_clock is None else self._sim_clock[0]
 
     @property
     def is_running(self) -> bool:
@@ -189,7 +209,8 @@ class Node:
         label = _label(callback, f"subscription {name}")
         resolved = self.names.resolve(name)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
-        return self._add(TopicSubscription(self, type_, resolved, Qos.of(qos), call, label, slot, **options))
+        made = TopicSubscription(self, type_, resolved, Qos.of(qos), call, label, slot, **options)
+        return self._add(made, late=callback is not None)
 
     def create_service(
         self,
@@ -200,18 +221,33 @@ class Node:
         qos: Qos | int = SERVICES,
         group: declare.Group | None = None,
         thread: bool = False,
+        introspection: Introspection = "off",
     ) -> ServiceServer[Request, Response]:
-        """A service on `name`, remapped; `callback` takes the request and returns the response."""
+        """A service on `name`, remapped; `callback` takes the request and returns the response.
+
+        Args:
+            introspection: What is published of each call on `name`/_service_event: nothing, its metadata, or
+                request and response too.
+        """
         resolved = self.names.resolve(name, "service")
         call = self._in_thread(callback) if thread else callback
         label = _label(callback, f"service {name}")
-        return self._add(ServiceServer(self, type_, resolved, Qos.of(qos), call, label, self._slots(group)))
+        made = ServiceServer(self, type_, resolved, Qos.of(qos), call, label, self._slots(group))
+        made.configure_introspection(introspection)
+        return self._add(made, late=True)
 
     def create_client(
-        self, type_: type[Service[Request, Response]], name: str, *, qos: Qos | int = SERVICES
+        self,
+        type_: type[Service[Request, Response]],
+        name: str,
+        *,
+        qos: Qos | int = SERVICES,
+        introspection: Introspection = "off",
     ) -> ServiceClient[Request, Response]:
-        """A client of the service `name`, remapped."""
-        return self._add(ServiceClient(self, type_, self.names.resolve(name, "service"), Qos.of(qos)))
+        """A client of the service `name`, remapped; `introspection` as for `create_service`."""
+        made = ServiceClient(self, type_, self.names.resolve(name, "service"), Qos.of(qos))
+        made.configure_introspection(introspection)
+        return self._add(made)
 
     def create_timer(
         self,
@@ -233,15 +269,27 @@ class Node:
         def run(info: TimerInfo) -> Any:
             return call(info) if takes_info else call()
 
-        return self._add(Timer(self, nanoseconds, run, _label(callback, "timer"), self._slots(group)))
+        return self._add(Timer(self, nanoseconds, run, _label(callback, "timer"), self._slots(group)), late=True)
 
-    def declare_parameter(self, name: str, default: Any, **limits: Any) -> Any:
+    def declare_parameter(self, name: str, default: Any, *, dynamic: bool = False, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
+
+        Args:
+            dynamic: Let it take values of every type, and be deleted.
 
         Raises:
             ParameterError: It exists, or the value given from outside does not fit.
         """
-        return self.parameters.declare(declare.Param(default, name=name, **limits).parameter)
+        parameter = declare.Param(default, name=name, **limits).parameter
+        return self.parameters.declare(replace(parameter, dynamic=dynamic))
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Take away a parameter that `declare_parameter` has made.
+
+        Raises:
+            ParameterError: There is none of that name, or it is read-only.
+        """
+        self.parameters.undeclare(name)
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
         """Run `fn(*args)` in a worker thread, for work that would hold the loop. It cannot be cancelled."""
@@ -268,6 +316,21 @@ class Node:
         if unused:
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
 
+    async def on_start(self) -> None:
+        """For subclasses: prepare. Publishers and clients work; no handler, timer or task runs before it returns.
+
+        An error in it ends the node.
+        """
+
+    async def on_shutdown(self) -> None:
+        """For subclasses: say goodbye. Handlers and tasks have ended; publishers and clients still work."""
+
+    async def enter(self, manager: AbstractAsyncContextManager[T] | AbstractContextManager[T]) -> T:
+        """Enter a context manager that is left when the node stops, in reverse order, after `on_shutdown`."""
+        if isinstance(manager, AbstractAsyncContextManager):
+            return await self._entered.enter_async_context(manager)
+        return self._entered.enter_context(manager)
+
     async def start(self, context: Context) -> None:
         """Go on the network: open what is declared, announce it, start timers and tasks.
 
@@ -285,8 +348,14 @@ class Node:
         try:
             node = Entity(context.domain, context.session.zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
             self._token = context.session.announce(node.token)
-            timers = [o for o in self._openables if isinstance(o, Timer)]
-            for openable in [o for o in self._openables if not isinstance(o, Timer)] + timers:
+            assert self._late is not None
+            for openable in [o for o in self._openables if o not in self._late]:
+                openable.open()
+            if self.parameters.get("use_sim_time"):
+                self._follow_sim_time()
+            await self.on_start()
+            late, self._late = self._late, None
+            for openable in sorted(late, key=lambda o: isinstance(o, Timer)):
                 openable.open()
         except BaseException:  # a cancellation too: nothing stays open
             await self.stop()
@@ -298,8 +367,7 @@ class Node:
 
     def warn_unused_remaps(self) -> None:
         """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""
-        own = {f"~/{name}" for name, _, _ in ParameterServices(self.parameters).handlers()}
-        known = {r.given for r in self.names.derivations.values()} - own
+        known = {r.given for r in self.names.derivations.values()} - self._own_services
         for rule in self.names.unused():
             if may_make(self.dynamic_names, self.names.full(rule.match)):
                 continue
@@ -339,6 +407,8 @@ class Node:
             runner: Runner | None = getattr(openable, "runner", None)
             if runner is not None:
                 ending[runner.cancel()] = runner.name
+        for runner in self._binding.stop():
+            ending[runner.cancel()] = runner.name
         for task in self._tasks - {asyncio.current_task()}:
             task.cancel()
             ending[task] = task.get_name()
@@ -348,6 +418,9 @@ class Node:
                 if stuck:
                     names = ", ".join(ending[future] for future in stuck)
                     self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
+            if self._late is None:
+                await self._limited("on_shutdown", self.on_shutdown)
+            await self._limited("leaving what was entered", self._entered.aclose)
         finally:
             # Also when this wait is cancelled: nothing stays open.
             if self._rosout is not None:
@@ -360,6 +433,16 @@ class Node:
             if self._ended is not None and not self._ended.done():
                 self._ended.cancel()
             self._context = None
+
+    async def _limited(self, what: str, work: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        """A part of stopping: it may fail or take too long, and the rest is done all the same."""
+        try:
+            async with asyncio.timeout(STOP_LIMIT):
+                await work()
+        except TimeoutError:
+            self.log.warning("%s has taken more than %.0f s and was cancelled", what, STOP_LIMIT)
+        except Exception as error:
+            self.report_error(what, error)
 
     def handler_failed(self, label: str, error: BaseException) -> None:
         """Report an error of a timer or subscription; the node goes on."""
@@ -396,10 +479,19 @@ class Node:
         """Take an endpoint that was closed off the list."""
         if openable in self._openables:
             self._openables.remove(openable)
+        if self._late and openable in self._late:
+            self._late.remove(openable)
 
-    def _add(self, openable: E) -> E:
+    def held(self, attribute: str) -> Any:
+        """What a declaration of the class has become."""
+        return self._binding.held[attribute]
+
+    def _add(self, openable: E, *, late: bool = False) -> E:
+        """Take in an endpoint or timer, and open it if the time has come: `late` ones wait for `on_start`."""
         self._openables.append(openable)
-        if self._context is not None:
+        if late and self._late is not None:
+            self._late.append(openable)
+        elif self._context is not None:
             openable.open()
         return openable
 
@@ -418,63 +510,59 @@ class Node:
 
         return run
 
-    def _bind_declarations(self, parameter_services: bool, rosout: bool) -> None:
-        cls = type(self)
-        held = declared.held(cls)
-        # Parameters first: names and periods of the others may come from them.
-        for attribute, item in held.items():
-            if isinstance(item, declare.Param):
-                self._held[attribute] = item.bind(self)
-        self.parameters.check(self._check_rates)
-        self.parameters.observe(self._parameter_changed)
+    def _bind_declarations(self, *, parameter_services: bool, rosout: bool, logger_service: bool) -> None:
+        self._binding.bind_parameters()
+        self.parameters.observe(self._parameters_changed)
         if rosout:
             self._rosout = self._add(Rosout(self))
         if parameter_services:
-            self._open_parameter_services()
-        for attribute, item in held.items():
-            if not isinstance(item, declare.Param):
-                self._held[attribute] = item.bind(self)
-        for attribute, handler in declared.handlers(cls).items():
-            self._bind_handler(getattr(self, attribute), handler)
+            for name, type_name, callback in ParameterServices(self.parameters).handlers():
+                self._serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
+            self._parameter_events = self._add(ParameterEvents(self))
+            if self.parameters.get("start_type_description_service"):
+                descriptions = TypeDescriptions(lambda: [o for o in self._openables if isinstance(o, Endpoint)])
+                type_name = "type_description_interfaces/srv/GetTypeDescription"
+                self._serve("get_type_description", type_name, descriptions.get, SERVICES)
+        if logger_service:
+            levels = LoggerLevels(self)
+            self._serve("get_logger_levels", "rcl_interfaces/srv/GetLoggerLevels", levels.get, SERVICES)
+            self._serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
+        self._binding.bind()
 
-    def _bind_handler(self, method: Callable[..., Any], handler: declare.Handler) -> None:
-        options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
-        if handler.kind == "subscription":
-            options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
-            options["on_event"] = self.bound(handler.on_event)
-            self.create_subscription(handler.type, handler.name, method, handler.qos, **options)
-        elif handler.kind == "service":
-            self.create_service(handler.type, handler.name, method, **options)
-        elif handler.rate is not None:
-            period = self._period_ns(handler.rate, {}) / 1e9
-            timer = self.create_timer(period, method, takes_info=handler.takes_info, **options)
-            self._handler_timers.append((handler.rate, timer))
+    def _serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
+        """One of the services that every node has; they are there before `on_start` runs."""
+        type_: Any = registry.interface_class(type_name)
+        self._own_services.add(f"~/{name}")
+        self._add(ServiceServer(self, type_, self.names.resolve(f"~/{name}", "service"), qos, callback, name))
 
-    def _period_ns(self, rate: declare.Rate, changes: Mapping[str, Any]) -> int:
-        values = {name: changes[name] if name in changes else self.parameters.get(name) for name in rate.parameters()}
-        try:
-            return rate.period_ns(values)
-        except ValueError as error:
-            given = ", ".join(f"{name!r} = {value!r}" for name, value in values.items())
-            raise ParameterError(f"parameter {given}: {error}") from None
+    def _parameters_changed(self, changes: Mapping[str, Change]) -> None:
+        if self._context is None:
+            return
+        if "use_sim_time" in changes:
+            self._follow_sim_time()
+        if self._parameter_events is not None:
+            self._parameter_events.tell(changes)
 
-    def _check_rates(self, changes: Mapping[str, Any]) -> None:
-        for rate, _ in self._handler_timers:
-            if changes.keys() & rate.parameters():
-                self._period_ns(rate, changes)
+    def _follow_sim_time(self) -> None:
+        """Go by /clock, or by the context's clock, as the parameter `use_sim_time` says."""
+        former, wanted = self._sim_clock, self.parameters.get("use_sim_time")
+        if wanted and former is None:
+            from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
 
-    def _parameter_changed(self, name: str, value: Any) -> None:
-        for rate, timer in self._handler_timers:
-            if name in rate.parameters():
-                timer.period = self._period_ns(rate, {}) / 1e9
+            clock, topic = SimClock(self.context.loop), self.names.resolve("/clock")
 
-    def _open_parameter_services(self) -> None:
-        from graphflow.msgs.registry import interface_class
+            def told(message: ClockMessage) -> None:
+                clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
 
-        for name, type_name, callback in ParameterServices(self.parameters).handlers():
-            type_: Any = interface_class(f"rcl_interfaces/srv/{type_name}")
-            resolved = self.names.resolve(f"~/{name}", "service")
-            self._add(ServiceServer(self, type_, resolved, PARAMETERS, callback, name))
+            heard = TopicSubscription(self, ClockMessage, topic, CLOCK, told)
+            self._sim_clock = (clock, self._add(heard))
+        elif not wanted and former is not None:
+            self._sim_clock = None
+            former[1].close()
+            former[0].retire(self.clock)
+        for openable in list(self._openables):
+            if isinstance(openable, (Endpoint, Timer)):
+                openable.clock_changed()
 
     def _task_done(self, task: asyncio.Task[Any]) -> None:
         self._tasks.discard(task)
@@ -491,7 +579,8 @@ class Node:
 
 _TAKEN = frozenset(dir(Node)) | {
     *("id", "names", "log", "parameters", "failure", "failure_taken"),
-    *("_context", "_ended", "_groups", "_handler_timers", "_held", "_openables", "_rosout", "_tasks", "_token"),
+    *("_binding", "_context", "_ended", "_entered", "_groups", "_late", "_openables", "_parameter_events"),
+    *("_own_services", "_rosout", "_sim_clock", "_tasks", "_token"),
 }
 """Attributes that no declaration may hide."""
 

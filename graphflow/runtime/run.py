@@ -65,12 +65,14 @@ async def serve(
         Exception: What ended a node.
     """
     async with AsyncExitStack() as stack:
+        asked = asyncio.create_task(stop.wait())
+        stack.callback(asked.cancel)
         for node in nodes:
-            await node.start(context)
             stack.push_async_callback(node.stop, withdraw=False)
+            if not await _start(node, context, asked):
+                return
             if ready is not None:
                 ready(node)
-        asked = asyncio.create_task(stop.wait())
         left = {asked, *(asyncio.create_task(node.wait_ended()) for node in nodes)}
         for task in left:
             stack.callback(task.cancel)
@@ -78,6 +80,20 @@ async def serve(
             done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
                 task.result()
+
+
+async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> bool:
+    """Start a node; False when it was asked to stop before it was ready."""
+    starting = asyncio.create_task(node.start(context))
+    try:
+        await asyncio.wait({starting, asked}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        starting.cancel()  # has no effect on one that is done
+    await asyncio.wait({starting})
+    if starting.cancelled():
+        return False
+    starting.result()
+    return True
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from asyncio import CancelledError, Future
 from collections.abc import Callable
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import (
@@ -21,13 +22,14 @@ from graphflow.machines.group import GroupState
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.names import did_you_mean
-from graphflow.qos import Qos
+from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.scheduler import Runner
+from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller, Inbox
 from graphflow.wire import attachment
-from graphflow.wire.liveliness import Kind
+from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -69,12 +71,18 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self.refused = 0
         """Requests answered with ServerBusy because too many were waiting."""
         self._inbox: Inbox | None = None
+        self._service_events = ServiceEvents(node, type_, name)
+
+    def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
+        """Publish what passes on `<service>/_service_event`: nothing, its metadata, or its contents too."""
+        self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def _open(self, key: str) -> None:
         session = self.node.context.session
         self._inbox = Inbox(session.bell, None, self._arrived)
         self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
         self._declared.append(session.open_server(key, self._inbox))
+        self._service_events.open()
 
     def _arrived(self) -> None:
         assert self._inbox is not None
@@ -86,8 +94,10 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             self._inbox.items.pop().reply_error(RemoteError(ServerBusy.__name__, busy).to_payload())
 
     def _invoke(self, request: Any) -> Any:
-        attachment.unpack(request.attachment or b"")
-        return self._callback(self._decode(request.payload))
+        asked = attachment.unpack(request.attachment or b"")
+        message = self._decode(request.payload)
+        self._service_events.tell(ServiceEvent.REQUEST_RECEIVED, asked.gid, asked.sequence, request=message)
+        return self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
         if error is None:
@@ -112,8 +122,10 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         asked = attachment.unpack(request.attachment)
         now = self.node.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
+        self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
 
     def close(self) -> None:
+        self._service_events.close()
         if self.runner is not None:
             self.runner.cancel()
         while self._inbox is not None and self._inbox.items:
@@ -134,20 +146,25 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._encode = registry.codec(service.request.name).encode
         self._decode = registry.codec(service.response.name).decode
         self._sequence = 0
+        self._service_events = ServiceEvents(node, type_, name)
         self._caller: Caller | None = None
         self._pending: set[Future[Answer]] = set()
+        self._waiting: set[Future[None]] = set()
 
     def _open(self, key: str) -> None:
-        self._caller = self.node.context.session.open_caller(key)
+        self._caller = self.node.context.session.open_caller(key, self._look_ready)
         self._declared.append(self._caller)
+        self._service_events.open()
+
+    def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
+        """As `ServiceServer.configure_introspection`."""
+        self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def service_is_ready(self) -> bool:
         """Whether a server of this name and type is in the graph and can be reached."""
-        return self._server_announced() and self._caller is not None and self._caller.has_server()
-
-    def _server_announced(self) -> bool:
-        key = self._announced().data_key
-        return any(e.data_key == key for e in self.node.context.cache.endpoints(Kind.SERVICE, self.name))
+        self._announced()
+        # A token may come before what it announces: only both together make sure of the first call.
+        return bool(self.matched) and self._caller is not None and self._caller.has_server
 
     async def wait_ready(self, timeout: float | None = None) -> None:
         """Wait until there is a server.
@@ -157,16 +174,28 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
 
         Raises:
             ServiceUnavailable: None came in time.
+            ClosedError: The node is not running, or stopped meanwhile.
         """
-        wait = self.node.context.wait_for(self._server_announced)
-        if timeout is None:
-            await wait
+        if self.service_is_ready():
             return
+        future: Future[None] = self.node.context.loop.create_future()
+        self._waiting.add(future)
         try:
-            async with self.node.clock.timeout(timeout):
-                await wait
+            async with self.node.clock.timeout(timeout) if timeout is not None else nullcontext():
+                await future
         except TimeoutError:
             raise ServiceUnavailable(self._nobody()) from None
+        finally:
+            self._waiting.discard(future)
+
+    def _look_ready(self) -> None:
+        if self._waiting and self.entity is not None and self.service_is_ready():
+            for future in self._waiting:
+                if not future.done():
+                    future.set_result(None)
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        self._look_ready()
 
     def _nobody(self) -> str:
         services = self.node.context.cache.services()
@@ -196,17 +225,23 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
         payload = self._encode(request)
         started = self.node.clock.monotonic_ns()
-        if not self._server_announced():
+        if not self._reaches_server():
             await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
-        answer = await self._ask(payload, None if timeout is None else started + to_ns(timeout), timeout)
+        self._sequence += 1
+        sequence, gid = self._sequence, self._announced().gid
+        self._service_events.tell(ServiceEvent.REQUEST_SENT, gid, sequence, request=request)
+        answer = await self._ask(sequence, payload, None if timeout is None else started + to_ns(timeout), timeout)
         message: Response = self._decode(answer.payload)
+        self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
         return message
 
-    async def _ask(self, payload: bytes, deadline_ns: int | None, timeout: float | None) -> Answer:
+    def _reaches_server(self) -> bool:
+        self._announced()
+        return self._caller is not None and self._caller.has_server
+
+    async def _ask(self, sequence: int, payload: bytes, deadline_ns: int | None, timeout: float | None) -> Answer:
         entity, caller = self._announced(), self._caller
         assert caller is not None
-        self._sequence += 1
-        sequence = self._sequence
         future: Future[Answer] = self.node.context.loop.create_future()
 
         def answered(answer: Answer | None) -> None:
@@ -239,7 +274,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
 
     def close(self) -> None:
         """Withdraw it. Calls that are waiting end with ClosedError."""
-        for future in self._pending:
+        self._service_events.close()
+        waiting: list[Future[Any]] = [*self._pending, *self._waiting]
+        for future in waiting:
             if not future.done():
                 future.set_exception(ClosedError(f"the client of {self.name} was closed while a call waited"))
         super().close()

@@ -76,6 +76,11 @@ class Timer:
         """Begin anew: the next run is one period from now."""
         self._arm(self.node.clock.monotonic_ns() + self._period_ns)
 
+    def clock_changed(self) -> None:
+        """The node goes by another clock: begin anew on it, if the timer runs."""
+        if self._handle is not None:
+            self.reset()
+
     def _arm(self, when_ns: int) -> None:
         if self.runner is None or self.runner.closed:
             return

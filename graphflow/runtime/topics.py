@@ -63,6 +63,11 @@ class TopicPublisher(Endpoint, Generic[M]):
         dog.start()
         return dog
 
+    @property
+    def is_wanted(self) -> bool:
+        """Whether a message published now would reach anybody, or be kept: look before you make a big one."""
+        return self._sender.is_wanted
+
     def publish(self, message: M) -> None:
         """Send a message. Never waits: a subscriber that cannot keep up loses messages.
 
@@ -98,6 +103,11 @@ class TopicPublisher(Endpoint, Generic[M]):
         if self._lease is not None and self._alive is not None:
             self._lease.touch()
             self._alive.put(b"", b"")
+
+    def clock_changed(self) -> None:
+        for dog in (self._deadline, self._lease):
+            if dog is not None:
+                dog.move(self.node.clock)
 
     def get_subscription_count(self) -> int:
         """Subscriptions in the graph that get these messages."""
@@ -230,6 +240,12 @@ class TopicSubscription(Endpoint, Generic[M]):
     def lost(self) -> int:
         """Messages that never arrived, told by gaps in the publishers' sequence numbers."""
         return self.event_total("message_lost")
+
+    def clock_changed(self) -> None:
+        leases = [source.lease for source in self._sources.values()]
+        for dog in (self._deadline, *leases):
+            if dog is not None:
+                dog.move(self.node.clock)
 
     def get_publisher_count(self) -> int:
         """Publishers in the graph whose messages arrive here."""

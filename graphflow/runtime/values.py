@@ -33,7 +33,7 @@ def to_message(value: Any, type_: int) -> rcl.ParameterValue:
     """
     from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
-    return ParameterValue(type=type_, **{VALUE_FIELDS[type_]: value})
+    return ParameterValue(type=type_, **{VALUE_FIELDS[type_]: value}) if type_ else ParameterValue()
 
 
 def from_message(message: rcl.ParameterValue) -> Any:

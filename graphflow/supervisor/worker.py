@@ -37,7 +37,12 @@ def make_node(planned: PlannedNode) -> Node:
     """
     cls = import_class(planned.class_path)
     names = resolver(planned)
-    overrides = {name: (setting.value, str(setting.place)) for name, setting in planned.params.items()}
+    has = cls.interface().param
+    overrides = {
+        name: (setting.value, str(setting.place))
+        for name, setting in planned.params.items()
+        if not setting.is_optional or has(name) is not None
+    }
     node = cls(names.name, namespace=names.namespace, remap=[r.remap() for r in planned.remaps], overrides=overrides)
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")

@@ -52,6 +52,7 @@ class Caller(Closable, Protocol):
             A function that gives the request up; no answer comes after it.
         """
 
+    @property
     def has_server(self) -> bool:
         """Whether the network knows a server that this caller would reach."""
 
@@ -108,7 +109,10 @@ class Session(Protocol):
     def open_server(self, key: str, inbox: Inbox) -> Closable:
         """Put every request on `key` into `inbox`, as `Request`s."""
 
-    def open_caller(self, key: str) -> Caller: ...
+    def open_caller(self, key: str, changed: Callable[[], None]) -> Caller:
+        """Args:
+        changed: Called on the loop when `has_server` has changed.
+        """
 
     def announce(self, token: str) -> Closable:
         """Show a liveliness token for as long as this process lives and the result is not closed."""

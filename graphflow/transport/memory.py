@@ -40,6 +40,7 @@ class Network:
         self.senders: dict[str, list[_Sender]] = {}
         self.receivers: dict[str, list[_Receiver]] = {}
         self.servers: dict[str, list[Inbox]] = {}
+        self.callers: dict[str, list[_Caller]] = {}
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
@@ -124,8 +125,14 @@ class _Call:
 
 
 class _Caller:
-    def __init__(self, network: Network, loop: AbstractEventLoop, key: str) -> None:
+    def __init__(self, network: Network, loop: AbstractEventLoop, key: str, changed: Callable[[], None]) -> None:
         self._network, self._loop, self._key = network, loop, key
+        self._changed = changed
+        network.callers.setdefault(key, []).append(self)
+
+    def servers_changed(self) -> None:
+        if not self._loop.is_closed():
+            self._loop.call_soon(self._changed)
 
     def call(
         self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
@@ -138,11 +145,13 @@ class _Caller:
             inbox.put(_Request(bytes(payload), attachment, call))
         return call.give_up
 
+    @property
     def has_server(self) -> bool:
         return bool(self._network.servers.get(self._key))
 
     def close(self) -> None:
-        """Nothing is held."""
+        if self in self._network.callers.get(self._key, ()):
+            self._network.callers[self._key].remove(self)
 
 
 class MemorySession:
@@ -169,10 +178,24 @@ class MemorySession:
         return self._list(self._network.receivers.setdefault(key, []), receiver)
 
     def open_server(self, key: str, inbox: Inbox) -> _Declared:
-        return self._list(self._network.servers.setdefault(key, []), inbox)
+        servers = self._network.servers.setdefault(key, [])
+        servers.append(inbox)
+        self._tell_callers(key)
 
-    def open_caller(self, key: str) -> _Caller:
-        return _Caller(self._network, self._loop, key)
+        def withdraw() -> None:
+            servers.remove(inbox)
+            self._tell_callers(key)
+
+        return self._keep(_Declared(withdraw))
+
+    def _tell_callers(self, key: str) -> None:
+        for caller in self._network.callers.get(key, ()):
+            caller.servers_changed()
+
+    def open_caller(self, key: str, changed: Callable[[], None]) -> _Caller:
+        caller = _Caller(self._network, self._loop, key, changed)
+        self._keep(_Declared(caller.close))
+        return caller
 
     def announce(self, token: str) -> _Declared:
         self._network.tokens[token] = None

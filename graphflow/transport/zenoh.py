@@ -109,9 +109,18 @@ class _ZenohRequest:
 
 
 class _ZenohCaller(_Declared):
-    def __init__(self, querier: zenoh.Querier, bell: Bell) -> None:
-        super().__init__(querier)
+    def __init__(self, querier: zenoh.Querier, bell: Bell, changed: Callable[[], None]) -> None:
+        def deliver() -> None:
+            while inbox.items:
+                self.has_server = inbox.items.popleft().matching
+            changed()
+
+        inbox = Inbox(bell, None, deliver)
+        listener = querier.declare_matching_listener(Callback(inbox.put, indirect=False))
+        super().__init__(listener, querier)
         self._querier, self._bell = querier, bell
+        # What the listener tells comes later than this, and in order.
+        self.has_server: bool = querier.matching_status.matching  # type: ignore[attr-defined]
 
     def call(
         self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
@@ -138,9 +147,6 @@ class _ZenohCaller(_Declared):
             token.cancel()  # type: ignore[no-untyped-call]
 
         return give_up
-
-    def has_server(self) -> bool:
-        return bool(getattr(self._querier.matching_status, "matching", self._querier.matching_status))
 
 
 def _answer(reply: zenoh.Reply) -> Answer:
@@ -216,14 +222,14 @@ class ZenohSession:
 
         return _Declared(self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
 
-    def open_caller(self, key: str) -> _ZenohCaller:
+    def open_caller(self, key: str, changed: Callable[[], None]) -> _ZenohCaller:
         querier = self.raw.declare_querier(
             key,
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
             timeout=QUERY_LIMIT_MS / 1000,
         )
-        return _ZenohCaller(querier, self.bell)
+        return _ZenohCaller(querier, self.bell, changed)
 
     def announce(self, token: str) -> _Declared:
         return _Declared(self.raw.liveliness().declare_token(token))

@@ -43,6 +43,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from graphflow.errors import GraphFileError
+from graphflow.graph import params_file
 from graphflow.graph.check import check
 from graphflow.graph.resolve import load
 from graphflow.graph.source import read
@@ -233,6 +234,9 @@ def test_yaml(page: Path, project: Path) -> None:
     for block in blocks(page, "yaml"):
         if "fragment" in block.options:
             read(block.text, str(block))
+            continue
+        if block.options.get("file", "").startswith("params/"):
+            assert params_file.read(project / block.options["file"], str(block))
             continue
         if "file" in block.options and (PROJECT / block.options["file"]).exists():
             text = (PROJECT / block.options["file"]).read_text(encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
 import pytest
 
@@ -47,9 +48,13 @@ async def test_domains_do_not_see_each_other(graph: Graph) -> None:
     await other.close()
 
 
+BARE: dict[str, Any] = {"start_parameter_services": False, "enable_rosout": False, "enable_logger_service": False}
+"""A node that is a token and nothing else."""
+
+
 async def test_listeners_hear_of_changes(graph: Graph) -> None:
     """Each entity that comes or goes, until they stop listening."""
-    watcher, node = Node("watcher"), Node("n", start_parameter_services=False, enable_rosout=False)
+    watcher, node = Node("watcher"), Node("n", **BARE)
     await graph.start(watcher)
     changes: list[Change] = []
     stop = watcher.context.on_change(changes.append)

@@ -53,17 +53,17 @@ async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | No
     class Crowd(Node):
         group = Group(limit)
 
-        async def enter(self) -> None:
+        async def go_in(self) -> None:
             peak[self.name] = peak.get(self.name, 0) + 1
             await gate.wait()
 
         @subscription(String, "x", group=group)
         async def first(self, _: String) -> None:
-            await self.enter()
+            await self.go_in()
 
         @subscription(String, "x", group=group)
         async def second(self, _: String) -> None:
-            await self.enter()
+            await self.go_in()
 
     await graph.start(Crowd("one"), Crowd("two"))
     for _ in range(2):

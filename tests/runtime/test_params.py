@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from graphflow import Node, Param, ParameterError, RemoteError, timer
+from graphflow import DeclarationError, Node, Param, ParameterError, RemoteError, timer
 from graphflow.errors import Place
 from graphflow.interface import Parameter, ParamType
 from graphflow.msgs.rcl_interfaces.msg import Parameter as ParameterMessage
-from graphflow.msgs.rcl_interfaces.msg import ParameterType, ParameterValue
+from graphflow.msgs.rcl_interfaces.msg import ParameterEvent, ParameterType, ParameterValue
 from graphflow.msgs.rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
@@ -20,7 +20,8 @@ from graphflow.msgs.rcl_interfaces.srv import (
     SetParameters,
     SetParametersAtomically,
 )
-from graphflow.runtime.params import Parameters, to_descriptor
+from graphflow.runtime.parameter_services import to_descriptor
+from graphflow.runtime.params import Parameters
 from graphflow.testing import Graph
 
 HERE = Place("here", 1)
@@ -92,7 +93,12 @@ def test_values_that_fit(type_: ParamType, default: Any, given: Any, kept: Any) 
         ("float", 1.0, True, "parameter 'p' is of type double, True is not"),
         ("bool", True, 1, "parameter 'p' is of type boolean, 1 is not"),
         ("str", "", 1, "parameter 'p' is of type string, 1 is not"),
-        ("str", "", None, "parameter 'p' is of type string, None is not"),
+        (
+            "str",
+            "",
+            None,
+            "parameter 'p' belongs to the node and cannot be deleted; those with dynamic typing can",
+        ),
         ("list[int]", [1], [1, 2.5], "parameter 'p' is of type integer array, 2.5 is not"),
         ("list[int]", [1], 1, "parameter 'p' is of type integer array, 1 is not"),
         ("list[str]", ["a"], {"a": 1}, "parameter 'p' is of type string array, {'a': 1} is not"),
@@ -152,8 +158,8 @@ def test_read_only() -> None:
 def test_all_or_none() -> None:
     """One that does not fit keeps the others from changing, and nobody is told."""
     made = parameters(RATE, COUNT, FIXED)
-    told: list[tuple[str, Any]] = []
-    made.observe(lambda name, value: told.append((name, value)))
+    told: list[Any] = []
+    made.observe(told.append)
 
     for wrong in ({"count": 256}, {"fixed": False}, {"nothing": 1}):
         with pytest.raises(ParameterError):
@@ -161,7 +167,7 @@ def test_all_or_none() -> None:
     assert (made.get("rate"), told) == (1.0, [])
 
     made.set({"rate": 5.0, "count": 4})
-    assert told == [("rate", 5.0), ("count", 4)]
+    assert told == [{"rate": (1.0, 5.0), "count": (3, 4)}]
 
 
 def test_a_check_can_refuse() -> None:
@@ -297,7 +303,7 @@ async def test_the_services_are_there(graph: Graph) -> None:
     node = Robot(namespace="/a")
     await graph.start(node)
 
-    assert node.context.cache.services() == {
+    assert {n: t for n, t in node.context.cache.services().items() if "parameter" in n} == {
         "/a/robot/describe_parameters": ["rcl_interfaces/srv/DescribeParameters"],
         "/a/robot/get_parameter_types": ["rcl_interfaces/srv/GetParameterTypes"],
         "/a/robot/get_parameters": ["rcl_interfaces/srv/GetParameters"],
@@ -359,7 +365,7 @@ async def test_set_parameters_one_by_one(graph: Graph) -> None:
         "parameter 'fixed' is read-only",
         "there is no parameter 'cuont'; did you mean 'count'?",
         "",
-        "parameter 'title' is of type string, None is not",
+        "parameter 'title' belongs to the node and cannot be deleted; those with dynamic typing can",
         "42 is no parameter type",
     ]
     assert (node.rate, node.count, node.fixed, node.title) == (5.0, 4, True, "hello")
@@ -383,7 +389,8 @@ async def test_set_parameters_atomically(graph: Graph) -> None:
     assert node.parameters.source("rate") == "set"
 
 
-ALL = ["arm.joint.first", "arm.speed", "armour", "count", "fixed", "gains", "rate", "title"]
+ALL = ["arm.joint.first", "arm.speed", "armour", "count", "fixed", "gains", "rate", "start_type_description_service"]
+ALL += ["title", "use_sim_time"]
 
 
 @pytest.mark.parametrize(
@@ -451,7 +458,7 @@ async def test_an_observer_that_fails(graph: Graph, caplog: pytest.LogCaptureFix
     """Whoever set the parameter hears of it; the node goes on."""
     node = Robot()
 
-    def fail(name: str, value: Any) -> None:
+    def fail(changes: object) -> None:
         raise ValueError("cannot take it")
 
     node.parameters.observe(fail)
@@ -466,7 +473,196 @@ async def test_an_observer_that_fails(graph: Graph, caplog: pytest.LogCaptureFix
 
 async def test_a_node_without_parameter_services(graph: Graph) -> None:
     """`start_parameter_services=False` leaves them out."""
-    node = Node("tool", start_parameter_services=False)
+    node = Node("tool", start_parameter_services=False, enable_logger_service=False)
     await graph.start(node)
 
     assert [name for name in node.context.cache.services(hidden=True) if name.startswith("/tool/")] == []
+
+
+# steps
+
+
+@pytest.mark.parametrize(
+    ("type_", "limits", "inside", "outside"),
+    [
+        ("int", {"ge": 0, "le": 10, "step": 3}, [0, 3, 9, 10], [1, 8]),
+        ("int", {"step": 5}, [0, -5, 100], [3]),
+        ("float", {"ge": 1.0, "le": 2.0, "step": 0.1}, [1.0, 1.1, 1.7000000000000002, 2.0], [1.05, 1.99]),
+        ("float", {"step": 0.25}, [0.25, -1.5, math.inf], [0.3]),
+        ("list[int]", {"ge": 1, "step": 2}, [[1, 3], []], [[1, 2]]),
+    ],
+)
+def test_steps(type_: ParamType, limits: dict[str, float], inside: list[Any], outside: list[Any]) -> None:
+    """Values are the lower limit and multiples of the step more; both limits are always allowed."""
+    made = parameters(parameter("p", type_, inside[0], **limits))
+    for value in inside:
+        made.set({"p": value})
+    for value in outside:
+        with pytest.raises(ParameterError, match=r"is not a valid step: .* and multiples of"):
+            made.set({"p": value})
+
+
+def test_steps_are_described() -> None:
+    """The step stands in the descriptor, for whole numbers and others."""
+    whole = to_descriptor(parameter("p", "int", 0, ge=0, le=10, step=2)).integer_range[0]
+    assert (whole.from_value, whole.to_value, whole.step) == (0, 10, 2)
+    real = to_descriptor(parameter("p", "float", 0.0, step=0.5)).floating_point_range[0]
+    assert (real.from_value, real.to_value, real.step) == (-math.inf, math.inf, 0.5)
+
+
+# checks before and followers after a change
+
+
+class Follower(Node):
+    """Notes what it is told of its parameter."""
+
+    rate = Param(1.0)
+    other = Param("x")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told: list[Any] = []
+
+    @rate.check
+    def not_too_fast(self, rate: float) -> None:
+        if rate > 10.0:
+            raise ValueError("the listener is only human")
+
+    @rate.on_change
+    def note(self, old: float, new: float) -> None:
+        self.told.append(("note", old, new))
+
+    @rate.on_change
+    async def note_slowly(self, old: float, new: float) -> None:
+        await self.clock.sleep(1.0)
+        self.told.append(("slowly", old, new))
+
+
+async def test_a_check_of_the_class_can_refuse(graph: Graph) -> None:
+    """What it raises is the reason, from inside and from outside; the old value stands."""
+    node = Follower()
+    await graph.start(node)
+    with pytest.raises(ParameterError, match=r"parameter 'rate' = 11\.0: the listener is only human"):
+        node.rate = 11.0
+    request = SetParameters.Request(parameters=[message("rate", 12.0, 3)])
+    (result,) = (await graph.call(SetParameters, "/follower/set_parameters", request)).results
+    assert (result.successful, result.reason) == (False, "parameter 'rate' = 12.0: the listener is only human")
+    assert (node.rate, node.told) == (1.0, [])
+
+
+async def test_methods_follow_a_parameter(graph: Graph) -> None:
+    """`def` at once, `async def` one change after the other; other parameters are none of their business."""
+    node = Follower()
+    node.rate = 2.0  # before it runs, nobody is told
+    await graph.start(node)
+    node.rate = 3.0
+    node.other = "y"
+    assert node.told == [("note", 2.0, 3.0)]
+    node.rate = 4.0
+    await graph.clock.advance(1.0)
+    assert node.told[2:] == [("slowly", 2.0, 3.0)]
+    await graph.clock.advance(1.0)
+    assert node.told[3:] == [("slowly", 3.0, 4.0)]
+
+
+async def test_a_follower_that_fails_is_logged(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The change stands, and the node goes on."""
+
+    class Wrong(Node):
+        rate = Param(1.0)
+
+        @rate.on_change
+        def fail(self, old: float, new: float) -> None:
+            raise RuntimeError("cannot")
+
+    node = Wrong()
+    await graph.start(node)
+    node.rate = 2.0
+    assert node.rate == 2.0
+    assert "fail: RuntimeError: cannot" in caplog.text
+    assert node.is_running
+
+
+def test_hooks_are_inherited_and_replaced() -> None:
+    """A child's method of the name stands in place of its parent's, and does not touch the parent."""
+
+    class Child(Follower):
+        def not_too_fast(self, rate: float) -> None:
+            if rate > 20.0:
+                raise ValueError("too fast even for the child")
+
+    child = Child()
+    child.rate = 15.0
+    with pytest.raises(ParameterError, match="even for the child"):
+        child.rate = 25.0
+    with pytest.raises(ParameterError, match="only human"):
+        Follower().rate = 15.0
+
+
+# deleting
+
+
+async def test_only_dynamic_parameters_can_be_deleted(graph: Graph) -> None:
+    """One with dynamic typing takes every type and may go; those of the class stay; all or none."""
+    node = Robot()
+    node.declare_parameter("any", 1, dynamic=True)
+    await graph.start(node)
+    for value in (2, "text", [1.5], None):
+        node.parameters.set({"any": value} if value is not None else {})
+        assert node.parameters.get("any") == (value if value is not None else [1.5])
+
+    both = [ParameterMessage(name=n, value=ParameterValue()) for n in ("any", "title")]
+    request = SetParametersAtomically.Request(parameters=both)
+    assert not (
+        await graph.call(SetParametersAtomically, "/robot/set_parameters_atomically", request)
+    ).result.successful
+    assert "any" in node.parameters
+
+    request_one = SetParameters.Request(parameters=both[:1])
+    (result,) = (await graph.call(SetParameters, "/robot/set_parameters", request_one)).results
+    assert result.successful
+    assert "any" not in node.parameters
+
+
+def test_what_was_declared_at_run_time_can_be_undeclared() -> None:
+    """By the node itself; a read-only one stays."""
+    node = Robot()
+    node.declare_parameter("wheel", 0.1)
+    node.undeclare_parameter("wheel")
+    assert "wheel" not in node.parameters
+    with pytest.raises(ParameterError, match="read-only"):
+        node.undeclare_parameter("fixed")
+    with pytest.raises(ParameterError, match="no parameter 'wheel'"):
+        node.undeclare_parameter("wheel")
+
+
+# /parameter_events
+
+
+async def test_changes_are_published(graph: Graph) -> None:
+    """What is new, changed and deleted, with stamp and node; all parameters as new when the node starts."""
+    events = graph.tap(ParameterEvent, "/parameter_events")
+    await graph.settle()
+    node = Robot(namespace="/a")
+    await graph.start(node)
+    assert [p.name for p in events[0].new_parameters] == ALL
+    assert (events[0].node, events[0].stamp.sec) == ("/a/robot", graph.clock.now().sec)
+
+    node.count = 7
+    node.declare_parameter("wheel", 0.5)
+    node.undeclare_parameter("wheel")
+    await graph.settle()
+    changed, new, deleted = events.messages[1:]
+    assert [(p.name, p.value.type, p.value.integer_value) for p in changed.changed_parameters] == [("count", 2, 7)]
+    assert [(p.name, p.value.double_value) for p in new.new_parameters] == [("wheel", 0.5)]
+    assert [p.name for p in deleted.deleted_parameters] == ["wheel"]
+
+
+async def test_every_node_has_rclpys_two(graph: Graph) -> None:
+    """use_sim_time can be set, start_type_description_service is read-only; no class may declare them anew."""
+    node = Node("n")
+    assert node.parameters.get("use_sim_time") is False
+    with pytest.raises(ParameterError, match="read-only"):
+        node.parameters.set({"start_type_description_service": False})
+    with pytest.raises(DeclarationError, match="every node has the parameter 'use_sim_time'"):
+        type("Bad", (Node,), {"sim": Param(True, name="use_sim_time")})

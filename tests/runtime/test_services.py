@@ -432,7 +432,7 @@ async def test_a_malformed_request_is_refused(graph: Graph) -> None:
     assert client.entity is not None
     session = graph.network.session(asyncio.get_running_loop())
     answers: list[Answer | None] = []
-    caller = session.open_caller(client.entity.data_key)
+    caller = session.open_caller(client.entity.data_key, lambda: None)
     caller.call(b"\0\1", attachment.pack(1, 0, bytes(16)), answers.append)
     caller.call(AddTwoInts.Request().to_bytes(), b"no attachment", answers.append)
     await graph.settle()
@@ -557,3 +557,45 @@ async def test_a_closed_client_ends_its_calls(graph: Graph) -> None:
 
     with pytest.raises(ClosedError, match="the client of /pass was closed"):
         await call
+
+
+async def test_ready_means_announced_and_reachable(graph: Graph) -> None:
+    """A server whose token comes before its queryable, as foreign ones do, is not called too early."""
+    asker = Node("asker")
+    client = asker.create_client(AddTwoInts, "add")
+    await graph.start(asker)
+    session = graph.network.session(asker.context.loop)
+    here = client.entity
+    assert here is not None
+    token = here._replace(zid=session.zid, kind=Kind.SERVICE, node="foreign").token
+    ready = asyncio.ensure_future(client.wait_ready())
+    call = asyncio.ensure_future(client.call(AddTwoInts.Request(a=1, b=2)))
+    await graph.settle()
+    session.announce(token)
+    await graph.settle()
+    assert not ready.done()
+    assert not client.service_is_ready()
+
+    inbox = Inbox(session.bell, None, lambda: answer())
+
+    def answer() -> None:
+        request = inbox.items.popleft()
+        request.reply(AddTwoInts.Response(sum=3).to_bytes(), request.attachment)
+
+    session.open_server(here.data_key, inbox)
+    await graph.settle()
+    assert ready.done()
+    assert client.service_is_ready()
+    assert (await call).sum == 3
+
+
+async def test_waiting_for_a_server_ends_with_the_client(graph: Graph) -> None:
+    """A client that is closed tells those who wait for its server."""
+    asker = Node("asker")
+    client = asker.create_client(AddTwoInts, "add")
+    await graph.start(asker)
+    ready = asyncio.ensure_future(client.wait_ready())
+    await graph.settle()
+    client.close()
+    with pytest.raises(ClosedError, match="was closed while a call waited"):
+        await ready

@@ -12,6 +12,11 @@ from graphflow.testing.clock import settle
 from graphflow.transport.base import Answer, Inbox
 from graphflow.transport.memory import MemorySession, Network
 
+
+def nothing() -> None:
+    """Nobody wants to know."""
+
+
 VOLATILE = Qos()
 LATCHED = Qos(depth=3, durability=Durability.TRANSIENT_LOCAL)
 
@@ -142,8 +147,8 @@ async def test_a_request_is_answered(graphflow_runner: asyncio.Runner) -> None:
     talk = Talk()
     requests = inbox_of(talk.two)
     talk.two.open_server("s", requests)
-    answers, caller = Answers(), talk.one.open_caller("s")
-    assert caller.has_server()
+    answers, caller = Answers(), talk.one.open_caller("s", nothing)
+    assert caller.has_server
 
     caller.call(b"question", b"beside", answers)
     request = requests.items.popleft()
@@ -161,7 +166,7 @@ async def test_an_error_is_an_answer(graphflow_runner: asyncio.Runner) -> None:
     requests = inbox_of(talk.two)
     talk.two.open_server("s", requests)
     answers = Answers()
-    talk.one.open_caller("s").call(b"", b"", answers)
+    talk.one.open_caller("s", nothing).call(b"", b"", answers)
 
     request = requests.items.popleft()
     request.reply_error(b"no")
@@ -174,8 +179,8 @@ async def test_an_error_is_an_answer(graphflow_runner: asyncio.Runner) -> None:
 async def test_a_call_without_servers_ends(graphflow_runner: asyncio.Runner) -> None:
     """Nobody answers, and that is said by the loop."""
     talk = Talk()
-    answers, caller = Answers(), talk.one.open_caller("s")
-    assert not caller.has_server()
+    answers, caller = Answers(), talk.one.open_caller("s", nothing)
+    assert not caller.has_server
 
     caller.call(b"", b"", answers)
     assert answers == []
@@ -191,7 +196,7 @@ async def test_a_request_goes_to_every_server(graphflow_runner: asyncio.Runner) 
     talk.one.open_server("s", first)
     talk.two.open_server("s", second)
     answers = Answers()
-    talk.one.open_caller("s").call(b"", b"", answers)
+    talk.one.open_caller("s", nothing).call(b"", b"", answers)
 
     second.items.popleft().reply(b"2", b"")
     await settle()
@@ -208,7 +213,7 @@ async def test_a_request_that_is_thrown_away_ends_the_call(graphflow_runner: asy
     requests = inbox_of(talk.two)
     talk.two.open_server("s", requests)
     answers = Answers()
-    talk.one.open_caller("s").call(b"", b"", answers)
+    talk.one.open_caller("s", nothing).call(b"", b"", answers)
 
     requests.items.clear()
     gc.collect()
@@ -223,7 +228,7 @@ async def test_no_answer_comes_after_giving_up(graphflow_runner: asyncio.Runner)
     requests = inbox_of(talk.two)
     talk.two.open_server("s", requests)
     answers = Answers()
-    caller = talk.one.open_caller("s")
+    caller = talk.one.open_caller("s", nothing)
     give_up_early = caller.call(b"", b"", answers)
     give_up_late = caller.call(b"", b"", answers)
 
@@ -283,7 +288,7 @@ async def test_a_closed_session_takes_everything_with_it(graphflow_runner: async
     assert not talk.network.receivers["k"]
     assert not talk.network.servers["s"]
     assert len(talk.network.watchers) == 1
-    assert not talk.two.open_caller("s").has_server()
+    assert not talk.two.open_caller("s", nothing).has_server
 
 
 async def test_sessions_have_ids_of_their_own(graphflow_runner: asyncio.Runner) -> None:
@@ -293,3 +298,30 @@ async def test_sessions_have_ids_of_their_own(graphflow_runner: asyncio.Runner) 
     assert talk.one.zid != talk.two.zid
     assert int(talk.one.zid, 16) >= 0
     assert talk.one.zid == talk.one.zid.lower()
+
+
+async def test_a_caller_is_told_of_servers(graphflow_runner: asyncio.Runner) -> None:
+    """When one comes and when it goes, on the loop, until the caller is closed."""
+    talk = Talk()
+    seen: list[bool] = []
+    caller = talk.one.open_caller("s", lambda: seen.append(caller.has_server))
+    server = talk.two.open_server("s", Inbox(talk.two.bell, None, nothing))
+    await settle()
+    server.close()
+    await settle()
+    assert seen == [True, False]
+    caller.close()
+    talk.two.open_server("s", Inbox(talk.two.bell, None, nothing))
+    await settle()
+    assert seen == [True, False]
+
+
+async def test_a_sender_knows_whether_it_is_wanted(graphflow_runner: asyncio.Runner) -> None:
+    """By receivers of its key; one that keeps messages for later always is."""
+    talk = Talk()
+    plain, keeping = talk.one.open_sender("k", Qos()), talk.one.open_sender("k", LATCHED)
+    assert (plain.is_wanted, keeping.is_wanted) == (False, True)
+    receiver = talk.two.open_receiver("k", Qos(), Inbox(talk.two.bell, 1, nothing))
+    assert plain.is_wanted
+    receiver.close()
+    assert not plain.is_wanted

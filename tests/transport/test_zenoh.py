@@ -75,25 +75,34 @@ def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Sess
 
 
 def test_a_node_has_the_endpoints_every_ros_node_has(raw: zenoh.Session, machine: Machine) -> None:
-    """/rosout latched for ten seconds, and the six parameter services, with ROS 2's profiles and hashes."""
+    """/rosout latched for ten seconds, /parameter_events and the services, with ROS 2's profiles and hashes."""
     found = [t.split("/", 9) for t in tokens(raw, machine.domain)]
     rest = {t[9].split("/")[0]: (t[5], t[9].split("/", 1)[1]) for t in found if len(t) > 9}
 
     log = "rcl_interfaces::msg::dds_::Log_/RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac"
     assert rest["%rosout"] == ("MP", f"{log}/:1:,1000:,:10,0:,,")
+    digest = "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204"
+    event = f"rcl_interfaces::msg::dds_::ParameterEvent_/{digest}"
+    assert rest["%parameter_events"] == ("MP", f"{event}/::,1000:,:,:,,")
     services = {name: kind for name, (kind, _) in rest.items() if kind == "SS"}
     assert set(services) == {
         f"%robot1%talker%{name}"
         for name in (
             "describe_parameters",
+            "get_logger_levels",
             "get_parameter_types",
             "get_parameters",
+            "get_type_description",
             "list_parameters",
+            "set_logger_levels",
             "set_parameters",
             "set_parameters_atomically",
         )
     }
     get = f"rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"
+    describe = "type_description_interfaces::srv::dds_::GetTypeDescription_"
+    digest = "RIHS01_69b9c19c1021405984cc60dbbb1edceb147a6538b411d812ba6afabeed962cd5"
+    assert rest["%robot1%talker%get_type_description"] == ("SS", f"{describe}/{digest}/::,10:,:,:,,")
     assert rest["%robot1%talker%get_parameters"] == ("SS", f"{get}/::,1000:,:,:,,")
 
 

@@ -1,0 +1,197 @@
+"""ROS 2's parameter files: which parameters they have for which node, and how one is written.
+
+    /turtle1/follower:            the node's full name, or /** for all nodes, /* for those of one level
+      ros__parameters:
+        gain: 2.0
+        limits: {speed: 1.0}      the same as limits.speed
+
+A key without its leading slash means the same, and namespaces may be nested mappings. Where several sections fit a
+node, the later one counts.
+
+Source: rcl_yaml_param_parser. Unlike there, a section that fits no node is a mistake, not silence.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.graph import source
+from graphflow.graph.plan import Setting
+from graphflow.graph.source import Source
+from graphflow.names import did_you_mean
+
+PARAMETERS = "ros__parameters"
+
+
+class Section(NamedTuple):
+    """What a file has for the nodes that a pattern fits."""
+
+    pattern: str
+    """A node's full name, perhaps with `*` for one part of it and `**` for any number."""
+    place: Place
+    params: dict[str, Setting]
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether it is for one node by name."""
+        return "*" not in self.pattern
+
+    def fits(self, node: str) -> bool:
+        """Whether it is for the node of this full name."""
+        parts = [{"**": ".*", "*": "[^/]+"}.get(p, re.escape(p)) for p in self.pattern[1:].split("/")]
+        return re.fullmatch("/" + "/".join(parts).replace(".*/", "(?:.*/)?"), node) is not None
+
+
+def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems: list[Problem]) -> dict[str, Setting]:
+    """Parameters with nested mappings flattened by dots.
+
+    Args:
+        path: Where `params` is in `src`.
+        problems: Takes in what is wrong.
+    """
+    found: dict[str, Setting] = {}
+
+    def walk(prefix: str, values: Mapping[str, Any], at: source.Path) -> None:
+        for key, value in values.items():
+            name, place = prefix + key, src.place((*at, key))
+            if isinstance(value, dict):
+                walk(f"{name}.", value, (*at, key))
+            elif value is None:
+                text = f"parameter {name!r} has no value; an empty text is ''"
+                problems.append(Problem(src.key_place((*at, key)), text))
+            elif name in found:
+                first = found[name].place.line
+                problems.append(Problem(place, f"parameter {name!r} is given twice, first in line {first}; remove one"))
+            else:
+                found[name] = Setting(value, place)
+
+    walk("", params, path)
+    return found
+
+
+def read(path: Path, name: str) -> list[Section]:
+    """The sections of a file.
+
+    Args:
+        name: The file as messages show it.
+
+    Raises:
+        GraphFileError: It cannot be read, or is no parameter file; every mistake with its place.
+    """
+    src = source.read_file(path, name)
+    problems: list[Problem] = []
+    sections = list(_sections(src, problems))
+    if not sections and not problems:
+        problems.append(Problem(src.place(()), f"the file has no section; write NODE: {{{PARAMETERS}: {{rate: 2.0}}}}"))
+    if problems:
+        raise GraphFileError(problems)
+    return sections
+
+
+def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
+    def walk(values: Mapping[str, Any], at: source.Path) -> Iterator[Section]:
+        for key, value in values.items():
+            here = (*at, key)
+            if not isinstance(value, dict):
+                place = src.key_place(here)
+                if at and key == PARAMETERS:
+                    problems.append(Problem(place, f"{PARAMETERS} is a mapping, for example {{rate: 2.0}}"))
+                else:
+                    problems.append(Problem(place, f"{key!r}: put parameters below NODE and {PARAMETERS}"))
+            elif key == PARAMETERS and at:
+                pattern = "/" + "/".join(str(part).strip("/") for part in at)
+                params = flatten(src, value, here, problems)
+                is_exact = "*" not in pattern
+                yield Section(
+                    pattern,
+                    src.key_place(at),
+                    {k: Setting(s.value, s.place, is_optional=not is_exact) for k, s in params.items()},
+                )
+            else:
+                yield from walk(value, here)
+
+    if not isinstance(src.data, dict):
+        problems.append(Problem(src.place(()), f"a parameter file is a mapping: NODE: {{{PARAMETERS}: ...}}"))
+        return
+    yield from walk(src.data, ())
+
+
+def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
+    """What the sections have for the node of this full name."""
+    found: dict[str, Setting] = {}
+    for section in sections:
+        if section.fits(node):
+            found |= section.params
+    return found
+
+
+def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:
+    """The sections that fit none of the nodes, as problems that name the nearest."""
+    return [
+        Problem(s.place, f"there is no node {s.pattern}{did_you_mean(s.pattern, nodes)}")
+        for s in sections
+        if not any(s.fits(node) for node in nodes)
+    ]
+
+
+# Words that ROS 2's parser, or YAML 1.1, would not take for text.
+_NOT_TEXT = re.compile(r"(y|yes|n|no|on|off|true|false|null|nan|inf|infinity)\Z", re.IGNORECASE)
+_PLAIN = re.compile(r"[A-Za-z_/][\w./-]*( [\w./-]+)*\Z")
+
+
+def write(node: str, values: Mapping[str, Any]) -> str:
+    """A node's parameters as a file that reads back, here and in ROS 2, as the same values of the same types."""
+    tree: dict[str, Any] = {}
+    for name in sorted(values):
+        *above, last = name.split(".")
+        branch = tree
+        for part in above:
+            inner = branch.setdefault(part, {})
+            if not isinstance(inner, dict):  # both `a` and `a.b` are parameters: one cannot be nested in the other
+                break
+            branch = inner
+        else:
+            branch[last] = values[name]
+            continue
+        tree[name] = values[name]
+    lines = list(_written(tree, 2)) or ["    {}"]
+    return "\n".join([f"{node}:", f"  {PARAMETERS}:", *lines]) + "\n"
+
+
+def _written(tree: Mapping[str, Any], depth: int) -> Iterator[str]:
+    pad = "  " * depth
+    for key, value in tree.items():
+        name = key if _PLAIN.match(key) else _quoted(key)
+        if isinstance(value, dict):
+            yield f"{pad}{name}:"
+            yield from _written(value, depth + 1)
+        else:
+            yield f"{pad}{name}: {_value(value)}"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        if math.isnan(value):
+            return ".nan"
+        if math.isinf(value):
+            return ".inf" if value > 0 else "-.inf"
+        text = repr(value)
+        return text if "." in text or "e" not in text else text.replace("e", ".0e", 1)
+    if isinstance(value, (list, tuple, bytes)):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, str):
+        return value if _PLAIN.match(value) and not _NOT_TEXT.match(value) else _quoted(value)
+    return str(value)
+
+
+def _quoted(text: str) -> str:
+    if text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    return '"' + text.encode("unicode_escape").decode().replace('"', '\\"') + '"'

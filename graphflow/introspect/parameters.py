@@ -1,0 +1,81 @@
+"""The parameters of a node, read and set from outside through its services."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import ParameterError
+from graphflow.introspect.view import View
+from graphflow.names import did_you_mean
+
+if TYPE_CHECKING:
+    from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
+
+
+class RemoteParameters:
+    """The parameters of one node.
+
+    Args:
+        node: Its full name.
+        timeout: Seconds that each call may take.
+
+    All methods raise CallError when the node does not answer, or has no parameter services.
+    """
+
+    def __init__(self, view: View, node: str, timeout: float) -> None:
+        self._view, self._node, self._timeout = view, node, timeout
+
+    def _call(self, service: str, type_name: str, **request: Any) -> Any:
+        from graphflow.msgs import registry
+        from graphflow.msgs.values import from_plain
+
+        full, type_ = f"{self._node}/{service}", f"rcl_interfaces/srv/{type_name}"
+        self._view.service_type(full)
+        message = from_plain(registry.interface_class(f"{type_}_Request"), request)
+        return self._view.call(full, type_, message, self._timeout)
+
+    def names(self) -> list[str]:
+        """All names, sorted."""
+        return sorted(self._call("list_parameters", "ListParameters").result.names)
+
+    def get(self, names: Sequence[str]) -> list[ParameterValue]:
+        """The values, of type 0 where there is no such parameter."""
+        found = list(self._call("get_parameters", "GetParameters", names=list(names)).values)
+        if len(found) == len(names):
+            return found
+        # A ROS 2 node answers with nothing at all when one name is unknown to it: ask one by one.
+        from graphflow.msgs.rcl_interfaces.msg import ParameterValue
+
+        answers = [self._call("get_parameters", "GetParameters", names=[name]).values for name in names]
+        return [answer[0] if len(answer) else ParameterValue() for answer in answers]
+
+    def describe(self, names: Sequence[str]) -> dict[str, ParameterDescriptor]:
+        """The declarations of those that there are, by name."""
+        if not names:
+            return {}
+        found = self._call("describe_parameters", "DescribeParameters", names=list(names)).descriptors
+        if not len(found):
+            answers = [self._call("describe_parameters", "DescribeParameters", names=[n]).descriptors for n in names]
+            found = [descriptor for answer in answers for descriptor in answer]
+        return {d.name: d for d in found if d.type}
+
+    def set(self, values: dict[str, ParameterValue]) -> list[SetParametersResult]:
+        """Set parameters one by one; one result for each."""
+        parameters = [{"name": name, "value": value} for name, value in values.items()]
+        return list(self._call("set_parameters", "SetParameters", parameters=parameters).results)
+
+    def known(self, name: str) -> ParameterDescriptor:
+        """The declaration of one parameter.
+
+        Raises:
+            ParameterError: There is none; the text names the nearest.
+        """
+        described = self.describe([name])
+        if name not in described:
+            raise self.unknown(name)
+        return described[name]
+
+    def unknown(self, name: str) -> ParameterError:
+        """The error of asking for a parameter that is not there."""
+        return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")

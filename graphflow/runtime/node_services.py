@@ -1,0 +1,126 @@
+"""The services that every ROS 2 node has beside those of its parameters: type descriptions and logger levels.
+
+Source: type_description_interfaces/srv/GetTypeDescription (REP-2016); rcl_interfaces/srv/GetLoggerLevels and
+SetLoggerLevels.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import InterfaceError
+from graphflow.msgs import registry
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.rosout import LEVELS, ROOT
+from graphflow.wire.schema import Field, Message
+from graphflow.wire.typehash import referenced, type_id
+
+if TYPE_CHECKING:
+    from graphflow.msgs.type_description_interfaces import msg as description
+    from graphflow.msgs.type_description_interfaces import srv
+    from graphflow.runtime.node import Node
+
+
+class TypeDescriptions:
+    """Answers for the types of a node's own endpoints."""
+
+    def __init__(self, endpoints: Callable[[], Iterable[Endpoint]]) -> None:
+        self._endpoints = endpoints
+
+    def get(self, request: srv.GetTypeDescription_Request) -> srv.GetTypeDescription_Response:
+        from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription
+
+        def failed(reason: str) -> srv.GetTypeDescription_Response:
+            return GetTypeDescription.Response(successful=False, failure_reason=reason)
+
+        name = request.type_name
+        if name not in {e.type_name for e in self._endpoints()}:
+            return failed(f"this node uses no type {name!r}")
+        digest = registry.hash_of(name)
+        if request.type_hash and request.type_hash != digest:
+            return failed(f"the {name} of this node has the hash {digest}, not {request.type_hash}")
+        whole = registry.whole_schema(name)
+        parts = referenced(whole, registry.message_schema)
+        response = GetTypeDescription.Response(successful=True)
+        response.type_description.type_description = _described(whole)
+        response.type_description.referenced_type_descriptions = [_described(parts[n]) for n in sorted(parts)]
+        if request.include_type_sources:
+            response.type_sources = _sources([name, *sorted(parts)])
+        return response
+
+
+def _described(message: Message) -> description.IndividualTypeDescription:
+    from graphflow.msgs.type_description_interfaces.msg import Field as FieldMessage
+    from graphflow.msgs.type_description_interfaces.msg import FieldType, IndividualTypeDescription
+
+    def described(field: Field) -> description.Field:
+        kind = FieldType(
+            type_id=type_id(field.type),
+            capacity=field.type.size,
+            string_capacity=field.type.string_bound,
+            nested_type_name="" if field.type.is_primitive else field.type.base,
+        )
+        default = "" if field.default is None else str(field.default)
+        return FieldMessage(name=field.name, type=kind, default_value=default)
+
+    return IndividualTypeDescription(type_name=message.name, fields=[described(f) for f in message.fields])
+
+
+def _sources(names: Iterable[str]) -> list[description.TypeSource]:
+    """The text of the definition files; derived types, which have none, are `implicit`."""
+    from graphflow.msgs.type_description_interfaces.msg import TypeSource
+
+    sources = []
+    for name in names:
+        try:
+            path = registry.definition_file(name)
+            source = TypeSource(type_name=name, encoding=path.suffix[1:], raw_file_contents=path.read_text("utf-8"))
+        except (InterfaceError, OSError):
+            source = TypeSource(type_name=name, encoding="implicit")
+        sources.append(source)
+    return sources
+
+
+_ROS_LEVELS = {number: python for python, number in LEVELS.items()}
+
+
+class LoggerLevels:
+    """Reads and sets how much a node's loggers say: its own, by its ROS name, and those below it."""
+
+    def __init__(self, node: Node) -> None:
+        self._own = node.log.name.removeprefix(f"{ROOT}.")
+
+    def _logger(self, name: str) -> logging.Logger | None:
+        is_ours = name == self._own or name.startswith(f"{self._own}.")
+        return logging.getLogger(f"{ROOT}.{name}") if is_ours else None
+
+    def get(self, request: Any) -> Any:
+        from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
+        from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels
+
+        levels = []
+        for name in request.names:
+            logger = self._logger(name)
+            level = 0 if logger is None else LEVELS.get(logger.getEffectiveLevel(), 0)
+            levels.append(LoggerLevel(name=name, level=level))
+        return GetLoggerLevels.Response(levels=levels)
+
+    def set(self, request: Any) -> Any:
+        from graphflow.msgs.rcl_interfaces.msg import SetLoggerLevelsResult
+        from graphflow.msgs.rcl_interfaces.srv import SetLoggerLevels
+
+        results = []
+        for wanted in request.levels:
+            logger, reason = self._logger(wanted.name), ""
+            if logger is None:
+                reason = f"{wanted.name!r} is no logger of this node; its own is {self._own!r}"
+            elif wanted.level not in (0, *_ROS_LEVELS):
+                reason = (
+                    f"{wanted.level} is no level; there are 10 debug, 20 info, 30 warn, 40 error, 50 fatal, 0 unset"
+                )
+            else:
+                logger.setLevel(_ROS_LEVELS.get(wanted.level, logging.NOTSET))
+            results.append(SetLoggerLevelsResult(successful=not reason, reason=reason))
+        return SetLoggerLevels.Response(results=results)

@@ -1,0 +1,148 @@
+"""`graphflow param`, and parameter files, on a node that runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Machine, Program
+
+pytestmark = pytest.mark.real
+
+NODE = """\
+import graphflow
+from graphflow import Node, Param
+
+
+class Robot(Node):
+    title = Param("5", doc="Looks like a number.")
+    flag = Param("on")
+    gain = Param(2.0, ge=0.0, le=10.0, step=0.5, unit="m", doc="How much.")
+    count = Param(3, gt=0)
+    words = Param(["a", "1"])
+    limits_speed = Param(1.0, name="limits.speed")
+    raw = Param(b"\\x01\\xff")
+    fixed = Param("stays", read_only=True)
+
+    def __init__(self, name=None, **options):
+        super().__init__(name, **options)
+        self.declare_parameter("extra", 1, dynamic=True)
+
+    async def on_start(self):
+        self.log.info("ready")
+
+
+if __name__ == "__main__":
+    graphflow.run(Robot)
+"""
+DUMP = """\
+/robot:
+  ros__parameters:
+    count: 3
+    extra: 1
+    fixed: stays
+    flag: 'on'
+    gain: 2.0
+    limits:
+      speed: 1.0
+    raw: [1, 255]
+    start_type_description_service: true
+    title: '5'
+    use_sim_time: false
+    words: [a, '1']
+"""
+
+
+def start(machine: Machine, folder: Path, *words: str) -> Program:
+    (folder / "robot.py").write_text(NODE)
+    program = machine.start_python("robot.py", "--ros-args", *words, cwd=folder)
+    return program
+
+
+def ready(program: Program) -> Program:
+    program.wait_for("ready")
+    return program
+
+
+def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> None:
+    """Values and types come back, numbers in quotes included; what is read-only is no failure when it is the same."""
+    ready(start(machine, tmp_path))
+    dumped = machine.run("param", "dump", "/robot")
+    assert dumped == DUMP
+    (tmp_path / "p.yaml").write_text(dumped)
+    for name, value in (("title", "other"), ("gain", "7.5"), ("words", "[x]"), ("limits.speed", "4"), ("raw", "[7]")):
+        assert "successful" in machine.run("param", "set", "/robot", name, value)
+    assert machine.run("param", "dump", "/robot") != DUMP
+
+    text = machine.run("param", "load", "/robot", str(tmp_path / "p.yaml"))
+    assert "Set parameter title successful" in text
+    assert "Parameter fixed is read-only, and has this value" in text
+    assert machine.run("param", "dump", "/robot") == DUMP
+
+
+def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -> None:
+    """The rest is set; the reason is told, and the exit code is 1."""
+    ready(start(machine, tmp_path))
+    file = tmp_path / "p.yaml"
+    file.write_text("robot: {ros__parameters: {gain: 2.3, count: 4, title: 5, nothing: 1}}\n")
+    text = machine.run("param", "load", "/robot", str(file), code=1)
+    assert "Set parameter gain failed: parameter 'gain' = 2.3 is not a valid step" in text
+    assert "Set parameter count successful" in text
+    assert "Set parameter title failed: parameter 'title' is of type string, 5 is not" in text
+    assert f"{file}:1:" in text
+    assert ": node /robot has no parameter 'nothing'" in text
+
+    file.write_text("other: {ros__parameters: {gain: 2.0}}\n")
+    text = machine.run("param", "load", "/robot", str(file), code=2)
+    assert "p.yaml has nothing for /robot; there is /other" in text
+    file.write_text("robot: [\n")
+    assert "p.yaml:1:9: not valid YAML" in machine.run("param", "load", "/robot", str(file), code=2)
+    assert "cannot be read: No such file" in machine.run("param", "load", "/robot", str(tmp_path / "no"), code=2)
+
+
+def test_describe_and_delete(machine: Machine, tmp_path: Path) -> None:
+    """As ROS 2 prints them; only what was declared dynamically can go."""
+    ready(start(machine, tmp_path))
+    assert machine.run("param", "describe", "/robot", "gain", "count", "fixed") == (
+        "Parameter name: gain\n  Type: double\n  Description: How much. [m]\n  Constraints:\n"
+        "    Min value: 0.0\n    Max value: 10.0\n    Step: 0.5\n"
+        "Parameter name: count\n  Type: integer\n  Constraints:\n    Additional constraints: more than 0\n"
+        "Parameter name: fixed\n  Type: string\n  Constraints:\n    Read only: true\n"
+    )
+    assert "no parameter 'gian'; did you mean 'gain'?" in machine.run("param", "describe", "/robot", "gian", code=1)
+    assert machine.run("param", "delete", "/robot", "extra") == "Deleted parameter successfully\n"
+    assert "no parameter 'extra'" in machine.run("param", "get", "/robot", "extra", code=1)
+    text = machine.run("param", "delete", "/robot", "title", code=1)
+    assert "Deleting parameter failed: parameter 'title' belongs to the node" in text
+
+
+def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> None:
+    """Below what the command line says; a wildcard's parameter that it does not have is left out and told."""
+    (tmp_path / "p.yaml").write_text(
+        "'/**': {ros__parameters: {unknown: 1}}\n/left/arm: {ros__parameters: {gain: 3.5, count: 9}}\n"
+    )
+    words = ("--params-file", "p.yaml", "-p", "count:=8", "-r", "__node:=arm", "-r", "__ns:=/left")
+    text = ready(start(machine, tmp_path, *words)).text
+    assert "p.yaml:1:36: /left/arm has no parameter 'unknown'; it is left out" in text
+    assert machine.run("param", "get", "/left/arm", "gain") == "Double value is: 3.5\n"
+    assert machine.run("param", "get", "/left/arm", "count") == "Integer value is: 8\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (
+            "robot: {ros__parameters: {gian: 1.0}}",
+            "no parameter 'gian' (from p.yaml:1:33); did you mean 'gain'",
+        ),
+        ("rboot: {ros__parameters: {gain: 1.0}}", "p.yaml:1:1: there is no node /rboot; did you mean '/robot'?"),
+        ("robot: {ros__parameters: {gain: 1.1}}", "parameter 'gain' = 1.1 is not a valid step"),
+    ],
+)
+def test_a_wrong_params_file_is_refused(machine: Machine, tmp_path: Path, text: str, problem: str) -> None:
+    """With its place and what was meant, before the node is on the network."""
+    (tmp_path / "p.yaml").write_text(text)
+    program = start(machine, tmp_path, "--params-file", "p.yaml")
+    assert program.wait() == 2
+    assert problem in program.text

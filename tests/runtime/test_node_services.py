@@ -1,0 +1,167 @@
+"""Type descriptions, logger levels, and what is told of service calls."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+import pytest
+
+from graphflow import Client, Node, RemoteError, service
+from graphflow.msgs import registry
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.geometry_msgs.msg import PoseStamped
+from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
+from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
+from graphflow.msgs.type_description_interfaces.msg import TypeDescription
+from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription
+from graphflow.runtime.services import ServiceServer
+from graphflow.testing import Graph
+from graphflow.wire import typehash
+
+
+class Adder(Node):
+    """Adds, and tells of it."""
+
+    @service(AddTwoInts, "add", introspection="contents")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        if request.a < 0:
+            raise ValueError("too small")
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+class Asker(Node):
+    """Calls, and tells that it did."""
+
+    adder = Client(AddTwoInts, "add", introspection="metadata")
+
+
+async def describe(graph: Graph, node: str, name: str, hash_: str = "") -> Any:
+    request = GetTypeDescription.Request(type_name=name, type_hash=hash_, include_type_sources=True)
+    return await graph.call(GetTypeDescription, f"{node}/get_type_description", request)
+
+
+@pytest.mark.parametrize("name", ["geometry_msgs/msg/PoseStamped", "example_interfaces/srv/AddTwoInts"])
+async def test_the_description_is_what_was_hashed(graph: Graph, name: str) -> None:
+    """A node describes the types of its endpoints; the description gives the hash again."""
+    node = Adder()
+    node.create_publisher(PoseStamped, "pose")
+    await graph.start(node)
+    answer = await describe(graph, "/adder", name, registry.hash_of(name))
+
+    assert (answer.successful, answer.failure_reason) == (True, "")
+    described: TypeDescription = answer.type_description
+    text = typehash.type_description(registry.whole_schema(name), registry.message_schema)
+    names = [described.type_description.type_name, *(t.type_name for t in described.referenced_type_descriptions)]
+    assert [n for n in names if f'"type_name": "{n}"' not in text] == []
+    for part in (described.type_description, *described.referenced_type_descriptions):
+        for field in part.fields:
+            assert f'"name": "{field.name}", "type": {{"type_id": {field.type.type_id}, ' in text
+    assert sorted(names[1:]) == names[1:]
+
+
+async def test_sources_are_the_definition_files(graph: Graph) -> None:
+    """Types that have a file come with its text, derived ones are implicit."""
+    await graph.start(Adder())
+    answer = await describe(graph, "/adder", "example_interfaces/srv/AddTwoInts")
+    sources = {s.type_name: (s.encoding, s.raw_file_contents) for s in answer.type_sources}
+    assert sources["example_interfaces/srv/AddTwoInts"] == ("srv", "int64 a\nint64 b\n---\nint64 sum\n")
+    assert sources["builtin_interfaces/msg/Time"] == ("msg", "int32 sec\nuint32 nanosec\n")
+    assert sources["example_interfaces/srv/AddTwoInts_Request"] == ("implicit", "")
+
+
+async def test_types_it_does_not_use_and_other_hashes_are_refused(graph: Graph) -> None:
+    """The reason says which."""
+    await graph.start(Adder())
+    answer = await describe(graph, "/adder", "std_msgs/msg/Bool")
+    assert (answer.successful, answer.failure_reason) == (False, "this node uses no type 'std_msgs/msg/Bool'")
+    answer = await describe(graph, "/adder", "example_interfaces/srv/AddTwoInts", "RIHS01_00")
+    assert not answer.successful
+    assert "RIHS01_e118de6b" in answer.failure_reason
+
+
+async def test_it_can_be_left_out(graph: Graph) -> None:
+    """With start_type_description_service false there is no such service."""
+    node = Node("quiet", start_type_description_service=False)
+    await graph.start(node)
+    assert "/quiet/get_type_description" not in node.context.cache.services()
+
+
+async def test_logger_levels_are_read_and_set(graph: Graph) -> None:
+    """By ROS 2's names and numbers, for the node's own logger and those below it."""
+    node = Node("arm", namespace="/left")
+    await graph.start(node)
+    try:
+        asked = SetLoggerLevels.Request(
+            levels=[
+                LoggerLevel(name="left.arm", level=10),
+                LoggerLevel(name="left.arm.hand", level=40),
+                LoggerLevel(name="right.arm", level=10),
+                LoggerLevel(name="left.arm", level=11),
+            ]
+        )
+        results = (await graph.call(SetLoggerLevels, "/left/arm/set_logger_levels", asked)).results
+        assert [r.successful for r in results] == [True, True, False, False]
+        assert results[2].reason == "'right.arm' is no logger of this node; its own is 'left.arm'"
+        assert results[3].reason.startswith("11 is no level")
+        assert node.log.isEnabledFor(logging.DEBUG)
+
+        names = GetLoggerLevels.Request(names=["left.arm", "left.arm.hand", "left.arm.foot", "other"])
+        levels = (await graph.call(GetLoggerLevels, "/left/arm/get_logger_levels", names)).levels
+        assert [(level.name, level.level) for level in levels] == [
+            *(("left.arm", 10), ("left.arm.hand", 40), ("left.arm.foot", 10), ("other", 0))
+        ]
+    finally:
+        for logger in (node.log, node.log.getChild("hand")):
+            logger.setLevel(logging.NOTSET)
+
+
+def event_rows(tap: Any) -> list[Any]:
+    return [
+        (e.info.event_type, e.info.sequence_number, [r.a for r in e.request], [r.sum for r in e.response]) for e in tap
+    ]
+
+
+async def test_both_sides_of_a_call_are_told(graph: Graph) -> None:
+    """Request and response, sent and received, with the client's GID and number; contents where they are asked for."""
+    adder, asker = Adder(), Asker()
+    tap = graph.tap(AddTwoInts.Event, "/add/_service_event")
+    await graph.start(adder, asker)
+    await asker.adder.call(AddTwoInts.Request(a=2, b=3))
+    with pytest.raises(RemoteError):
+        await asker.adder.call(AddTwoInts.Request(a=-1))
+    await graph.settle()
+
+    assert sorted(event_rows(tap)) == sorted(
+        [
+            (0, 1, [], []),
+            (1, 1, [2], []),
+            (2, 1, [], [5]),
+            (3, 1, [], []),
+            (0, 2, [], []),
+            (1, 2, [-1], []),
+        ]
+    )
+    assert asker.adder.entity is not None
+    assert {bytes(e.info.client_gid) for e in tap} == {asker.adder.entity.gid}
+
+
+async def test_introspection_is_off_by_default_and_can_be_switched(graph: Graph) -> None:
+    """Nothing is announced or published until it is asked for, and again nothing after."""
+    node = Node("node")
+    server: ServiceServer[Any, Any] = node.create_service(AddTwoInts, "add", lambda r: AddTwoInts.Response(sum=1))
+    await graph.start(node)
+    tap = graph.tap(AddTwoInts.Event, "/add/_service_event")
+    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
+    assert not tap
+
+    server.configure_introspection("metadata")
+    await graph.settle()
+    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
+    assert [row[0] for row in event_rows(tap)] == [1, 2]
+
+    server.configure_introspection("off")
+    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
+    assert len(tap) == 2
+    with pytest.raises(ValueError, match="introspection is off, metadata or contents, not 'on'"):
+        server.configure_introspection("on")  # type: ignore[arg-type]
