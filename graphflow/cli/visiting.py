@@ -9,11 +9,12 @@ from collections.abc import Awaitable, Callable
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.runtime.run import catch_signals
+from graphflow.transport import loop
 
 
 def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None) -> int:
     """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0."""
-    return asyncio.run(_visit(work, name or f"_graphflow_{os.getpid()}"))
+    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}"))
 
 
 async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:

@@ -472,8 +472,7 @@ class Node:
         finished: Finished,
     ) -> Runner:
         """A runner for one of the node's handlers; without a group it queues behind itself only."""
-        slots: GroupState[Runner] = group if group is not None else GroupState(1)
-        return Runner(self.context.loop, f"{self.full_name}.{label}", slots, items, invoke, finished)
+        return Runner(self.context.loop, f"{self.full_name}.{label}", group, items, invoke, finished)
 
     def forget(self, openable: _Openable) -> None:
         """Take an endpoint that was closed off the list."""

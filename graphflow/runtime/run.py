@@ -15,6 +15,7 @@ from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node, users_part
 from graphflow.runtime.rosout import log_level, setup_console
+from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
 
@@ -150,7 +151,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
         logger.error("%s: %s", type(error).__name__, error, exc_info=(type(error), error, users_part(error)))
         raise SystemExit(1) from None
     try:
-        asyncio.run(_run(made))
+        loop.run(_run(made))
     except KeyboardInterrupt:
         return
     except Exception as error:

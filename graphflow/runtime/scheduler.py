@@ -16,6 +16,7 @@ from collections import deque
 from collections.abc import Callable, Coroutine
 from contextvars import Context, copy_context
 from inspect import iscoroutine
+from types import CoroutineType
 from typing import Any
 
 from graphflow.machines.group import GroupState
@@ -68,9 +69,10 @@ class Activity:
 
     def start(self) -> None:
         """Run to the first suspension. Not from inside another task."""
-        self._context.run(self._step)
+        self._context.run(self.step)
 
-    def _step(self, error: BaseException | None = None) -> None:
+    def step(self, error: BaseException | None = None) -> None:
+        """Go on to the next suspension. For the loop; within the activity's context."""
         coroutine = self._coroutine
         if coroutine is None:
             return
@@ -102,10 +104,10 @@ class Activity:
     def _wait_for(self, awaited: Any) -> None:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
         if awaited is None:
-            self._loop.call_soon(self._step, context=self._context)
+            self._loop.call_soon(self.step, context=self._context)
         elif blocking and awaited.get_loop() is not self._loop:
             wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which belongs to another event loop")
-            self._loop.call_soon(self._step, wrong, context=self._context)
+            self._loop.call_soon(self.step, wrong, context=self._context)
         elif blocking:
             awaited._asyncio_future_blocking = False
             awaited.add_done_callback(self._wakeup, context=self._context)
@@ -114,15 +116,15 @@ class Activity:
                 self._must_cancel = False
         else:
             wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which is nothing asyncio knows")
-            self._loop.call_soon(self._step, wrong, context=self._context)
+            self._loop.call_soon(self.step, wrong, context=self._context)
 
     def _wakeup(self, future: asyncio.Future[Any]) -> None:
         try:
             future.result()
         except BaseException as error:
-            self._step(error)
+            self.step(error)
         else:
-            self._step()
+            self.step()
 
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
@@ -180,7 +182,7 @@ class Runner:
 
     Args:
         name: For messages: node, handler.
-        group: Whose slots the runs take.
+        group: Whose slots the runs take; None for a runner that queues behind itself only.
         items: The queue, filled by somebody else, who then calls `wake`.
         invoke: Called with an item; returns a result, or a coroutine that will.
         finished: Called with (item, result, error) after each run.
@@ -206,7 +208,7 @@ class Runner:
         self,
         loop: AbstractEventLoop,
         name: str,
-        group: GroupState[Runner],
+        group: GroupState[Runner] | None,
         items: deque[Any],
         invoke: Callable[[Any], Any],
         finished: Finished,
@@ -239,16 +241,21 @@ class Runner:
         """There may be something in the queue: run what the group allows."""
         if self._waking or self._closed or self._scheduled:
             return
-        limit = self._group.limit
+        group, active, items = self._group, self._active, self.items
         self._waking = True
         try:
             for _ in range(BURST):
+                if not items or self._closed:
+                    return
+                if group is None:
+                    if active:
+                        return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
-                if not self.items or self._closed or (limit is not None and len(self._active) >= limit):
+                elif (group.limit is not None and len(active) >= group.limit) or not group.admit(self):
                     return
-                if not self._group.admit(self):
-                    return
-                self._run()
+                self.runs += 1
+                context = self._context.copy()
+                context.run(self._begin, items.popleft(), context)
         finally:
             self._waking = False
         if self.items:
@@ -261,31 +268,32 @@ class Runner:
 
     def _granted(self) -> None:
         """A slot was handed over."""
+        assert self._group is not None
         if self.items and not self._closed:
-            self._run()
+            self.runs += 1
+            context = self._context.copy()
+            context.run(self._begin, self.items.popleft(), context)
         else:
-            self._release()
+            self._release(self._group)
         self.wake()
 
-    def _run(self) -> None:
-        item = self.items.popleft()
-        self.runs += 1
-        context = self._context.copy()
+    def _begin(self, item: Any, context: Context) -> None:
+        """Run the handler, within its context, to its end or to its first suspension."""
         try:
-            result = context.run(self._invoke, item)
+            result = self._invoke(item)
         except (KeyboardInterrupt, SystemExit):
             raise
         except BaseException as error:
             self._ended(None, item, None, error)
             return
-        if not iscoroutine(result):
+        if result.__class__ is not CoroutineType and not iscoroutine(result):
             self._ended(None, item, result, None)
             return
         activity = Activity(
             self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error), context
         )
         self._active.add(activity)
-        activity.start()
+        activity.step()
 
     def _ended(self, activity: Activity | None, item: Any, result: Any, error: BaseException | None) -> None:
         if activity is not None:
@@ -295,19 +303,23 @@ class Runner:
         except Exception as failure:
             message = f"{self.name}: the end of a run could not be reported"
             self._loop.call_exception_handler({"message": message, "exception": failure})
-        self._release()
-        self._look_idle()
-        self.wake()
+        if self._group is not None:
+            self._release(self._group)
+        if self._idle is not None:
+            self._look_idle()
+        if self.items:
+            self.wake()
 
-    def _release(self) -> None:
-        successor = self._group.release()
+    def _release(self, group: GroupState[Runner]) -> None:
+        successor = group.release()
         if successor is not None:
             self._loop.call_soon(successor._granted)
 
     def cancel(self) -> asyncio.Future[None]:
         """Begin no more runs and cancel those under way; the future is done when they have ended."""
         self._closed = True
-        self._group.withdraw(self)
+        if self._group is not None:
+            self._group.withdraw(self)
         if self._idle is None:
             self._idle = self._loop.create_future()
         for activity in list(self._active):

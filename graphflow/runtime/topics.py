@@ -17,7 +17,7 @@ from graphflow.runtime.events import OnEvent, Watchdog
 from graphflow.runtime.scheduler import BURST, Runner
 from graphflow.transport.base import Closable, Inbox, Payload, Sender
 from graphflow.wire import attachment
-from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.attachment import MessageInfo, pack
 from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
@@ -43,12 +43,15 @@ class TopicPublisher(Endpoint, Generic[M]):
         """Messages sent since the start; also the last sequence number."""
         self._encode = registry.codec(self.type_name).encode
         self._sender: Sender = _NOT_OPEN
+        self._gid = bytes(16)
+        self._now_ns: Callable[[], int] = int
         self._deadline: Watchdog | None = None
         self._lease: Watchdog | None = None
         self._alive: Sender | None = None
 
     def _open(self, key: str) -> None:
         session = self.node.context.session
+        self._gid, self._now_ns = self._announced().gid, self.node.context.clock.time_ns
         self._sender = session.open_sender(key, self.qos)
         self._declared.append(self._sender)
         if self.qos.deadline_ns != INFINITE_NS:
@@ -81,10 +84,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         sender = self._sender
         if sender.is_wanted:
             payload = self._encode(message)
-            entity = self._announced()
             self.published += 1
-            now = self.node.context.clock.time_ns()
-            sender.put(payload, attachment.pack(self.published, now, entity.gid))
+            sender.put(payload, pack(self.published, self._now_ns(), self._gid))
         else:
             self._announced()
             self.published += 1
@@ -193,6 +194,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._label = label or f"subscription {name}"
         self._group = group
         self._decode = registry.codec(self.type_name).decode
+        self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unreadable
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
         self._taken = 0
@@ -203,6 +205,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _open(self, key: str) -> None:
         context = self.node.context
+        self._read = context.session.read
         bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
         if self._callback is None:
             self._inbox = Inbox(context.session.bell, bound, self._arrived)
@@ -229,7 +232,10 @@ class TopicSubscription(Endpoint, Generic[M]):
     @property
     def received(self) -> int:
         """Messages that arrived since the start."""
-        return self._inbox.received if self._inbox is not None else 0
+        if self._inbox is None:
+            return 0
+        taken = self._taken if self.runner is None else self.runner.runs
+        return taken + len(self._inbox.items) + self._inbox.dropped
 
     @property
     def dropped(self) -> int:
@@ -311,7 +317,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _take(self, arrival: Any) -> tuple[M, MessageInfo] | None:
         """Open what has arrived; None when it is too old or malformed."""
-        payload, beside = self.node.context.session.read(arrival)
+        payload, beside = self._read(arrival)
         info = _info(beside)
         if info is not _NO_INFO and not self._is_fresh(info):
             self.expired += 1
@@ -421,6 +427,10 @@ def _info(beside: bytes | None) -> MessageInfo:
 def _gid_of(beside: bytes | None) -> bytes:
     """The sender named by an attachment; empty when there is none."""
     return beside[-16:] if beside is not None else b""
+
+
+def _unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
+    raise ClosedError(f"{arrival!r} arrived before the subscription was open")
 
 
 def _nothing() -> None:

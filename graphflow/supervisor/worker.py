@@ -18,6 +18,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
 from graphflow.supervisor.classes import add_root, import_class
+from graphflow.transport import loop
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """The preload process blocks these; a worker has them unblocked once it can act on them."""
@@ -75,7 +76,7 @@ def main(job: dict[str, Any], status: int) -> None:
         tell(status, event="failed", process=job["process"], error=_one_line(error))
         code = EXIT_CONFIGURATION
     else:
-        code = asyncio.run(_run(nodes, job, status))
+        code = loop.run(_run(nodes, job, status))
     sys.stdout.flush()
     sys.stderr.flush()
     # Zenoh's threads can keep an interpreter from ending.

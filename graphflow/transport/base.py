@@ -136,21 +136,22 @@ class Bell:
 
     def __init__(self, loop: AbstractEventLoop, *, threads: bool = True) -> None:
         self._loop = loop
-        self._rung: deque[Inbox] = deque()
-        self._pending = False
+        self.rung: deque[Inbox] = deque()
+        """Inboxes that wait to be attended to."""
+        self.pending = False
+        """Whether the loop has been woken for them."""
         self._closed = False
         self._wake = loop.call_soon_threadsafe if threads else loop.call_soon
         self._fd: int | None = None
         if threads and hasattr(os, "eventfd"):
             self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-            loop.add_reader(self._fd, self._answer)
+            getattr(loop, "hang_bellX", loop.add_reader)(self._fd, self._answer)
 
-    def ring(self, inbox: Inbox) -> None:
-        """Have the loop attend to `inbox`. From any thread."""
-        self._rung.append(inbox)
-        if self._pending or self._closed:
+    def ring(self) -> None:
+        """Have the loop attend to the inboxes in `rung`. From any thread."""
+        if self._closed:
             return
-        self._pending = True
+        self.pending = True
         fd = self._fd
         if fd is not None:
             os.eventfd_write(fd, 1)
@@ -163,12 +164,13 @@ class Bell:
         self._attend()
 
     def _attend(self) -> None:
-        self._pending = False
-        rung = self._rung
+        self.pending = False
+        rung = self.rung
         while rung and not self._closed:
             inbox = rung.popleft()
+            inbox.ringing = False  # before the queue is read, so that what comes now rings again
             try:
-                inbox.attend()
+                inbox.ready()
             except Exception as error:  # one inbox's trouble is not the others'
                 self._loop.call_exception_handler({"message": f"{inbox.ready} failed", "exception": error})
 
@@ -176,7 +178,7 @@ class Bell:
         """Stop waking the loop; rings not yet answered are lost."""
         self._closed = True
         if self._fd is not None:
-            self._loop.remove_reader(self._fd)
+            getattr(self._loop, "take_down_bellX", self._loop.remove_reader)(self._fd)
             os.close(self._fd)
             self._fd = None
 
@@ -190,17 +192,16 @@ class Inbox:
         ready: Called on the loop when there is something and nobody is attending to it yet.
     """
 
-    __slots__ = ("_bell", "_ringing", "dropped", "items", "ready", "received")
+    __slots__ = ("_bell", "dropped", "items", "ready", "ringing")
 
     def __init__(self, bell: Bell, depth: int | None, ready: Callable[[], None]) -> None:
         self.items: deque[Any] = deque(maxlen=depth)
         self.ready = ready
-        self.received = 0
-        """Items put in since the start."""
         self.dropped = 0
         """Items lost because the queue was full."""
+        self.ringing = False
+        """Whether the bell has been rung for what is in the queue."""
         self._bell = bell
-        self._ringing = False
 
     def put(self, item: Any) -> None:
         """Add an item. From any one thread."""
@@ -208,12 +209,9 @@ class Inbox:
         if len(items) == items.maxlen:
             self.dropped += 1
         items.append(item)
-        self.received += 1
-        if not self._ringing:
-            self._ringing = True
-            self._bell.ring(self)
-
-    def attend(self) -> None:
-        """Called by the bell on the loop."""
-        self._ringing = False  # before the queue is read, so that what comes now rings again
-        self.ready()
+        if not self.ringing:
+            self.ringing = True
+            bell = self._bell
+            bell.rung.append(self)
+            if not bell.pending:
+                bell.ring()

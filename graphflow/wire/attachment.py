@@ -15,6 +15,8 @@ from graphflow.errors import DecodeError
 
 _LAYOUT = struct.Struct("<qqB16s")
 SIZE = _LAYOUT.size
+_new = tuple.__new__
+"""Makes a named tuple without its Python constructor: one is made for every message."""
 
 
 class MessageInfo(NamedTuple):
@@ -48,4 +50,4 @@ def unpack(data: bytes) -> MessageInfo:
     if data[16] != 16:
         raise DecodeError(f"attachment with a GID of {data[16]} bytes; rmw_zenoh's has 16")
     sequence, source_ns, _, gid = _LAYOUT.unpack(data)
-    return MessageInfo(sequence, source_ns, gid)
+    return _new(MessageInfo, (sequence, source_ns, gid))

@@ -20,7 +20,7 @@ async def test_a_burst_rings_once(graphflow_runner: asyncio.Runner) -> None:
     await settle()
 
     assert calls == [[0, 1, 2, 3, 4]]
-    assert inbox.received == 5
+    assert len(inbox.items) == 5
     assert inbox.dropped == 0
 
 
@@ -32,7 +32,7 @@ async def test_a_full_inbox_drops_the_oldest(graphflow_runner: asyncio.Runner) -
         inbox.put(n)
 
     assert list(inbox.items) == [5, 6, 7]
-    assert (inbox.received, inbox.dropped) == (8, 5)
+    assert (len(inbox.items), inbox.dropped) == (3, 5)
 
 
 async def test_an_inbox_without_bound_keeps_all(graphflow_runner: asyncio.Runner) -> None:
