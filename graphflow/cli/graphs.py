@@ -12,6 +12,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.files import find_graph
 from graphflow.errors import SupervisorError
+from graphflow.wire.profile import PROFILES, VARIABLE
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 
@@ -23,8 +24,19 @@ _graph = click.option("--graph", "name", metavar="NAME", help="Which running gra
 @click.option("-s", "--show-args", is_flag=True, help="Show the arguments of the file, and start nothing.")
 @click.option("--private", is_flag=True, help="On a port and in a domain of its own.")
 @click.option("--domain", type=click.IntRange(0), help="Domain id, before the file's own.")
-def up(graph: str, args: tuple[str, ...], detach: bool, show_args: bool, private: bool, domain: int | None) -> int:
+@click.option("--wire", type=click.Choice(PROFILES), help="Whose message definitions to use.")
+def up(
+    graph: str,
+    args: tuple[str, ...],
+    detach: bool,
+    show_args: bool,
+    private: bool,
+    domain: int | None,
+    wire: str | None,
+) -> int:
     """Start a graph from its file and show its logs. Ctrl-C stops it."""
+    if wire is not None:
+        os.environ[VARIABLE] = wire
     path = find_graph(graph)
     if show_args:
         return _show_args(path)

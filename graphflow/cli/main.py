@@ -14,6 +14,7 @@ from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.errors import GraphflowError
 from graphflow.names import did_you_mean, nearest
+from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
 _VERBS = {
     "up": ("graphs", "Start a graph from its file."),
@@ -64,7 +65,8 @@ class _Verbs(click.Group):
 @click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="graphflow")
 @click.option("--domain", type=click.IntRange(0), help="Domain id; else GRAPHFLOW_DOMAIN, ROS_DOMAIN_ID, or 0.")
-def cli(domain: int | None) -> None:
+@click.option("--wire", type=click.Choice(PROFILES), help="Whose definitions to use; else GRAPHFLOW_WIRE, or jazzy.")
+def cli(domain: int | None, wire: str | None) -> None:
     """Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
 
     \b
@@ -73,6 +75,12 @@ def cli(domain: int | None) -> None:
     """  # noqa: D301 - click wants the character
     if domain is not None:
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
+    if wire is not None:
+        os.environ[VARIABLE] = wire
+    try:
+        wire_profile()
+    except GraphflowError as error:  # a misspelt variable is told before anything is done
+        raise exits.UsageFault(str(error)) from None
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.msgs import base
 from graphflow.msgs.values import Nested, convert
+from graphflow.msgs.views import VIEWS
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, Message
 
@@ -43,6 +44,8 @@ def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]
         "__init__": _constructor(message, nested),
         **{c.name: c.value for c in message.constants},
     }
+    if message.name in VIEWS:
+        namespace["to_numpy"] = VIEWS[message.name]
     return type(name, (base.Message,), namespace)
 
 

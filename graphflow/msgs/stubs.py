@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 
 from graphflow.msgs import registry
+from graphflow.msgs.views import VIEWS
 from graphflow.wire.schema import INTEGER_RANGES, NUMERIC, STRINGS, Action, Field, FieldType, Message, Service
 
 _HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n"
@@ -53,7 +54,7 @@ def _imports(body: str) -> str:
     ours += ["from graphflow import times"] if "times." in body else []
     numpy = ["import numpy as np", "import numpy.typing as npt"] if "npt." in body else []
     standard = _import("collections.abc", ("Mapping", "Sequence"), words)
-    standard += _import("typing", ("Final", "TypeAlias"), words)
+    standard += _import("typing", ("Any", "Final", "TypeAlias"), words)
     return "\n\n".join("\n".join(group) for group in (standard, numpy, sorted(ours)) if group)
 
 
@@ -93,9 +94,10 @@ def _message(message: Message) -> str:
     module, _, name = message.name.rpartition("/")
     constants = (f"{c.name}: Final = {_literal(c.value)}" for c in message.constants)
     attributes = (f"{f.name}: {_held(f.type, module)}" for f in message.fields)
-    return "\n    ".join(
-        [f"class {name}(base.Message):", *constants, *attributes, _constructor(message.fields, module)]
-    )
+    methods = [_constructor(message.fields, module)]
+    if message.name in VIEWS:
+        methods.append("def to_numpy(self) -> npt.NDArray[Any]: ...")
+    return "\n    ".join([f"class {name}(base.Message):", *constants, *attributes, *methods])
 
 
 def _literal(value: bool | float | str) -> str:

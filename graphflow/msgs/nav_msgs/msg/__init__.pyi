@@ -1,6 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -62,6 +63,7 @@ class OccupancyGrid(base.Message):
         info: MapMetaData | Mapping[str, object] = ...,
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
+    def to_numpy(self) -> npt.NDArray[Any]: ...
 
 class Odometry(base.Message):
     header: std_msgs.Header

@@ -1,7 +1,7 @@
 # Written by `python -m graphflow.msgs.stubs`; do not edit.
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -166,6 +166,7 @@ class Image(base.Message):
         step: int = ...,
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
     ) -> None: ...
+    def to_numpy(self) -> npt.NDArray[Any]: ...
 
 class Imu(base.Message):
     header: std_msgs.Header
@@ -257,6 +258,7 @@ class LaserScan(base.Message):
         ranges: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
         intensities: Sequence[float] | npt.NDArray[np.floating | np.integer] = ...,
     ) -> None: ...
+    def to_numpy(self) -> npt.NDArray[Any]: ...
 
 class MagneticField(base.Message):
     header: std_msgs.Header
@@ -386,6 +388,7 @@ class PointCloud2(base.Message):
         data: Sequence[int] | npt.NDArray[np.integer] = ...,
         is_dense: bool = ...,
     ) -> None: ...
+    def to_numpy(self) -> npt.NDArray[Any]: ...
 
 class PointField(base.Message):
     INT8: Final = 1
