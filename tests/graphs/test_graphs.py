@@ -88,3 +88,19 @@ def test_the_unquoted_command_of_the_slides(machine: Machine) -> None:
     )
     machine.until(lambda: pose(machine, "turtle1")["angular_velocity"] == pytest.approx(1.8), "it turns")
     assert pub.end() == 0
+
+
+def test_via_points(machine: Machine) -> None:
+    """The scheduler sends the follower on, over services of the project's own."""
+    up = machine.start("up", "graphs/via_points.yaml")
+    up.wait_for("next: (5, 9)", limit=40.0)
+    assert "arrived at (2, 1)" in up.text
+    assert up.end() == 0
+
+
+def test_ten_turtles(machine: Machine) -> None:
+    """As many as the argument says."""
+    machine.run("up", "-d", "graphs/ten_turtles.yaml", "count:=3")
+    machine.until(lambda: pose(machine, "turtle4")["linear_velocity"] == 1.0, "the third drives")
+    assert "/turtle5/pose" not in machine.run("topic", "list")
+    machine.run("down")
