@@ -18,6 +18,7 @@ from graphflow.runtime.scheduler import Runner
 from graphflow.transport.base import Inbox
 from graphflow.transport.config import config, open_session, rendezvous_endpoint
 from graphflow.transport.loop import LOOP_VARIABLE, new_event_loop
+from graphflow.transport.malloc import keep_freed_memory
 from graphflow.transport.rendezvous import establish, free_endpoint
 from graphflow.transport.zenoh import ZenohSession
 
@@ -30,7 +31,8 @@ LOOPS = ["asyncio", "uvloop"]
 
 
 def loop_of(kind: str) -> asyncio.AbstractEventLoop:
-    """The event loop that nodes run on without and with the extra `fast`."""
+    """The event loop that nodes run on without and with the extra `fast`, and what `loop.run` does before."""
+    keep_freed_memory()
     os.environ[LOOP_VARIABLE] = kind
     return new_event_loop()
 
@@ -93,7 +95,8 @@ def run_on(kind: str, main: Coroutine[Any, Any, None]) -> None:
 
 
 def raw_session() -> zenoh.Session:
-    """A Zenoh session configured as graphflow's."""
+    """A Zenoh session configured as graphflow's, in a process that treats memory likewise."""
+    keep_freed_memory()
     return open_session(config("peer", connect=rendezvous_endpoint(), listen="tcp/127.0.0.1:0"))
 
 

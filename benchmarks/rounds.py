@@ -29,6 +29,7 @@ def compare(
     return found
 
 
-def goal(what: str, value: float, limit: float) -> None:
+def goal(what: str, value: float, limit: float, *, at_least: bool = False) -> None:
     """Print whether a goal is met."""
-    print(f"goal: {what} <= {limit:g}: {value:.2f}  {'met' if value <= limit else 'MISSED'}")
+    met = value >= limit if at_least else value <= limit
+    print(f"goal: {what} {'>=' if at_least else '<='} {limit:g}: {value:.2f}  {'met' if met else 'MISSED'}")

@@ -33,7 +33,10 @@ _WORKER = (sys.executable, "-P", "-m", "graphflow.supervisor.worker")
 _WARM = (
     *(f"rcl_interfaces/srv/{name}" for name in ("GetParameters", "SetParameters", "ListParameters")),
     *(f"rcl_interfaces/srv/{name}" for name in ("DescribeParameters", "GetParameterTypes", "SetParametersAtomically")),
+    *(f"rcl_interfaces/srv/{name}" for name in ("GetLoggerLevels", "SetLoggerLevels")),
+    "type_description_interfaces/srv/GetTypeDescription",
 )
+"""The services that every node offers."""
 
 
 def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
@@ -111,6 +114,7 @@ class _Preload:
         import graphflow.runtime.run
         import graphflow.supervisor.worker  # noqa: F401
         from graphflow.msgs import registry
+        from graphflow.transport.malloc import keep_freed_memory
 
         for name in _WARM:
             service = registry.service_schema(name)
@@ -118,9 +122,11 @@ class _Preload:
             registry.interface_class(name)
             registry.codec(service.request.name)
             registry.codec(service.response.name)
-        registry.codec("rcl_interfaces/msg/Log")
-        registry.hash_of("rcl_interfaces/msg/Log")
-        _tune_malloc()
+        for name in ("rcl_interfaces/msg/Log", "rcl_interfaces/msg/ParameterEvent"):
+            registry.interface_class(name)
+            registry.codec(name)
+            registry.hash_of(name)
+        keep_freed_memory()
         gc.collect()
         gc.freeze()
 
@@ -275,16 +281,3 @@ def _reseed() -> None:
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:
         numpy_random.seed()
-
-
-def _tune_malloc() -> None:
-    """Keep freed megabytes in the process: without this a received image costs a page fault per 4 kB."""
-    import ctypes
-
-    m_trim_threshold, m_mmap_threshold = -1, -3
-    try:
-        mallopt = ctypes.CDLL(None).mallopt
-    except (OSError, AttributeError):  # not glibc
-        return
-    mallopt(m_mmap_threshold, 32 << 20)
-    mallopt(m_trim_threshold, 256 << 20)

@@ -17,6 +17,8 @@ from select import EPOLLIN, EPOLLOUT
 from selectors import EVENT_READ, EVENT_WRITE
 from typing import Any, TypeVar
 
+from graphflow.transport.malloc import keep_freed_memory
+
 T = TypeVar("T")
 
 LOOP_VARIABLE = "GRAPHFLOW_LOOP"
@@ -84,6 +86,7 @@ def new_event_loop() -> asyncio.AbstractEventLoop:
 
 
 def run(main: Coroutine[Any, Any, T]) -> T:
-    """`asyncio.run` on a loop of the best kind there is."""
+    """`asyncio.run` on a loop of the best kind there is, in a process that is good at large messages."""
+    keep_freed_memory()
     with asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(main)
