@@ -17,6 +17,7 @@ from graphflow.names import did_you_mean, nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
 _VERBS = {
+    "init": ("init", "Write a project to begin with."),
     "up": ("graphs", "Start a graph from its file."),
     "down": ("graphs", "Stop a running graph."),
     "ps": ("graphs", "List the nodes of running graphs."),
@@ -53,7 +54,11 @@ class _Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _VERBS:
             meant = _OTHER_WORDS.get(nearest(args[0], [*_OTHER_WORDS, *_VERBS]) or "")
-            help_ = f"; did you mean {meant!r}?" if meant else did_you_mean(args[0], _VERBS)
+            help_ = (
+                f"; did you mean {meant!r}?"
+                if meant
+                else did_you_mean(args[0], _VERBS) or "; graphflow --help lists them"
+            )
             raise click.UsageError(f"no such command {args[0]!r}{help_}", ctx)
         return super().resolve_command(ctx, args)
 

@@ -57,26 +57,41 @@ def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
+    # First this: a graph that fails at once waits for a follower, tells it everything, and is gone.
+    nodes = _list_nodes(run["socket"])
     with ControlClient(run["socket"]) as client:
         client.send(do="follow", lifeline=not detach)
-        return _Stream(run, classes, client, detach, interrupts).run()
+        return _Stream(run, classes, nodes, client, detach, interrupts).run()
+
+
+def _list_nodes(socket: str) -> list[dict[str, Any]]:
+    with ControlClient(socket) as client:
+        client.send(do="ps")
+        answer = next(client.receive(), {})
+    nodes: list[dict[str, Any]] = answer.get("nodes", [])
+    return nodes
 
 
 class _Stream:
     def __init__(
-        self, run: dict[str, Any], classes: dict[str, str], client: ControlClient, detach: bool, interrupts: list[int]
+        self,
+        run: dict[str, Any],
+        classes: dict[str, str],
+        nodes: list[dict[str, Any]],
+        client: ControlClient,
+        detach: bool,
+        interrupts: list[int],
     ) -> None:
         self._run, self._classes, self._client, self._detach = run, classes, client, detach
         self._interrupts = interrupts
         """Signals that asked to stop, as they came."""
         self._stop_sent = 0
-        self._nodes: list[dict[str, Any]] = []
+        self._nodes = nodes
         self._logs: LogReader | None = None
         self._began = time.monotonic()
         self._failed: list[str] = []
 
     def run(self) -> int:
-        self._nodes = self._list_nodes()
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
         self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0))
         while True:
@@ -94,13 +109,6 @@ class _Stream:
                 self._stop_sent = len(self._interrupts)
                 reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
                 self._client.send(do="down", now=self._stop_sent > 1, reason=reason)
-
-    def _list_nodes(self) -> list[dict[str, Any]]:
-        with ControlClient(self._run["socket"]) as other:
-            other.send(do="ps")
-            answer = next(other.receive(), {})
-        nodes: list[dict[str, Any]] = answer.get("nodes", [])
-        return nodes
 
     def _lost(self) -> int:
         assert self._logs is not None

@@ -13,7 +13,7 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS = ("up", "down", "ps", "logs", "plan", "check", "run", "node", "topic", "service", "param", "interface")
+VERBS = ("init", "up", "down", "ps", "logs", "plan", "check", "run", "node", "topic", "service", "param", "interface")
 
 
 @pytest.fixture(autouse=True)
@@ -66,7 +66,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["launch"], "no such command 'launch'; did you mean 'up'?"),
         (["lanch"], "no such command 'lanch'; did you mean 'up'?"),
         (["stop"], "no such command 'stop'; did you mean 'down'?"),
-        (["zzz"], "no such command 'zzz'; there is check, down, interface, logs, "),
+        (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
         (["topic", "lst"], "No such command 'lst'. Did you mean 'list'?"),
         (["topic", "list", "--type"], "--show-types"),
         (["topic", "pub", "/x"], "Missing argument 'TYPE'"),

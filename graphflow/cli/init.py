@@ -1,0 +1,105 @@
+"""`graphflow init NAME`: a project to begin with."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from graphflow.cli import output
+from graphflow.cli.exits import UsageFault
+
+_FILES = {
+    "pyproject.toml": """\
+[project]
+name = "@name"
+version = "0.1.0"
+requires-python = ">=3.11"
+dependencies = ["graphflow-zenoh"]
+
+[tool.pytest.ini_options]
+testpaths = ["tests"]
+pythonpath = ["."]
+""",
+    "README.md": """\
+# @name
+
+    graphflow up graphs/@name.yaml       run it, until Ctrl-C
+    graphflow topic echo /greeting       in a second terminal: what it says
+    graphflow param set /greeter rate 5  and change it while it runs
+    python -m pytest                     test it, without network and without waiting
+
+`nodes/` has the nodes, `graphs/` says which of them run together, `interfaces/` has message and service types of your
+own: save a file there, and import it.
+""",
+    "interfaces/@name_interfaces/msg/Greeting.msg": """\
+string text
+uint32 count
+""",
+    "nodes/greeter.py": '''\
+"""A node: what it holds, and what it does."""
+
+from graphflow import Node, Param, Publisher, timer
+from graphflow.msgs.@name_interfaces.msg import Greeting
+
+
+class Greeter(Node):
+    """Greets, again and again."""
+
+    rate = Param(1.0, unit="Hz", gt=0.0, doc="Greetings per second.")
+    text = Param("hello", doc="What it says.")
+    greeting = Publisher(Greeting, "greeting")
+    count = 0
+
+    @timer(hz=rate)
+    async def greet(self) -> None:
+        self.count += 1
+        self.greeting.publish(Greeting(text=self.text, count=self.count))
+        self.log.info("%s, the %d. time", self.text, self.count)
+''',
+    "graphs/@name.yaml": """\
+args:
+  text: {default: hello, doc: What the greeter says.}
+
+nodes:
+  /greeter:
+    class: nodes.greeter:Greeter
+    params: {text: $(var text), rate: 2.0}
+""",
+    "tests/test_greeter.py": """\
+from graphflow.msgs.@name_interfaces.msg import Greeting
+from graphflow.testing import Graph
+
+from nodes.greeter import Greeter
+
+
+async def test_it_greets_twice_a_second(graph: Graph) -> None:
+    await graph.start(Greeter(rate=2.0, text="hi"))
+    heard = graph.tap(Greeting, "/greeting")
+
+    await graph.clock.advance(1.0)
+
+    assert [(m.text, m.count) for m in heard] == [("hi", 1), ("hi", 2)]
+""",
+    ".gitignore": "__pycache__/\n.venv/\n.pytest_cache/\n",
+}
+"""The files of a new project, with `@name` for its name."""
+
+
+@click.command()
+@click.argument("name")
+def init(name: str) -> None:
+    """Write a project to begin with: the folder NAME with a node, a graph, a message type and a test that passes."""
+    folder = Path(name)
+    word = folder.name
+    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", word):
+        raise UsageFault(f"{word!r}: a project's name is in small letters, digits and single _, as in my_lab")
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise UsageFault(f"{folder} is there already; take another name, or remove it")
+    for path, text in _FILES.items():
+        file = folder / path.replace("@name", word)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text.replace("@name", word), encoding="utf-8")
+        output.data(f"  {file}")
+    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{word}.yaml")

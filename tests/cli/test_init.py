@@ -1,0 +1,59 @@
+"""A new project works as it is written."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import LIMIT, Machine
+
+pytestmark = pytest.mark.real
+
+
+def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path) -> None:
+    """Its own node is the one that runs, with its own interface; pytest is content; the check finds nothing."""
+    text = machine.run("init", "mylab", cwd=tmp_path)
+    assert "graphflow up graphs/mylab.yaml" in text
+    project = tmp_path / "mylab"
+    assert "no problems" in machine.run("check", "graphs/mylab.yaml", cwd=project)
+    up = machine.start("up", "graphs/mylab.yaml", "text:=moin", cwd=project)
+    up.wait_for("nodes/greeter.py")
+    up.wait_for("moin, the 2. time")
+    assert "text: moin" in machine.run("topic", "echo", "/greeting", "--once", cwd=project)
+    assert up.end() == 0
+    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    tests = subprocess.run(words, cwd=project, capture_output=True, text=True, timeout=LIMIT * 3, check=False)
+    assert tests.returncode == 0, tests.stdout
+    assert "1 passed" in tests.stdout
+
+
+def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) -> None:
+    """A node that is called like one that comes with graphflow is the project's own."""
+    machine.run("init", "mylab", cwd=tmp_path)
+    project = tmp_path / "mylab"
+    (project / "nodes" / "talker.py").write_text(
+        "from graphflow import Node, timer\n\n\nclass Talker(Node):\n    @timer(0.1)\n    def say(self):\n"
+        '        self.log.info("this is mine")\n'
+    )
+    node = machine.start("run", "nodes.talker:Talker", cwd=project)
+    node.wait_for("this is mine")
+    assert node.end() == 0
+
+
+@pytest.mark.parametrize("name", ["My-Lab", "1lab", "lab__a"])
+def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str) -> None:
+    """Since the interface package is called after it."""
+    assert "a project's name is in small letters" in machine.run("init", name, cwd=tmp_path, code=2)
+    assert not (tmp_path / name).exists()
+
+
+def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
+    """A folder with something in it stays as it is; an empty one is filled."""
+    (tmp_path / "lab").mkdir()
+    machine.run("init", "lab", cwd=tmp_path)
+    (tmp_path / "lab" / "README.md").write_text("mine")
+    assert "lab is there already" in machine.run("init", "lab", cwd=tmp_path, code=2)
+    assert (tmp_path / "lab" / "README.md").read_text() == "mine"
