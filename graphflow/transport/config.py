@@ -34,7 +34,8 @@ _CONFIG = """{
   adminspace: { enabled: false },
   transport: {
     unicast: { open_timeout: 500, accept_timeout: 5000 },
-    link: { tx: { lease: 10000 } },
+    // Two signs of life a lease, as rmw_zenoh: in a mesh of twenty they are most of what idle nodes do.
+    link: { tx: { lease: 10000, keep_alive: 2 } },
     // Shared memory for publications only: zenoh#2628 affects queries.
     shared_memory: { transport_optimization: { messages: ["put"] } },
   },
