@@ -389,11 +389,11 @@ class TopicSubscription(Endpoint, Generic[M]):
             if self._inbox is None or self.entity is None:
                 raise StopAsyncIteration
             while self._inbox.items:
-                self._taken += 1
-                if self._taken % BURST == 0:
+                if self._taken % BURST == BURST - 1:
                     await asyncio.sleep(0)  # a sender that is faster than the reader must not hold the loop
                     if not self._inbox.items:
                         break
+                self._taken += 1
                 taken = self._take(self._inbox.items.popleft())
                 if taken is not None:
                     return taken
