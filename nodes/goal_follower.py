@@ -6,11 +6,10 @@ goals is another node, such as `scheduler.py`, which is called back on arrival.
 
 from __future__ import annotations
 
-from graphflow.msgs.turtle_interfaces.srv import SetGoal
-
 import graphflow
 from graphflow import CallError, Client, service
 from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.msgs.turtle_interfaces.srv import SetGoal
 from nodes.position_controller import Point, PositionController
 
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from graphflow.msgs.turtle_interfaces.srv import RandGoal, SetGoal
-
 import graphflow
 from graphflow import Client, Node, Param, ParameterError, service, task
 from graphflow.msgs.geometry_msgs.msg import Point
 from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.msgs.turtle_interfaces.srv import RandGoal, SetGoal
 
 
 class Scheduler(Node):

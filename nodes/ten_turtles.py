@@ -1,7 +1,9 @@
 """Ten turtles in circles: services called when the node starts, and publishers made at run time.
 
-graphflow run nodes.turtlesim:TurtleSim
-graphflow run nodes.ten_turtles:TenTurtles
+The simulator and this node, in two terminals:
+
+    graphflow run nodes.turtlesim:TurtleSim
+    graphflow run nodes.ten_turtles:TenTurtles
 """
 
 from __future__ import annotations

@@ -54,12 +54,8 @@ class _Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _VERBS:
             meant = _OTHER_WORDS.get(nearest(args[0], [*_OTHER_WORDS, *_VERBS]) or "")
-            help_ = (
-                f"; did you mean {meant!r}?"
-                if meant
-                else did_you_mean(args[0], _VERBS) or "; graphflow --help lists them"
-            )
-            raise click.UsageError(f"no such command {args[0]!r}{help_}", ctx)
+            hint = f"; did you mean {meant!r}?" if meant else did_you_mean(args[0], _VERBS)
+            raise click.UsageError(f"no such command {args[0]!r}{hint or '; graphflow --help lists them'}", ctx)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -97,7 +97,7 @@ def resolver(node: PlannedNode) -> Resolver:
 
 
 def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """One name, two types: such endpoints never hear each other, and nothing at run time would say so."""
+    """One name, two types: such endpoints never hear each other, and here it is known before anything runs."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for node in plan.nodes:
         interface = interfaces[node.class_path]

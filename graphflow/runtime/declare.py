@@ -361,9 +361,7 @@ class ParamHook:
 HOOK_MARK = "__graphflow_hook__"
 
 
-def _mark_hook(
-    fn: F, kind: Literal["check", "on_change"], param: Param[Any], words: tuple[str, ...], place: Place
-) -> F:
+def _mark_hook(fn: F, kind: HookKind, param: Param[Any], words: tuple[str, ...], place: Place) -> F:
     if not inspect.isfunction(fn):
         raise DeclarationError(f"{place}: .{kind} goes on a method, not on {fn!r}")
     if len(inspect.signature(fn).parameters) != len(words):

@@ -6,10 +6,10 @@ import logging
 import math
 
 import pytest
-from graphflow.msgs.turtle_interfaces.srv import RandGoal, SetGoal
 
 from graphflow import ParameterError, RemoteError
 from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.msgs.turtle_interfaces.srv import RandGoal, SetGoal
 from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from nodes.goal_follower import GoalFollower
