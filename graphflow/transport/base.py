@@ -145,7 +145,7 @@ class Bell:
         self._fd: int | None = None
         if threads and hasattr(os, "eventfd"):
             self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-            getattr(loop, "hang_bellX", loop.add_reader)(self._fd, self._answer)
+            getattr(loop, "hang_bell", loop.add_reader)(self._fd, self._answer)
 
     def ring(self) -> None:
         """Have the loop attend to the inboxes in `rung`. From any thread."""
@@ -178,7 +178,7 @@ class Bell:
         """Stop waking the loop; rings not yet answered are lost."""
         self._closed = True
         if self._fd is not None:
-            getattr(self._loop, "take_down_bellX", self._loop.remove_reader)(self._fd)
+            getattr(self._loop, "take_down_bell", self._loop.remove_reader)(self._fd)
             os.close(self._fd)
             self._fd = None
 

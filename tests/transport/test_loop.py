@@ -55,6 +55,28 @@ def test_a_bell_is_answered_from_another_thread(monkeypatch: pytest.MonkeyPatch)
     assert seen == list(range(1000))
 
 
+def test_a_bell_takes_the_short_way() -> None:
+    """On the loop that has a short way for bells they take it: asyncio's readers stay out of it."""
+    loop = BellLoop()
+    readers: list[object] = []
+    loop.add_reader = lambda fd, *_: readers.append(fd)  # type: ignore[method-assign]
+    bell = Bell(loop)
+    calls: list[int] = []
+
+    def ready() -> None:
+        calls.append(len(inbox.items))
+        loop.stop()
+
+    inbox = Inbox(bell, None, ready)
+    inbox.put("news")
+    loop.call_later(10.0, loop.stop)
+    loop.run_forever()
+    bell.close()
+    loop.close()
+    assert calls == [1]
+    assert readers == []
+
+
 def test_everything_else_works_as_on_asyncios_loop(monkeypatch: pytest.MonkeyPatch) -> None:
     """Timers, sockets that are read and written, threads and subprocesses, beside a bell that rings all the time."""
     monkeypatch.setenv("GRAPHFLOW_LOOP", "asyncio")
