@@ -97,7 +97,7 @@ def run_on(kind: str, main: Coroutine[Any, Any, None]) -> None:
 def raw_session() -> zenoh.Session:
     """A Zenoh session configured as graphflow's, in a process that treats memory likewise."""
     keep_freed_memory()
-    return open_session(config("peer", connect=rendezvous_endpoint(), listen="tcp/127.0.0.1:0"))
+    return open_session(config("peer", connect=[rendezvous_endpoint()], listen="tcp/127.0.0.1:0"))
 
 
 def wait_matched(declared: Any, limit: float = LIMIT) -> None:

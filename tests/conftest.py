@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -60,9 +60,15 @@ class Program:
 
 
 class Machine:
-    """Commands in an environment of their own: rendezvous port, domain, run and log directories."""
+    """Commands in an environment of their own: rendezvous port, domain, run and log directories.
 
-    def __init__(self, folder: Path) -> None:
+    Args:
+        folder: For its files.
+        at: A command that runs commands elsewhere, such as on another host.
+    """
+
+    def __init__(self, folder: Path, at: Sequence[str] = ()) -> None:
+        self._at = at
         self.domain = random.randrange(10_000, 1_000_000)
         self.endpoint = free_endpoint()
         self.run_directory = folder / "run"
@@ -84,7 +90,7 @@ class Machine:
 
     def start_python(self, *words: str, cwd: Path = PROJECT) -> Program:
         process = subprocess.Popen(
-            [sys.executable, *words],
+            [*self._at, sys.executable, *words],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -113,7 +119,7 @@ class Machine:
         """End whatever is left, by its own process id."""
         for run in self.run_directory.glob("graphflow/*/*/run.json"):
             subprocess.run(
-                [sys.executable, "-m", "graphflow.cli.main", "down", "--all", "--now"],
+                [*self._at, sys.executable, "-m", "graphflow.cli.main", "down", "--all", "--now"],
                 env=self.env,
                 capture_output=True,
                 timeout=LIMIT,

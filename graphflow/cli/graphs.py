@@ -11,6 +11,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.files import find_graph
+from graphflow.cli.reaching import reach, reach_options
 from graphflow.errors import SupervisorError
 from graphflow.wire.profile import PROFILES, VARIABLE
 
@@ -25,6 +26,7 @@ _graph = click.option("--graph", "name", metavar="NAME", help="Which running gra
 @click.option("--private", is_flag=True, help="On a port and in a domain of its own.")
 @click.option("--domain", type=click.IntRange(0), help="Domain id, before the file's own.")
 @click.option("--wire", type=click.Choice(PROFILES), help="Whose message definitions to use.")
+@reach_options
 def up(
     graph: str,
     args: tuple[str, ...],
@@ -33,10 +35,13 @@ def up(
     private: bool,
     domain: int | None,
     wire: str | None,
+    connect: tuple[str, ...],
+    net: str | None,
 ) -> int:
     """Start a graph from its file and show its logs. Ctrl-C stops it."""
     if wire is not None:
         os.environ[VARIABLE] = wire
+    reach(connect, net)
     path = find_graph(graph)
     if show_args:
         return _show_args(path)

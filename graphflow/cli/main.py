@@ -12,6 +12,7 @@ import click
 
 from graphflow import __version__
 from graphflow.cli import exits, output
+from graphflow.cli.reaching import reach, reach_options
 from graphflow.errors import GraphflowError
 from graphflow.names import did_you_mean, nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
@@ -67,7 +68,8 @@ class _Verbs(click.Group):
 @click.version_option(__version__, prog_name="graphflow")
 @click.option("--domain", type=click.IntRange(0), help="Domain id; else GRAPHFLOW_DOMAIN, ROS_DOMAIN_ID, or 0.")
 @click.option("--wire", type=click.Choice(PROFILES), help="Whose definitions to use; else GRAPHFLOW_WIRE, or jazzy.")
-def cli(domain: int | None, wire: str | None) -> None:
+@reach_options
+def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str | None) -> None:
     """Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
 
     \b
@@ -78,6 +80,7 @@ def cli(domain: int | None, wire: str | None) -> None:
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
     if wire is not None:
         os.environ[VARIABLE] = wire
+    reach(connect, net)
     try:
         wire_profile()
     except GraphflowError as error:  # a misspelt variable is told before anything is done

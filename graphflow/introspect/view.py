@@ -18,6 +18,7 @@ from graphflow.errors import (
 from graphflow.machines.cache import GraphCache
 from graphflow.names import did_you_mean
 from graphflow.transport.client import Client
+from graphflow.transport.rendezvous import host_name
 from graphflow.wire import attachment
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import Kind, watch_key
@@ -126,8 +127,9 @@ class View:
         zids = {e.zid for e in self.cache.owners(name)}
         for token in self._client.tokens(f"@graphflow/{self.domain}/proc/**"):
             parts = token.split("/")
-            if len(parts) == 6 and parts[3] in zids:
-                return f"process {parts[5]}{_command_of(int(parts[5]))}"
+            if len(parts) == 7 and parts[3] in zids:
+                pid, host = parts[5:]
+                return f"process {pid}{_command_of(int(pid)) if host == host_name() else f' on {host}'}"
         return f"session {', '.join(sorted(zids))}, not of graphflow"
 
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:

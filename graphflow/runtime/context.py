@@ -19,11 +19,15 @@ from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile
 
 if TYPE_CHECKING:
+    from graphflow.transport.link import Link
     from graphflow.transport.takeover import Takeover
 
 T = TypeVar("T")
 
 logger = logging.getLogger("graphflow")
+
+LINK_GRACE = 3.0
+"""Seconds that other machines get to answer before what was asked for goes on without them."""
 
 
 class Context:
@@ -40,24 +44,28 @@ class Context:
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
+        self._link: Link | None = None
         self._listeners: list[Callable[[Change], None]] = []
         self._by_name: dict[str, list[Callable[[Change], None]]] = {}
         self._advised = False
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
     @classmethod
-    async def open(cls, domain: int | None = None, *, mode: str = "peer", checked: bool = False) -> Context:
+    async def open(
+        cls, domain: int | None = None, *, mode: str = "peer", checked: bool = False, link: bool = True
+    ) -> Context:
         """Join the machine's graphs over Zenoh.
 
         Args:
             domain: See `domain_id`.
             mode: Of the Zenoh session: `peer` or `client`.
             checked: The rendezvous was looked at a moment ago by a process this one trusts.
+            link: Link this machine to others too, if the environment says so.
 
         Raises:
             TransportError: The rendezvous cannot be reached or hosted, or is another user's.
         """
-        from graphflow.transport.rendezvous import establish, user_id
+        from graphflow.transport.rendezvous import establish, host_name, user_id
         from graphflow.transport.takeover import Takeover
         from graphflow.transport.zenoh import ZenohSession
 
@@ -72,9 +80,34 @@ class Context:
         context = cls(session, domain=domain)
         context._takeover = takeover
         takeover.guard(session)
-        token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}"
+        token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}/{host_name()}"
         context._declared.append(session.announce(token))
+        if link and not checked:
+            try:
+                context.open_link()
+                await context.wait_linked()
+            except BaseException:
+                await context.close()
+                raise
         return context
+
+    def open_link(self) -> None:
+        """Link this machine to others, if the environment says so.
+
+        Raises:
+            TransportError, GraphFileError: What it says makes no sense.
+        """
+        from graphflow.transport.config import reaches_out
+
+        if reaches_out():
+            from graphflow.transport.link import Link
+
+            self._link = Link(self.session.bell, self.domain)
+
+    async def wait_linked(self) -> None:
+        """Wait until the other machines have answered, or say that they have not, and go on."""
+        if self._link is not None:
+            await self._link.wait_ready(LINK_GRACE)
 
     def next_id(self) -> int:
         """A number no other node or endpoint of this process has."""
@@ -153,6 +186,8 @@ class Context:
 
     async def close(self) -> None:
         """Leave the network. Nodes are to be stopped before."""
+        if self._link is not None:
+            await asyncio.to_thread(self._link.close)
         if self._takeover is not None:
             await self._takeover.close()
         await self.session.close()

@@ -11,6 +11,7 @@ import json
 import os
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -167,8 +168,9 @@ class _Launch:
             run_id = rundir.new_run_id()
             logs = rundir.open_logs(plan.name, run_id)
             _log_to(logs / "supervisor.log")
-            context = await Context.open(domain)
+            context = await Context.open(domain, link=False)
             try:
+                context.open_link()
                 run = _run_file(plan, directory, run_id, logs, domain)
                 return await self._supervise(plan, context, directory, run, places, step_types)
             finally:
@@ -185,6 +187,8 @@ class _Launch:
         places: dict[str, str],
         step_types: dict[str, str],
     ) -> int:
+        import asyncio
+
         from graphflow.supervisor.channel import Lines
         from graphflow.supervisor.control import ControlServer
         from graphflow.supervisor.supervisor import Supervisor
@@ -192,6 +196,7 @@ class _Launch:
         preload = Lines(self._channel, lambda e: supervisor.heard(e), lambda: supervisor.preload_lost())
         workers = Lines(self._status, lambda e: supervisor.heard(e), lambda: None)
         supervisor = Supervisor(plan, context, preload, Path(run.logs), step_types)
+        _tell_notes(supervisor.note)
         preload.send(do="log", path=str(Path(run.logs) / "supervisor.log"))
         control = ControlServer(supervisor)
         await control.open(directory.socket)
@@ -202,11 +207,13 @@ class _Launch:
         self._report(ok=True, run=run.__dict__, classes=places)
         os.close(self._report_pipe)
         self._report_pipe = -1
+        linked = asyncio.create_task(context.wait_linked())
         try:
             code = await supervisor.run()
             await control.wait_followed()
             return code
         finally:
+            linked.cancel()
             await control.close()
             workers.close()
             preload.close()
@@ -243,3 +250,15 @@ def _log_to(path: Path) -> None:
     for source, fd in ((null, 0), (null, 1), (out, 2)):
         os.dup2(source, fd)
     logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
+
+
+def _tell_notes(note: Callable[[str], None]) -> None:
+    """Have what the supervisor's process learns of the network told to whoever follows the graph."""
+    import logging
+
+    class Notes(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            note(record.getMessage())
+
+    for name in ("graphflow.link", "graphflow.rendezvous"):
+        logging.getLogger(name).addHandler(Notes(logging.INFO))

@@ -139,6 +139,10 @@ class Supervisor:
                 self._happen(process, Event.KILL)
         self._stop_next_layer()
 
+    def note(self, text: str) -> None:
+        """Tell those who follow the graph something about its surroundings."""
+        self._tell(event="note", text=text)
+
     # events from below
 
     async def run(self) -> int:

@@ -10,7 +10,7 @@ from zenoh.handlers import Callback
 
 from graphflow.errors import SupervisorError
 from graphflow.transport.base import Answer
-from graphflow.transport.config import close_session, rendezvous_endpoint
+from graphflow.transport.config import close_session, reaches_out, rendezvous_endpoint
 from graphflow.transport.rendezvous import join
 
 TOKENS_LIMIT = 2.0
@@ -18,7 +18,7 @@ TOKENS_LIMIT = 2.0
 
 
 class Client:
-    """A session at the rendezvous.
+    """A session at the rendezvous, or where nothing runs on this machine, at a router that `--connect` names.
 
     Raises:
         TransportError: as `rendezvous.join`.
@@ -26,13 +26,9 @@ class Client:
     """
 
     def __init__(self) -> None:
-        session = join()
+        session = join() or _dial()
         if session is None:
-            raise SupervisorError(
-                f"nothing is running: nobody answers at {rendezvous_endpoint()}; start a graph with graphflow up, "
-                "or a node with graphflow run",
-                exit_code=3,
-            )
+            raise SupervisorError(f"nothing is running: {_nobody()}", exit_code=3)
         self._session = session
 
     @property
@@ -73,3 +69,17 @@ class Client:
 
     def close(self) -> None:
         close_session(self._session)
+
+
+def _nobody() -> str:
+    if reaches_out():
+        return f"nobody answers at {rendezvous_endpoint()}, nor where --connect or --net point to"
+    return f"nobody answers at {rendezvous_endpoint()}; start a graph with graphflow up, or a node with graphflow run"
+
+
+def _dial() -> zenoh.Session | None:
+    if not reaches_out():
+        return None
+    from graphflow.transport.link import dial  # with all that reads profiles
+
+    return dial()

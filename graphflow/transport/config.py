@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Sequence
 from functools import cache
 
 import zenoh
@@ -13,6 +14,10 @@ from graphflow.errors import TransportError
 ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 """Where a ROS 2 node with default settings looks for its router."""
+CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
+"""Endpoints of routers on other machines, with spaces between them."""
+PROFILE_VARIABLE = "GRAPHFLOW_NET"
+"""The path of a net profile (`graph.net`)."""
 
 CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
@@ -47,13 +52,18 @@ def rendezvous_endpoint() -> str:
     return os.environ.get(ENDPOINT_VARIABLE, DEFAULT_ENDPOINT)
 
 
-def config(mode: str, *, connect: str | None = None, listen: str | None = None) -> zenoh.Config:
+def reaches_out() -> bool:
+    """Whether the environment asks for a link to other machines (`transport.link`)."""
+    return bool(os.environ.get(CONNECT_VARIABLE) or os.environ.get(PROFILE_VARIABLE))
+
+
+def config(mode: str, *, connect: Sequence[str] = (), listen: str | None = None) -> zenoh.Config:
     """A session configuration. Multicast is off and nothing listens beyond `listen`."""
     return zenoh.Config.from_json5(
         _CONFIG
         % {
             "mode": mode,
-            "connect": f'"{connect}"' if connect else "",
+            "connect": ", ".join(f'"{endpoint}"' for endpoint in connect),
             "listen": f'"{listen}"' if listen else "",
             "query_limit": QUERY_LIMIT_MS,
         }

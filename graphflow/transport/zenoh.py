@@ -171,7 +171,7 @@ class ZenohSession:
 
     def __init__(self, loop: AbstractEventLoop, mode: str = "peer") -> None:
         listen = "tcp/127.0.0.1:0" if mode == "peer" else None
-        self.raw = open_session(config(mode, connect=rendezvous_endpoint(), listen=listen))
+        self.raw = open_session(config(mode, connect=[rendezvous_endpoint()], listen=listen))
         close_at_exit(self.raw)
         self.zid = str(self.raw.info.zid())
         self.bell = Bell(loop)

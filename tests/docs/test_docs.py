@@ -13,6 +13,7 @@ The first word behind a block's fence is its kind, further words say more:
     raises=NAME   running it raises that error
     wrong         a graph file with mistakes
     fragment      a part of a graph file
+    net           a net profile
     ros2          code for ROS 2, to compare with: it must parse
     up=PATH       this graph file runs in another terminal
 
@@ -41,10 +42,12 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import pytest
+from pydantic import ValidationError
 
 from graphflow.errors import GraphFileError
 from graphflow.graph import params_file
 from graphflow.graph.check import check
+from graphflow.graph.net import NetProfile
 from graphflow.graph.resolve import load
 from graphflow.graph.source import read
 from graphflow.msgs import registry
@@ -55,7 +58,7 @@ from tests.conftest import LIMIT, PROJECT, Machine, Program
 PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
 KINDS = {
     "python": {"file", "raises", "ros2"},
-    "yaml": {"file", "wrong", "fragment"},
+    "yaml": {"file", "wrong", "fragment", "net"},
     "msg": {"file"},
     "srv": {"file"},
     "console": {"up"},
@@ -227,6 +230,14 @@ async def _run_tests(module: ModuleType) -> None:
                 await graph.close()
 
 
+def _is_profile(text: str) -> bool:
+    try:
+        NetProfile.model_validate(read(text, "net.yaml").data)
+    except ValidationError:
+        return False
+    return True
+
+
 @each_page
 def test_yaml(page: Path, project: Path) -> None:
     """Graph files resolve, and what they name is there and fits."""
@@ -234,6 +245,9 @@ def test_yaml(page: Path, project: Path) -> None:
     for block in blocks(page, "yaml"):
         if "fragment" in block.options:
             read(block.text, str(block))
+            continue
+        if "net" in block.options:
+            assert _is_profile(block.text) != ("wrong" in block.options), block
             continue
         if block.options.get("file", "").startswith("params/"):
             assert params_file.read(project / block.options["file"], str(block))

@@ -1,0 +1,197 @@
+"""Two hosts and a network between them: a graph here, and a robot there behind a router with rmw_zenoh's settings."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import trustme
+
+from tests.conftest import Machine, Program
+from tests.network.hosts import Hosts, why_not
+
+pytestmark = pytest.mark.real
+
+NEAR = "nodes:\n  /draw_circle: {class: nodes.draw_circle:DrawCircle}\n"
+ROUTER = str(Path(__file__).with_name("rmw_router.py"))
+
+
+@pytest.fixture(scope="module")
+def allowed() -> None:
+    """Skip where a test may not make hosts."""
+    if reason := why_not():
+        pytest.skip(reason)
+
+
+@pytest.fixture
+def hosts(allowed: None) -> Iterator[Hosts]:
+    with Hosts() as made:
+        yield made
+
+
+@pytest.fixture
+def near(hosts: Hosts, tmp_path: Path) -> Iterator[Machine]:
+    """The laptop."""
+    (tmp_path / "near").mkdir()
+    machine = Machine(tmp_path / "near", hosts.near.command())
+    yield machine
+    machine.close()
+
+
+@pytest.fixture
+def far(hosts: Hosts, near: Machine, tmp_path: Path) -> Iterator[Machine]:
+    """The robot; its nodes stay on its loopback, as ROS 2's do."""
+    (tmp_path / "far").mkdir()
+    machine = Machine(tmp_path / "far", hosts.far.command())
+    machine.env["GRAPHFLOW_DOMAIN"] = near.env["GRAPHFLOW_DOMAIN"]
+    machine.env["GRAPHFLOW_RENDEZVOUS"] = "tcp/127.0.0.1:7447"
+    yield machine
+    machine.close()
+
+
+def start_robot(far: Machine) -> tuple[Program, Program]:
+    router = far.start_python(ROUTER)
+    router.wait_for("router up")
+    node = far.start("run", "nodes.turtlesim:TurtleSim")
+    node.wait_for("Spawning turtle [turtle1]")
+    return router, node
+
+
+def start_graph(near: Machine, tmp_path: Path, *options: str) -> Program:
+    file = tmp_path / "near.yaml"
+    file.write_text(NEAR)
+    return near.start("up", *options, str(file))
+
+
+def reaches(machine: Machine, node: str) -> bool:
+    return node in machine.run("node", "list", code=None).split()
+
+
+def test_data_services_and_parameters_both_ways(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
+    """50 ms away and with every fiftieth packet lost, either side's nodes are as the other's own."""
+    hosts.delay, hosts.loss = 0.05, 0.02
+    start_robot(far)
+    graph = start_graph(near, tmp_path, "--connect", f"tcp/{hosts.far.address}:7447")
+    graph.wait_for(f"linked to tcp/{hosts.far.address}:7447")
+    near.until(lambda: reaches(near, "/turtlesim") and reaches(far, "/draw_circle"), "both see both")
+
+    assert "theta: " in near.run("topic", "echo", "/turtle1/pose", "--once")
+    assert "x: 2.0" in far.run("topic", "echo", "/turtle1/cmd_vel", "--once")
+    assert "name='turtle2'" in near.run("service", "call", "/spawn", "turtlesim/srv/Spawn", "{x: 2.0, y: 2.0}")
+    near.run("param", "set", "/turtlesim", "background_r", "7")
+    assert far.run("param", "get", "/turtlesim", "background_r") == "Integer value is: 7\n"
+    far.run("param", "set", "/draw_circle", "linear", "0.5")
+    assert near.run("param", "get", "/draw_circle", "linear") == "Double value is: 0.5\n"
+    # What the graph drives has moved: its commands arrive, and not only at tools.
+    echo = near.start("topic", "echo", "/turtle1/pose")
+    echo.wait_for("linear_velocity: 0.5\n")
+    echo.end()
+    assert graph.end() == 0
+
+
+def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
+    """With the cable cut the graph runs on and says so; mended, both sides find each other again."""
+    hosts.delay = 0.05
+    start_robot(far)
+    endpoint = f"tcp/{hosts.far.address}:7447"
+    graph = start_graph(near, tmp_path, "--connect", endpoint)
+    graph.wait_for(f"linked to {endpoint}")
+    near.until(lambda: reaches(near, "/turtlesim"), "the robot is seen")
+
+    hosts.is_cut = True
+    graph.wait_for(f"lost the link to {endpoint}")
+    near.until(lambda: not reaches(near, "/turtlesim"), "what cannot be reached is not listed")
+    near.until(lambda: not reaches(far, "/draw_circle"), "nor there")
+    hosts.is_cut = False
+    graph.text = ""
+    graph.wait_for(f"linked to {endpoint}")
+    near.until(lambda: reaches(near, "/turtlesim") and reaches(far, "/draw_circle"), "both see both again")
+    assert "theta: " in near.run("topic", "echo", "/turtle1/pose", "--once")
+    assert graph.end() == 0
+
+
+def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
+    """The graph starts without it, and says that nobody answers; then the robot is switched on."""
+    endpoint = f"tcp/{hosts.far.address}:7447"
+    graph = start_graph(near, tmp_path, "--connect", endpoint)
+    graph.wait_for(f"{endpoint}: no answer yet; trying on")
+    assert "graph near is up" in graph.text
+    start_robot(far)
+    graph.wait_for(f"linked to {endpoint}")
+    near.until(lambda: reaches(near, "/turtlesim"), "the robot is seen")
+    assert graph.end() == 0
+
+
+def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: Machine, far: Machine) -> None:
+    """On a laptop where nothing runs, every verb takes --connect."""
+    start_robot(far)
+    reach = ("--connect", f"tcp/{hosts.far.address}:7447")
+    assert "/turtlesim" in near.run(*reach, "node", "list")
+    assert near.run(*reach, "param", "get", "/turtlesim", "background_r") == "Integer value is: 69\n"
+    assert "theta: " in near.run(*reach, "topic", "echo", "/turtle1/pose", "--once")
+    near.run(*reach, "topic", "pub", "--once", "/turtle1/cmd_vel", "geometry_msgs/msg/Twist", "{linear: {x: 1.0}}")
+    text = near.run("--connect", f"tcp/{hosts.far.address}:7448", "node", "list", code=3)
+    assert "nor where --connect or --net point to" in text
+
+
+def test_other_users_of_other_machines_are_no_strangers(hosts: Hosts, near: Machine, far: Machine) -> None:
+    """A graphflow rendezvous on the robot belongs to the robot's user, whoever that is, and is linked all the same."""
+    far.start("run", "nodes.turtlesim:TurtleSim").wait_for("Spawning")
+    far.start_python("-c", STRANGER).wait_for("declared")
+    assert "/turtlesim" in far.run("node", "list")
+
+
+STRANGER = """
+import time, zenoh
+config = zenoh.Config.from_json5('{mode: "client", connect: {endpoints: ["tcp/127.0.0.1:7447"]}}')
+session = zenoh.open(config)
+token = session.liveliness().declare_token("@graphflow/rendezvous/1234/12345/1")
+print("declared", flush=True)
+time.sleep(60)
+"""
+CERTIFICATES = """\
+listen: {listen}
+connect: [{connect}]
+tls: {{ca: {ca}, certificate: {certificate}, key: {key}}}
+allow: [/turtle1/**, /spawn]
+"""
+
+
+def profile(folder: Path, name: str, ca: trustme.CA, address: str, *, listen: str = "null", connect: str = "") -> str:
+    """Write a net profile with a certificate of its own; returns its path."""
+    issued = ca.issue_cert(address)
+    files = {n: folder / f"{name}.{n}" for n in ("ca", "certificate", "key")}
+    ca.cert_pem.write_to_path(files["ca"])
+    issued.cert_chain_pems[0].write_to_path(files["certificate"])
+    issued.private_key_pem.write_to_path(files["key"])
+    path = folder / f"net_{name}.yaml"
+    path.write_text(CERTIFICATES.format(listen=listen, connect=connect, **{k: str(v) for k, v in files.items()}))
+    return str(path)
+
+
+def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
+    hosts: Hosts, near: Machine, far: Machine, tmp_path: Path
+) -> None:
+    """Two machines with certificates of one authority share what both allow; others get no connection at all."""
+    ca, stranger = trustme.CA(), trustme.CA()
+    endpoint = f"tls/{hosts.far.address}:7448"
+    there = profile(tmp_path, "far", ca, hosts.far.address, listen="tls/0.0.0.0:7448")
+    here = profile(tmp_path, "near", ca, hosts.near.address, connect=endpoint)
+    other = profile(tmp_path, "other", stranger, hosts.near.address, connect=endpoint)
+    far.start("--net", there, "run", "nodes.turtlesim:TurtleSim").wait_for("Spawning")
+
+    graph = start_graph(near, tmp_path, "--net", other)
+    graph.wait_for("no answer yet")
+    assert not reaches(near, "/turtlesim")
+    graph.end()
+
+    graph = start_graph(near, tmp_path, "--net", here)
+    graph.wait_for(f"linked to {endpoint}")
+    near.until(lambda: reaches(near, "/turtlesim"), "the robot is seen")
+    assert "theta: " in near.run("topic", "echo", "/turtle1/pose", "--once")
+    near.run("service", "call", "/spawn", "turtlesim/srv/Spawn", "{x: 2.0, y: 2.0}")
+    text = near.run("param", "get", "/turtlesim", "background_r", code=None)
+    assert "error" in text, text
+    assert graph.end(signal.SIGTERM) == 0
