@@ -21,6 +21,9 @@ dependencies = ["graphflow-zenoh"]
 [tool.pytest.ini_options]
 testpaths = ["tests"]
 pythonpath = ["."]
+
+[tool.mypy]
+mypy_path = "typings" # graphflow interface stubs writes there what editors read of interfaces/
 """,
     "README.md": """\
 # @name

@@ -1,12 +1,14 @@
-"""`graphflow interface show`."""
+"""`graphflow interface show` and `stubs`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import click
 
-from graphflow.cli import output
+from graphflow.cli import exits, output
+from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import use_project
 
 
@@ -32,6 +34,30 @@ def show(type_name: str, no_comments: bool) -> None:
             continue
         output.data(text)
         output.lines(_nested(text, package, 1))
+
+
+@interface.command()
+@click.option("--output", "-o", "folder", default="typings", show_default=True, help="Where to, in the project.")
+def stubs(folder: str) -> int:
+    """Write what editors and type checkers read of the project's own types. Again when a definition has changed."""
+    from graphflow.graph.project import project_root, shown
+    from graphflow.msgs import registry
+    from graphflow.msgs import stubs as writer
+
+    root = project_root(Path.cwd())
+    use_project()
+    files = writer.project_stubs(root / "interfaces", root / folder)
+    if not files:
+        raise UsageFault(f"{root / 'interfaces'} has no PACKAGE/msg, PACKAGE/srv or PACKAGE/action with definitions")
+    try:
+        writer.write(files)
+    except OSError as error:
+        output.error(f"{error.filename}: {error.strerror}")
+        return exits.FAILED
+    output.lines(shown(file) for file in files if file.parent.name in registry.KINDS)
+    if folder == "typings":
+        output.talk('editors look there; for mypy, pyproject.toml needs: [tool.mypy] mypy_path = "typings"')
+    return exits.OK
 
 
 def _nested(line: str, package: str, depth: int) -> Iterator[str]:

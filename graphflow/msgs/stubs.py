@@ -1,4 +1,5 @@
-"""Writes what editors and type checkers see of the bundled interfaces: `python -m graphflow.msgs.stubs`.
+"""What editors and type checkers see of interfaces: `python -m graphflow.msgs.stubs` writes it for the bundled ones,
+`graphflow interface stubs` for a project's own.
 
 The classes are made at run time, so a checker cannot read them. A stub says what an instance holds, and, wider, what
 its constructor takes: `base.Message` has the rules, `build.convert` keeps them.
@@ -14,7 +15,8 @@ from graphflow.msgs import registry
 from graphflow.msgs.views import VIEWS
 from graphflow.wire.schema import INTEGER_RANGES, NUMERIC, STRINGS, Action, Field, FieldType, Message, Service
 
-_HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n"
+_BUNDLED_HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n"
+_PROJECT_HEADER = "# Written by `graphflow interface stubs`; do not edit.\n"
 _LINE_LENGTH = 120
 _TIMES = {f"builtin_interfaces/msg/{name}": f"times.{name}" for name in ("Time", "Duration")}
 """Message types that `graphflow.times` has a counterpart of, with the same fields."""
@@ -22,25 +24,40 @@ _ARRAYS_FOR = {"bool": "np.bool_", "int": "np.integer", "float": "np.floating | 
 """The scalar types of numpy arrays that convert to an array field whose elements are such Python values."""
 
 
-def stub(package: str, kind: str) -> str:
+def stub(package: str, kind: str, header: str = _BUNDLED_HEADER) -> str:
     """The stub of `graphflow.msgs.<package>.<kind>`; for a bundled package, of its bundled definitions only."""
     folder = registry.package_folders(package)[0] / kind
     names = sorted(file.stem for file in folder.glob(f"*.{kind}"))
     body = "\n\n".join(text for name in names for text in _classes(f"{package}/{kind}/{name}"))
-    return f"{_HEADER}\n{_imports(body)}\n\n{body}\n"
+    return f"{header}\n{_imports(body)}\n\n{body}\n"
 
 
 def bundled_stubs() -> dict[Path, str]:
     """The text of every stub of the bundled packages, by file."""
+    return _stubs(registry.BUNDLED, registry.BUNDLED, _BUNDLED_HEADER)
+
+
+def project_stubs(interfaces: Path, typings: Path) -> dict[Path, str]:
+    """The text of every stub of a project's own packages, by file.
+
+    Args:
+        interfaces: The folder of their definitions; known to the registry.
+        typings: A folder where checkers look for stubs.
+    """
+    return _stubs(interfaces, typings / "graphflow" / "msgs", _PROJECT_HEADER)
+
+
+def _stubs(root: Path, out: Path, header: str) -> dict[Path, str]:
+    """Stubs of the packages whose definitions lie in `root` before any other place."""
     files = {}
     for package in registry.packages():
         definitions = registry.package_folders(package)[0]
-        if definitions.parent != registry.BUNDLED:
+        if definitions.parent != root:
             continue
-        files[registry.BUNDLED / package / "__init__.pyi"] = _HEADER
+        files[out / package / "__init__.pyi"] = header
         for kind in registry.KINDS:
             if (definitions / kind).is_dir():
-                files[registry.BUNDLED / package / kind / "__init__.pyi"] = stub(package, kind)
+                files[out / package / kind / "__init__.pyi"] = stub(package, kind, header)
     return files
 
 
@@ -143,11 +160,12 @@ def _element(base: str, module: str) -> str:
     return name if home == module else f"{home.partition('/')[0]}.{name}"
 
 
-def main() -> None:
-    for file, text in bundled_stubs().items():
+def write(files: dict[Path, str]) -> None:
+    """Write stubs to their files."""
+    for file, text in files.items():
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    write(bundled_stubs())

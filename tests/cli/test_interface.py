@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -106,3 +108,55 @@ def test_an_unknown_type(name: str, message: str, show: Show) -> None:
     code, out, err = show(name)
     assert (code, out) == (exits.USAGE, "")
     assert err.startswith(message)
+
+
+@pytest.fixture
+def mylab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, show: Show) -> Path:
+    """A new project, and in its folder."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit):
+        main(["init", "mylab"])
+    monkeypatch.chdir(tmp_path / "mylab")
+    return tmp_path / "mylab"
+
+
+def stubs(*words: str) -> int:
+    with pytest.raises(SystemExit) as end:
+        main(["interface", "stubs", *words])
+    assert isinstance(end.value.code, int)
+    return end.value.code
+
+
+def test_stubs_of_a_project(mylab: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """They lie where editors look, say what the definitions say, and those of other packages are left alone."""
+    definition = mylab / "interfaces/mylab_interfaces/msg/Greeting.msg"
+    definition.write_text(definition.read_text() + "float64[] pitch\n")
+    capsys.readouterr()
+    assert stubs() == exits.OK
+    assert capsys.readouterr().out == "typings/graphflow/msgs/mylab_interfaces/msg/__init__.pyi\n"
+    text = (mylab / "typings/graphflow/msgs/mylab_interfaces/msg/__init__.pyi").read_text()
+    assert "class Greeting(base.Message):" in text
+    assert "    pitch: npt.NDArray[np.float64]" in text
+    assert [f.name for f in (mylab / "typings/graphflow/msgs").iterdir()] == ["mylab_interfaces"]
+
+
+def test_stubs_where_there_is_nothing_to_describe(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], show: Show
+) -> None:
+    """The message says what is looked for, and where."""
+    monkeypatch.chdir(tmp_path)
+    assert stubs() == exits.USAGE
+    assert f"{tmp_path / 'interfaces'} has no PACKAGE/msg" in capsys.readouterr().err
+
+
+@pytest.mark.real
+def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
+    """mypy finds a misspelt field of the project's own message, and nothing else to complain about."""
+    assert stubs() == exits.OK
+    wrong = mylab / "nodes" / "wrong.py"
+    wrong.write_text("from graphflow.msgs.mylab_interfaces.msg import Greeting\n\nGreeting(text='x', cuont=1)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "nodes"], capture_output=True, text=True, timeout=100, check=False
+    )
+    assert done.stdout.splitlines()[0].startswith("nodes/wrong.py:3: error: Unexpected keyword argument"), done.stdout
+    assert "Found 1 error" in done.stdout
