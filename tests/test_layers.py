@@ -11,7 +11,7 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "graphflow"
 
-CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "wire", "msgs", "machines", "graph")
+CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "system", "wire", "msgs", "machines", "graph")
 FLOORS = ("transport", "runtime", "introspect", "bag", "supervisor", "testing")
 DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)

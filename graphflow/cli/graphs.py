@@ -15,6 +15,9 @@ from graphflow.cli.reaching import reach, reach_options
 from graphflow.errors import SupervisorError
 from graphflow.wire.profile import PROFILES, VARIABLE
 
+GONE_LIMIT = 10.0
+"""Seconds that a supervisor may take to end when its nodes have."""
+
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 
 
@@ -117,22 +120,12 @@ def down(name: str | None, everything: bool, now: bool) -> int:
                     output.talk(f"  {', '.join(event['nodes'])} ended")
                 elif event["event"] == "end":
                     break
-        if not _gone(run):
+        if not run.wait_gone(GONE_LIMIT):
             output.error(f"the supervisor of {run.graph}, process {run.pid}, is still there")
             code = exits.TIMEOUT
         else:
             output.data(f"graph {run.graph} is down")
     return code
-
-
-def _gone(run: Any) -> bool:
-    """Wait for the supervisor itself to end."""
-    deadline = time.monotonic() + 10.0
-    while run.is_alive:
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.01)
-    return True
 
 
 @click.command()
@@ -204,7 +197,10 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
     except SupervisorError as error:
         if error.exit_code != exits.NOT_RUNNING:
             raise
-        folder, alive = _latest(name, error), False
+        found = rundir.latest_logs(name)
+        if found is None:
+            raise
+        folder, alive = found, False
         output.talk(f"no graph is running; this is the latest run of {folder.parent.name}, {folder.name}")
     files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != "supervisor.log"}
     wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
@@ -219,12 +215,3 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
         alive = any(str(folder) == r.logs for r in rundir.running())
     reader.show()
     return exits.OK
-
-
-def _latest(name: str | None, error: SupervisorError) -> Path:
-    from graphflow.supervisor.rundir import log_root
-
-    found = [p for p in log_root().glob(f"{name or '*'}/latest") if p.is_dir()]
-    if not found:
-        raise error
-    return max(found, key=lambda p: p.stat().st_mtime).resolve()

@@ -14,9 +14,12 @@ from typing import Any
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.rundir import Run
 
 _POLL = 0.1
 """Seconds between two looks at the log files."""
+_GONE_LIMIT = 5.0
+"""Seconds that a supervisor may take to end when its graph has."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -61,7 +64,10 @@ def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int
     nodes = _list_nodes(run["socket"])
     with ControlClient(run["socket"]) as client:
         client.send(do="follow", lifeline=not detach)
-        return _Stream(run, classes, nodes, client, detach, interrupts).run()
+        code = _Stream(run, classes, nodes, client, detach, interrupts).run()
+    if not detach:
+        Run(**run).wait_gone(_GONE_LIMIT)
+    return code
 
 
 def _list_nodes(socket: str) -> list[dict[str, Any]]:

@@ -17,8 +17,8 @@ from graphflow.errors import (
 )
 from graphflow.machines.cache import GraphCache
 from graphflow.names import did_you_mean
+from graphflow.system import host_name
 from graphflow.transport.client import Client
-from graphflow.transport.rendezvous import host_name
 from graphflow.wire import attachment
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import Kind, watch_key

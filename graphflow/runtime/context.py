@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from graphflow.domain import domain_id
 from graphflow.machines.cache import Change, GraphCache
 from graphflow.runtime.clock import Clock, WallClock
+from graphflow.system import host_name, user_id
 from graphflow.transport.base import Closable, Session
 from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile
@@ -65,7 +66,7 @@ class Context:
         Raises:
             TransportError: The rendezvous cannot be reached or hosted, or is another user's.
         """
-        from graphflow.transport.rendezvous import establish, host_name, user_id
+        from graphflow.transport.rendezvous import establish
         from graphflow.transport.takeover import Takeover
         from graphflow.transport.zenoh import ZenohSession
 

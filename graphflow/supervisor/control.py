@@ -1,5 +1,8 @@
 """The control socket: lines of JSON between a supervisor and its doors.
 
+Its address is the path of a Unix socket or, the portable way, `tcp/PORT/TOKEN` on loopback: whoever can read the run
+file knows the token, and every request shows it.
+
 A door sends one request and reads lines until the supervisor closes the connection:
 
     {"do": "ps"}                        -> {"event": "ps", "nodes": [...]}
@@ -12,8 +15,10 @@ A `follow` with a lifeline ties the graph's life to the connection: when it brea
 from __future__ import annotations
 
 import asyncio
+import hmac
 import json
 import os
+import secrets
 import socket
 import struct
 from collections.abc import Callable, Iterator
@@ -21,10 +26,12 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from graphflow.errors import SupervisorError
+from graphflow.system import is_portable, user_id
 
 CONNECT_LIMIT = 5.0
 CLOSE_LIMIT = 1.0
 LIFELINE_LIMIT = 5.0
+_TCP = "tcp/"
 
 
 class Commands(Protocol):
@@ -43,6 +50,7 @@ class ControlServer:
     def __init__(self, commands: Commands) -> None:
         self._commands = commands
         self._server: asyncio.Server | None = None
+        self._token = ""
         self._expectation: asyncio.TimerHandle | None = None
         self._followed = asyncio.Event()
         self._connections: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
@@ -54,14 +62,23 @@ class ControlServer:
             LIFELINE_LIMIT, lambda: self._commands.begin_stop(now=False, reason="its terminal never came")
         )
 
-    async def open(self, path: Path) -> None:
-        """Listen at `path`, for this user only."""
+    async def open(self, path: Path) -> str:
+        """Listen, for this user only; returns the address.
+
+        Args:
+            path: Where a Unix socket goes.
+        """
+        if is_portable():
+            self._token = secrets.token_hex(16)
+            self._server = await asyncio.start_server(self._accept, "127.0.0.1", 0)
+            return f"{_TCP}{self._server.sockets[0].getsockname()[1]}/{self._token}"
         path.unlink(missing_ok=True)
         mask = os.umask(0o177)
         try:
             self._server = await asyncio.start_unix_server(self._accept, path)
         finally:
             os.umask(mask)
+        return str(path)
 
     async def wait_followed(self) -> None:
         """Wait until a door follows the graph, but not for long: a graph that fails at once still tells why."""
@@ -85,7 +102,7 @@ class ControlServer:
         assert task is not None
         self._connections[task] = writer
         try:
-            if _peer_uid(writer.get_extra_info("socket")) in (None, os.getuid()):
+            if self._token or _peer_uid(writer.get_extra_info("socket")) in (None, user_id()):
                 await self._serve(reader, writer)
         except (ConnectionError, asyncio.IncompleteReadError, ValueError):
             return
@@ -97,6 +114,8 @@ class ControlServer:
         try:
             request = json.loads(await reader.readline())
             what = request["do"]
+            if not hmac.compare_digest(str(request.get("token", "")), self._token):
+                return
         except (ValueError, KeyError, TypeError):
             _write(writer, {"event": "error", "message": "not a request"})
             return
@@ -156,17 +175,33 @@ def _peer_uid(connection: Any) -> int | None:
     return int(uid)
 
 
-class ControlClient:
-    """A door's side; blocking."""
+def _connect(address: str) -> tuple[socket.socket, dict[str, str]]:
+    """A connection to a supervisor, and what to show there."""
+    if address.startswith(_TCP):
+        port, _, token = address.removeprefix(_TCP).partition("/")
+        return socket.create_connection(("127.0.0.1", int(port)), CONNECT_LIMIT), {"token": token}
+    connection = socket.socket(socket.AF_UNIX)
+    connection.settimeout(CONNECT_LIMIT)
+    try:
+        connection.connect(address)
+    except OSError:
+        connection.close()
+        raise
+    return connection, {}
 
-    def __init__(self, path: str) -> None:
-        self._socket = socket.socket(socket.AF_UNIX)
-        self._socket.settimeout(CONNECT_LIMIT)
+
+class ControlClient:
+    """A door's side; blocking.
+
+    Raises:
+        SupervisorError: Nobody is at the address.
+    """
+
+    def __init__(self, address: str) -> None:
         try:
-            self._socket.connect(path)
+            self._socket, self._token = _connect(address)
         except OSError as error:
-            self._socket.close()
-            raise SupervisorError(f"the supervisor at {path} does not answer: {error.strerror}") from None
+            raise SupervisorError(f"the supervisor at {address} does not answer: {error.strerror}") from None
         self._buffer = b""
 
     def __enter__(self) -> Self:
@@ -185,7 +220,7 @@ class ControlClient:
             SupervisorError: The supervisor is gone.
         """
         try:
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
+            self._socket.sendall(json.dumps({**request, **self._token}).encode() + b"\n")
         except OSError as error:
             raise SupervisorError(f"the supervisor is gone: {error.strerror}") from None
 

@@ -12,13 +12,17 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from graphflow.system import detached, is_portable
 
 if TYPE_CHECKING:
     from graphflow.graph.plan import Plan
     from graphflow.runtime.context import Context
     from graphflow.supervisor.rundir import Run, RunDirectory
+    from graphflow.supervisor.starter import Starter
 
 Report = dict[str, Any]
 
@@ -35,18 +39,8 @@ def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
-    read, write = os.pipe()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    pid = os.fork()
-    if pid == 0:
-        code = 1
-        try:
-            os.close(read)
-            code = _Launch(file, given, domain, attached, write).supervise()
-        finally:
-            os._exit(code)
-    os.close(write)
+    begin = _begin_portable if is_portable() else _begin_forked
+    pid, read, reap = begin({"file": str(file), "given": given, "domain": domain, "attached": attached})
     data = b""
     try:
         while not data.endswith(b"\n") and (chunk := os.read(read, 65536)):
@@ -60,33 +54,64 @@ def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) 
         return {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}
     report: Report = json.loads(data)
     if not report["ok"]:
-        os.waitpid(pid, 0)
+        reap()
     return report
+
+
+_Begun = tuple[int, int, Callable[[], object]]
+"""The supervisor's process id, the descriptor its report comes from, and what waits for its end."""
+
+
+def _begin_forked(job: dict[str, Any]) -> _Begun:
+    read, write = os.pipe()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    pid = os.fork()
+    if pid == 0:
+        code = 1
+        try:
+            os.close(read)
+            os.setsid()
+            code = _Launch(job, write).supervise()
+        finally:
+            os._exit(code)
+    os.close(write)
+    return pid, read, lambda: os.waitpid(pid, 0)
+
+
+def _begin_portable(job: dict[str, Any]) -> _Begun:
+    import subprocess
+
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch"]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **detached())
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(json.dumps(job).encode())
+    process.stdin.close()
+    return process.pid, os.dup(process.stdout.fileno()), process.wait
 
 
 class _Launch:
     """The supervisor's process, from the fork to the end of the graph."""
 
-    def __init__(self, file: Path, given: list[str], domain: int | None, attached: bool, report: int) -> None:
-        self._file, self._given, self._domain, self._attached = file, given, domain, attached
+    def __init__(self, job: dict[str, Any], report: int) -> None:
+        self._file, self._given, self._domain = Path(job["file"]), job["given"], job["domain"]
+        self._attached = job["attached"]
         self._report_pipe = report
-        self._channel: Any = None
-        """To the preload process."""
-        self._status = -1
-        """From the workers."""
+        self._starter: Starter
 
     def supervise(self) -> int:
         """Bring the graph up and supervise it to its end; returns the exit code."""
         from graphflow.errors import GraphFileError, GraphflowError, SupervisorError
 
-        os.setsid()
-        for number in (signal.SIGINT, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)
-        preload_pid = 0
+        for name in ("SIGINT", "SIGHUP"):
+            if hasattr(signal, name):
+                signal.signal(getattr(signal, name), signal.SIG_IGN)
+        starter = None
         try:
-            from graphflow.supervisor import preload
+            from graphflow.supervisor.starter import make_starter
 
-            self._channel, self._status, preload_pid = preload.start(keep=(self._report_pipe,))
+            starter = self._starter = make_starter(keep=(self._report_pipe,))
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
@@ -100,9 +125,8 @@ class _Launch:
 
             return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")
         finally:
-            if preload_pid:
-                self._channel.close()
-                os.waitpid(preload_pid, 0)
+            if starter is not None:
+                starter.end()
 
     def _report(self, **report: Any) -> None:
         if self._report_pipe < 0:  # it has been told that the graph is up; what comes now goes to the log
@@ -130,29 +154,16 @@ class _Launch:
         plan = load(self._file, self._given)
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
-        probe = {"do": "probe", "classes": sorted({n.class_path for n in plan.nodes}), "root": plan.root}
-        self._channel.sendall(json.dumps(probe).encode() + b"\n")
+        self._starter.begin_probe(sorted({n.class_path for n in plan.nodes}), plan.root)
         import graphflow.supervisor.supervisor  # noqa: F401 - overlaps with the probe
 
-        interfaces = read_interfaces(self._probed())
+        interfaces = read_interfaces(self._starter.probed())
         problems = check(plan, interfaces)
         if problems:
             raise GraphFileError(problems)
         types = {s.name: t for s in plan.steps if (t := step_type(s, plan, interfaces))}
         places = {path: str(i.place) for path, i in interfaces.items()}
         return asyncio.run(self._claim_and_supervise(plan, domain, places, types))
-
-    def _probed(self) -> dict[str, Any]:
-        from graphflow.errors import SupervisorError
-
-        data = b""
-        while not data.endswith(b"\n"):
-            chunk = self._channel.recv(65536)
-            if not chunk:
-                raise SupervisorError("the process that imports node classes died")
-            data += chunk
-        result: dict[str, Any] = json.loads(data)["interfaces"]
-        return result
 
     async def _claim_and_supervise(
         self, plan: Plan, domain: int, places: dict[str, str], step_types: dict[str, str]
@@ -171,7 +182,7 @@ class _Launch:
             context = await Context.open(domain, link=False)
             try:
                 context.open_link()
-                run = _run_file(plan, directory, run_id, logs, domain)
+                run = _run_file(plan, run_id, logs, domain)
                 return await self._supervise(plan, context, directory, run, places, step_types)
             finally:
                 await context.close()
@@ -188,20 +199,19 @@ class _Launch:
         step_types: dict[str, str],
     ) -> int:
         import asyncio
+        from dataclasses import replace
 
-        from graphflow.supervisor.channel import Lines
         from graphflow.supervisor.control import ControlServer
         from graphflow.supervisor.supervisor import Supervisor
 
-        preload = Lines(self._channel, lambda e: supervisor.heard(e), lambda: supervisor.preload_lost())
-        workers = Lines(self._status, lambda e: supervisor.heard(e), lambda: None)
-        supervisor = Supervisor(plan, context, preload, Path(run.logs), step_types)
+        supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
         _tell_notes(supervisor.note)
-        preload.send(do="log", path=str(Path(run.logs) / "supervisor.log"))
+        await self._starter.open(Path(run.logs) / "supervisor.log", supervisor.heard, supervisor.starter_lost)
         control = ControlServer(supervisor)
-        await control.open(directory.socket)
+        run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
-        context.loop.add_signal_handler(signal.SIGTERM, lambda: supervisor.begin_stop(now=False, reason="SIGTERM"))
+        stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
+        signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
         if self._attached:
             control.expect_lifeline()
         self._report(ok=True, run=run.__dict__, classes=places)
@@ -215,11 +225,10 @@ class _Launch:
         finally:
             linked.cancel()
             await control.close()
-            workers.close()
-            preload.close()
+            await self._starter.close()
 
 
-def _run_file(plan: Plan, directory: RunDirectory, run_id: str, logs: Path, domain: int) -> Run:
+def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> Run:
     import hashlib
     import time
 
@@ -234,7 +243,7 @@ def _run_file(plan: Plan, directory: RunDirectory, run_id: str, logs: Path, doma
         started=rundir.start_time(os.getpid()) or 0.0,
         began=time.time(),
         file=str(Path(plan.file).resolve()),
-        socket=str(directory.socket),
+        socket="",
         logs=str(logs),
         endpoint=rendezvous_endpoint(),
         plan_hash=hashlib.sha256(json.dumps(plan.to_json(), sort_keys=True).encode()).hexdigest(),
@@ -262,3 +271,8 @@ def _tell_notes(note: Callable[[str], None]) -> None:
 
     for name in ("graphflow.link", "graphflow.rendezvous"):
         logging.getLogger(name).addHandler(Notes(logging.INFO))
+
+
+if __name__ == "__main__":
+    report = os.dup(1)
+    sys.exit(_Launch(json.load(sys.stdin), report).supervise())

@@ -204,7 +204,7 @@ class _Preload:
 
         worker.become(request["log"], request["env"], parent)
         _reseed()
-        worker.main(request["job"], self._status)
+        worker.main(request["job"], worker.PipeReport(self._status))
 
     def _spawn_fresh(self, request: dict[str, Any]) -> int:
         """A worker in a new interpreter, for environments that a running one cannot take on."""
@@ -236,7 +236,7 @@ class _Preload:
                 return
             process = self._workers.pop(pid, None)
             if process is not None:
-                _sweep(pid)
+                sweep(pid)
                 code = os.waitstatus_to_exitcode(status)
                 self._answer({"event": "exited", "process": process, "status": code})
 
@@ -265,7 +265,7 @@ def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
     return result
 
 
-def _sweep(group: int) -> None:
+def sweep(group: int) -> None:
     """End what a worker has started and left behind in its process group."""
     try:
         os.killpg(group, signal.SIGKILL)

@@ -13,17 +13,26 @@ from graphflow.supervisor.preload import PROBE_LIMIT, answer_probe, probe_result
 
 
 def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
-    """What each class declares, as `worker.interfaces` gives it."""
-    wanted = sorted(set(classes))
-    request = json.dumps({"classes": wanted, "root": root})
+    """What each class declares, as `classes.interfaces` gives it."""
+    return finish(begin(classes, root), classes)
+
+
+def begin(classes: Iterable[str], root: str) -> subprocess.Popen[bytes]:
+    """Start importing classes."""
+    request = json.dumps({"classes": sorted(set(classes)), "root": root})
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.probe", request]
-    try:
-        result = subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_LIMIT, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return probe_result(b"", False, wanted)
-    return probe_result(result.stdout, True, wanted)
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+
+def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str, Any]:
+    """What came of it."""
+    with probing:
+        try:
+            out, _ = probing.communicate(timeout=PROBE_LIMIT)
+        except subprocess.TimeoutExpired:
+            probing.kill()
+            return probe_result(b"", False, sorted(set(classes)))
+    return probe_result(out, True, sorted(set(classes)))
 
 
 if __name__ == "__main__":

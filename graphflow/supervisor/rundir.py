@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import stat
+import sys
 import tempfile
 import time
 from dataclasses import asdict, dataclass
@@ -22,6 +23,7 @@ from typing import Any
 
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
+from graphflow.system import is_portable, user_id
 
 SOCKET_PATH_LIMIT = 100
 """Bytes that a Unix socket's path may have, with some left for the C string."""
@@ -34,7 +36,7 @@ def runtime_root() -> Path:
         SupervisorError: It cannot be made, or it is somebody else's.
     """
     given = os.environ.get("XDG_RUNTIME_DIR")
-    root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{os.getuid()}"
+    root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         found = root.lstat()
@@ -42,7 +44,7 @@ def runtime_root() -> Path:
         raise SupervisorError(
             f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder of yours that can be written"
         ) from None
-    if found.st_uid != os.getuid() or not stat.S_ISDIR(found.st_mode):
+    if found.st_uid != user_id() or not stat.S_ISDIR(found.st_mode):
         raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
     return root
 
@@ -72,11 +74,18 @@ def open_logs(graph: str, run_id: str) -> Path:
         link = folder.parent / "latest"
         fresh = folder.parent / f".latest-{os.getpid()}"
         fresh.unlink(missing_ok=True)
-        fresh.symlink_to(run_id)
-        fresh.replace(link)
+        if not is_portable():  # links take a right on Windows that few have
+            fresh.symlink_to(run_id)
+            fresh.replace(link)
     except OSError as error:
         raise SupervisorError(f"{folder}: {error.strerror}; set ROS_LOG_DIR to a folder that can be written") from None
     return folder
+
+
+def latest_logs(graph: str | None) -> Path | None:
+    """The log folder of the newest run, of one graph or of any; None when nothing has ever run."""
+    runs = [f for f in log_root().glob(f"{graph or '*'}/*/") if f.name != "latest"]
+    return max(runs, key=lambda f: f.stat().st_mtime, default=None)
 
 
 def log_file(folder: Path, node: str) -> Path:
@@ -125,6 +134,15 @@ class Run:
     def is_alive(self) -> bool:
         return start_time(self.pid) == self.started
 
+    def wait_gone(self, timeout: float) -> bool:
+        """Wait until the supervisor has ended, so that the graph can be started again; False when it does not."""
+        deadline = time.monotonic() + timeout
+        while self.is_alive:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.01)
+        return True
+
 
 class RunDirectory:
     """The run directory of one graph in one domain, held by its supervisor."""
@@ -139,8 +157,6 @@ class RunDirectory:
         Raises:
             SupervisorError: The graph runs already, or the directory cannot be made.
         """
-        import fcntl
-
         # Beside the directory, and never removed: whoever holds the lock on this one file owns the directory.
         lock = self.path.parents[1] / f"{self.path.parent.name}.{self.path.name}.lock"
         try:
@@ -148,7 +164,7 @@ class RunDirectory:
         except OSError as error:
             raise SupervisorError(f"{lock}: {error.strerror}") from None
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(self._lock)
         except OSError:
             os.close(self._lock)
             self._lock = None
@@ -170,9 +186,9 @@ class RunDirectory:
         if len(os.fsencode(inside)) <= SOCKET_PATH_LIMIT:
             return inside
         digest = hashlib.sha256(os.fsencode(inside)).hexdigest()[:16]
-        folder = Path(tempfile.gettempdir()) / f"graphflow-{os.getuid()}"
+        folder = Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
         folder.mkdir(mode=0o700, exist_ok=True)
-        if folder.stat().st_uid != os.getuid():
+        if folder.stat().st_uid != user_id():
             raise SupervisorError(f"{folder} belongs to another user; set XDG_RUNTIME_DIR to a shorter path")
         return folder / f"{digest}.sock"
 
@@ -195,6 +211,18 @@ class RunDirectory:
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
+
+
+def _lock(fd: int) -> None:
+    """Lock a file until its descriptor is closed; an OSError says that somebody else has."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        msvcrt.locking(fd, msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def read_run(path: Path) -> Run | None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-import os
-import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,8 +14,8 @@ from graphflow.errors import GraphflowError
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
 from graphflow.machines.process import ALARMS, Action, Event, Exit, Order, State, step
 from graphflow.runtime.context import Context
-from graphflow.supervisor.channel import Lines
 from graphflow.supervisor.rundir import log_file
+from graphflow.supervisor.starter import Starter
 from graphflow.supervisor.steps import StepRunner
 
 logger = logging.getLogger("graphflow.supervisor")
@@ -48,17 +46,17 @@ class Supervisor:
     """One running graph.
 
     Args:
-        preload: Requests to the process that starts the others; what it and they say comes to `heard`.
+        starter: Starts the processes; what becomes of them comes to `heard`.
         step_types: Service types by step, as far as they are known.
         logs: The folder of the nodes' logs.
     """
 
-    def __init__(self, plan: Plan, context: Context, preload: Lines, logs: Path, step_types: dict[str, str]) -> None:
+    def __init__(self, plan: Plan, context: Context, starter: Starter, logs: Path, step_types: dict[str, str]) -> None:
         self.plan = plan
         self.exit_code = 0
         self.ended = asyncio.Event()
         self._context = context
-        self._preload = preload
+        self._starter = starter
         self._steps = StepRunner(context, step_types)
         self._processes = {
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
@@ -163,15 +161,15 @@ class Supervisor:
         return self.exit_code
 
     def heard(self, event: dict[str, Any]) -> None:
-        """Something the preload process or a worker said."""
+        """Something that became of a worker, or that it said."""
         process = self._processes.get(event.get("process", ""))
         if process is None:
             return
         what = event["event"]
         if what == "spawned":
             process.pid = event["pid"]
-            if process.stop_asked:  # it was asked to stop before it had a pid to send a signal to
-                self._signal(process, signal.SIGTERM)
+            if process.stop_asked:  # it was asked to stop before it had a pid
+                self._act(process, Action.TERMINATE)
         elif what == "ready":
             process.waiting_for.discard(event["node"])
             self._tell(event="ready", node=event["node"], pid=process.pid)
@@ -184,15 +182,15 @@ class Supervisor:
             process.exit = Exit.of_status(event["status"])
             self._happen(process, Event.EXIT)
 
-    def preload_lost(self) -> None:
-        """The preload process died, and all workers with it."""
+    def starter_lost(self) -> None:
+        """The starter died, and all workers with it."""
         if not self.ended.is_set():
-            logger.error("the preload process died; all nodes went with it")
+            logger.error("the process that starts nodes died; all nodes went with it")
             self.exit_code = 1
             self._tell(event="error", message="the process that starts nodes died, and the nodes with it")
             for process in self._processes.values():
                 if process.state is not State.ENDED:
-                    process.exit = process.exit or Exit(signal=signal.SIGKILL)
+                    process.exit = process.exit or Exit(signal=SIGKILL)
                     process.state = State.ENDED
             self.ended.set()
 
@@ -251,10 +249,10 @@ class Supervisor:
     def _act(self, process: Process, action: Action) -> None:
         if action is Action.SPAWN:
             self._spawn(process)
-        elif action is Action.TERMINATE:
-            self._signal(process, signal.SIGTERM)
-        elif action is Action.KILL:
-            self._signal(process, signal.SIGKILL)
+        elif action is Action.TERMINATE and process.pid is not None:
+            self._starter.terminate(process.name, process.pid)
+        elif action is Action.KILL and process.pid is not None:
+            self._starter.kill(process.name, process.pid)
         elif action is Action.GIVE_UP:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
@@ -273,18 +271,7 @@ class Supervisor:
             "mode": self._mode,
         }
         self._tell(event="starting", process=process.name)
-        self._preload.send(do="spawn", process=process.name, job=job, log=process.log, env=env)
-
-    def _signal(self, process: Process, number: signal.Signals) -> None:
-        if process.pid is None:
-            return
-        try:
-            os.killpg(process.pid, number)
-        except ProcessLookupError:  # it has ended, or has not made its session yet
-            try:
-                os.kill(process.pid, number)
-            except ProcessLookupError:
-                return
+        self._starter.spawn(process.name, job, process.log, env)
 
     def _process_ended(self, process: Process, was: State) -> None:
         asked = process.stop_asked or was is State.STOPPING
@@ -335,5 +322,7 @@ class Supervisor:
         logger.info("%s", json.dumps(event))
 
 
+SIGKILL = 9
+"""As everywhere; Windows does not name it."""
 MESH_LIMIT = 24
 """Processes up to which each is a peer of every other; beyond, they are clients of the rendezvous."""

@@ -7,8 +7,11 @@ import faulthandler
 import json
 import os
 import signal
+import socket
 import sys
-from typing import Any
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
 
 from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
@@ -20,10 +23,12 @@ from graphflow.runtime.run import catch_signals, serve
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.transport import loop
 
-STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+STOP_SIGNALS = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
 """The preload process blocks these; a worker has them unblocked once it can act on them."""
 PIPE_BUF = 4096
 """Bytes that a pipe takes in one piece on Linux (PIPE_BUF of pipe(7))."""
+CONNECT_LIMIT = 5.0
+"""Seconds that reaching the supervisor may take, over loopback."""
 EXIT_ERROR = 70
 """A node failed while it ran."""
 EXIT_CONFIGURATION = 78
@@ -50,21 +55,70 @@ def make_node(planned: PlannedNode) -> Node:
     return node
 
 
-def tell(status: int, **event: Any) -> None:
-    """Write an event to the supervisor, in one piece: a pipe keeps lines of up to 4096 bytes together."""
-    while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
-        event["error"] = event["error"][: len(event["error"]) // 2]
-    os.write(status, line + b"\n")
+class Report(Protocol):
+    """A worker's line to its supervisor."""
+
+    def tell(self, **event: Any) -> None: ...
+
+    def on_stop(self, stop: Callable[[], object]) -> None:
+        """Have `stop` called, on any thread, when the supervisor asks for the end by this way and not by a signal."""
 
 
-def main(job: dict[str, Any], status: int) -> None:
+class PipeReport:
+    """Events go into a pipe that all workers share; to be stopped takes a signal."""
+
+    def __init__(self, pipe: int) -> None:
+        self._pipe = pipe
+
+    def tell(self, **event: Any) -> None:
+        # In one piece: a pipe keeps lines of up to 4096 bytes together.
+        while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
+            event["error"] = event["error"][: len(event["error"]) // 2]
+        os.write(self._pipe, line + b"\n")
+
+    def on_stop(self, stop: Callable[[], object]) -> None:
+        """Signals do that."""
+
+
+class SocketReport:
+    """A connection to the supervisor for this worker alone; when it breaks, the supervisor is dead, and so is this."""
+
+    def __init__(self, port: int, token: str, process: str) -> None:
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=CONNECT_LIMIT)
+        self._socket.settimeout(None)
+        self._asked = threading.Event()
+        self._stop: Callable[[], object] = lambda: None
+        self.tell(token=token, process=process)
+        threading.Thread(target=self._listen, name="graphflow-supervisor", daemon=True).start()
+
+    def tell(self, **event: Any) -> None:
+        self._socket.sendall(json.dumps(event).encode() + b"\n")
+
+    def on_stop(self, stop: Callable[[], object]) -> None:
+        self._stop = stop
+        if self._asked.is_set():
+            stop()
+
+    def _listen(self) -> None:
+        # Not on the loop: a node whose loop is blocked must not outlive its supervisor either.
+        with self._socket.makefile("rb") as lines:
+            try:
+                for _ in lines:
+                    self._asked.set()
+                    self._stop()
+            except OSError:  # as good as its end
+                pass
+        os._exit(EXIT_ERROR)
+
+
+def main(job: dict[str, Any], report: Report) -> None:
     """Run a worker to its end; does not return.
 
     Args:
         job: `nodes` (as of Plan.to_json), `root`, `process`, `domain`, `mode`.
-        status: The pipe to the supervisor.
     """
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable()
     setup_console()
     code = 0
@@ -73,24 +127,26 @@ def main(job: dict[str, Any], status: int) -> None:
         nodes = [make_node(node_from_json(data)) for data in job["nodes"]]
     except Exception as error:
         _log_failure(error)
-        tell(status, event="failed", process=job["process"], error=_one_line(error))
+        report.tell(event="failed", process=job["process"], error=_one_line(error))
         code = EXIT_CONFIGURATION
     else:
-        code = loop.run(_run(nodes, job, status))
+        code = loop.run(_run(nodes, job, report))
     sys.stdout.flush()
     sys.stderr.flush()
     # Zenoh's threads can keep an interpreter from ending.
     os._exit(code)
 
 
-async def _run(nodes: list[Node], job: dict[str, Any], status: int) -> int:
+async def _run(nodes: list[Node], job: dict[str, Any], report: Report) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
+    running = asyncio.get_running_loop()
+    report.on_stop(lambda: running.call_soon_threadsafe(stop.set))
     ready: list[Node] = []
 
     def is_ready(node: Node) -> None:
         ready.append(node)
-        tell(status, event="ready", process=job["process"], node=node.full_name)
+        report.tell(event="ready", process=job["process"], node=node.full_name)
 
     context = None
     try:
@@ -100,7 +156,7 @@ async def _run(nodes: list[Node], job: dict[str, Any], status: int) -> int:
         at_start = len(ready) < len(nodes)
         if at_start:
             _log_failure(error)
-        tell(status, event="failed", process=job["process"], error=_one_line(error))
+        report.tell(event="failed", process=job["process"], error=_one_line(error))
         return EXIT_CONFIGURATION if at_start and isinstance(error, GraphflowError) else EXIT_ERROR
     finally:
         if context is not None:
@@ -158,7 +214,15 @@ def die_with_parent(parent: int) -> None:
         os._exit(EXIT_ERROR)
 
 
-if __name__ == "__main__":
-    die_with_parent(int(sys.argv[2]))
+def _start() -> None:
+    """In an interpreter of its own: `PIPE PARENT` for the child of a preload process, else `PORT`; the job on stdin."""
     _line_buffered()
-    main(json.load(sys.stdin), int(sys.argv[1]))
+    if len(sys.argv) == 3:
+        die_with_parent(int(sys.argv[2]))
+        main(json.load(sys.stdin), PipeReport(int(sys.argv[1])))
+    given = json.load(sys.stdin)
+    main(given["job"], SocketReport(int(sys.argv[1]), given["token"], given["job"]["process"]))
+
+
+if __name__ == "__main__":
+    _start()

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from graphflow.qos import Qos
+from graphflow.system import is_portable
 
 if TYPE_CHECKING:
     from asyncio import AbstractEventLoop
@@ -143,7 +144,7 @@ class Bell:
         self._closed = False
         self._wake = loop.call_soon_threadsafe if threads else loop.call_soon
         self._fd: int | None = None
-        if threads and hasattr(os, "eventfd"):
+        if threads and not is_portable():
             self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
             getattr(loop, "hang_bell", loop.add_reader)(self._fd, self._answer)
 

