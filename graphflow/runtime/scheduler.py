@@ -174,6 +174,28 @@ class Activity:
         return self._loop
 
 
+class _Run(Activity):
+    """An activity of a `Runner`, which it tells of its end. One is made for every message."""
+
+    __slots__ = ("_item", "_runner")
+
+    def __init__(self, runner: Runner, item: Any, coroutine: Coroutine[Any, Any, Any], context: Context) -> None:
+        self.name = runner.name
+        self._loop = runner._loop
+        self._coroutine = coroutine
+        self._context = context
+        self._fut_waiter = None
+        self._must_cancel = False
+        self._cancel_requests = 0
+        self._runner, self._item = runner, item
+
+    def _end(self, result: Any, error: BaseException | None) -> None:
+        self._coroutine = None
+        item = self._item
+        del self._item  # a message is free when its run has ended
+        self._runner._ended(self, item, result, error)
+
+
 Finished = Callable[[Any, Any, BaseException | None], None]
 
 
@@ -289,11 +311,9 @@ class Runner:
         if result.__class__ is not CoroutineType and not iscoroutine(result):
             self._ended(None, item, result, None)
             return
-        activity = Activity(
-            self._loop, result, self.name, lambda value, error: self._ended(activity, item, value, error), context
-        )
-        self._active.add(activity)
-        activity.step()
+        run = _Run(self, item, result, context)
+        self._active.add(run)
+        run.step()
 
     def _ended(self, activity: Activity | None, item: Any, result: Any, error: BaseException | None) -> None:
         if activity is not None:
@@ -307,7 +327,7 @@ class Runner:
             self._release(self._group)
         if self._idle is not None:
             self._look_idle()
-        if self.items:
+        if self.items and not self._waking:
             self.wake()
 
     def _release(self, group: GroupState[Runner]) -> None:
