@@ -143,7 +143,8 @@ def _alive_key(publisher: Entity) -> str:
     return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"
 
 
-_NO_INFO = MessageInfo(0, 0, bytes(16))
+_NO_INFO = (0, 0, bytes(16))
+"""Beside a message without an attachment, or with one of another layout."""
 
 
 class _Source:
@@ -315,35 +316,39 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     # taking messages
 
-    def _take(self, arrival: Any) -> tuple[M, MessageInfo] | None:
-        """Open what has arrived; None when it is too old or malformed."""
+    def _take(self, arrival: Any) -> tuple[M, tuple[int, int, bytes]] | None:
+        """The message that has arrived and the fields of its `MessageInfo`; None when it is too old or malformed."""
         payload, beside = self._read(arrival)
-        info = _info(beside)
-        if info is not _NO_INFO and not self._is_fresh(info):
-            self.expired += 1
-            return None
         try:
-            return self._decode(payload), info
+            fields = attachment.fields(beside or b"")
+        except DecodeError:  # peers that send none, or one of another layout, are heard all the same
+            fields = _NO_INFO
+        else:
+            if not self._is_fresh(*fields):
+                self.expired += 1
+                return None
+        try:
+            return self._decode(payload), fields
         except DecodeError as error:
             self._count_malformed(error)
             return None
 
-    def _is_fresh(self, info: MessageInfo) -> bool:
+    def _is_fresh(self, sequence: int, source_ns: int, gid: bytes) -> bool:
         """Note where a message stands among its publisher's; False when it has outlived its lifespan."""
-        source = self._sources.get(info.gid)
+        source = self._sources.get(gid)
         if source is None:
             if len(self._sources) >= SOURCES_BOUND:  # whoever invents senders must not fill the memory
                 return True
-            source = self._sources[info.gid] = _Source(self.qos.lifespan_ns)
-        missing = info.sequence - source.sequence - 1
+            source = self._sources[gid] = _Source(self.qos.lifespan_ns)
+        missing = sequence - source.sequence - 1
         if missing > 0 and source.sequence:
             self._count_missing(missing)
-        source.sequence = info.sequence
+        source.sequence = sequence
         if source.lease is not None:
-            self._revive(info.gid)
+            self._revive(gid)
         if source.lifespan_ns == INFINITE_NS:
             return True
-        return self.node.context.clock.time_ns() - info.source_ns <= source.lifespan_ns
+        return self.node.context.clock.time_ns() - source_ns <= source.lifespan_ns
 
     def _count_missing(self, missing: int) -> None:
         """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
@@ -356,8 +361,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         taken = self._take(arrival)
         if taken is None:
             return None
+        message, fields = taken
         assert self._callback is not None
-        return self._callback(*taken) if self._takes_info else self._callback(taken[0])
+        return self._callback(message, MessageInfo._make(fields)) if self._takes_info else self._callback(message)
 
     def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
         if error is not None:
@@ -396,7 +402,8 @@ class TopicSubscription(Endpoint, Generic[M]):
                 self._taken += 1
                 taken = self._take(self._inbox.items.popleft())
                 if taken is not None:
-                    return taken
+                    message, fields = taken
+                    return message, MessageInfo._make(fields)
             waiter: Future[None] = self.node.context.loop.create_future()
             self._waiters.add(waiter)
             try:
@@ -414,14 +421,6 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._sources.clear()
         super().close()
         self._arrived()
-
-
-def _info(beside: bytes | None) -> MessageInfo:
-    """What an attachment says; peers that send none, or one of another layout, are heard all the same."""
-    try:
-        return attachment.unpack(beside or b"")
-    except DecodeError:
-        return _NO_INFO
 
 
 def _gid_of(beside: bytes | None) -> bytes:

@@ -15,6 +15,7 @@ from graphflow.errors import DecodeError
 
 _LAYOUT = struct.Struct("<qqB16s")
 SIZE = _LAYOUT.size
+_pack, _unpack = _LAYOUT.pack, _LAYOUT.unpack
 _new = tuple.__new__
 """Makes a named tuple without its Python constructor: one is made for every message."""
 
@@ -36,7 +37,22 @@ def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
     Args:
         gid: 16 bytes.
     """
-    return _LAYOUT.pack(sequence, source_ns, 16, gid)
+    return _pack(sequence, source_ns, 16, gid)
+
+
+def fields(data: bytes) -> tuple[int, int, bytes]:
+    """Read an attachment into what `MessageInfo` is made of.
+
+    Raises:
+        DecodeError: `data` has another length or layout.
+    """
+    try:
+        sequence, source_ns, size, gid = _unpack(data)
+    except struct.error:
+        raise DecodeError(f"attachment of {len(data)} bytes; rmw_zenoh's has {SIZE}") from None
+    if size != 16:
+        raise DecodeError(f"attachment with a GID of {size} bytes; rmw_zenoh's has 16")
+    return sequence, source_ns, gid
 
 
 def unpack(data: bytes) -> MessageInfo:
@@ -45,9 +61,4 @@ def unpack(data: bytes) -> MessageInfo:
     Raises:
         DecodeError: `data` has another length or layout.
     """
-    if len(data) != SIZE:
-        raise DecodeError(f"attachment of {len(data)} bytes; rmw_zenoh's has {SIZE}")
-    if data[16] != 16:
-        raise DecodeError(f"attachment with a GID of {data[16]} bytes; rmw_zenoh's has 16")
-    sequence, source_ns, _, gid = _LAYOUT.unpack(data)
-    return _new(MessageInfo, (sequence, source_ns, gid))
+    return _new(MessageInfo, fields(data))
