@@ -61,7 +61,7 @@ def transport_ponger(pipe: Connection, loop: str) -> None:
     async def main() -> None:
         async def handler(arrival: Any) -> None:
             payload, _ = session.read(arrival)
-            sender.put(payload, BESIDE)
+            sender.put(payload, attachment=BESIDE)
 
         session, _kept, sender = await open_transport(f"{loop}/pong", f"{loop}/ping", handler)
         await stay_on_loop(pipe)
@@ -166,7 +166,7 @@ def transport_pinger(loop: str) -> Callable[[], float]:
     session, receiver, sender = pinger.loop.run_until_complete(open_transport(f"{loop}/ping", f"{loop}/pong", handler))
     keep.append(receiver)
     pinger.loop.run_until_complete(ready())
-    pinger.send = partial(sender.put, PAYLOAD, BESIDE)
+    pinger.send = partial(sender.put, PAYLOAD, attachment=BESIDE)
     return pinger.measure
 
 

@@ -93,11 +93,8 @@ def period_ns(period: float | None, hz: float | None) -> int:
 class WallClock(Clock):
     """The system's clocks: time of day for stamps, the loop's monotonic clock for waiting."""
 
-    def time_ns(self) -> int:
-        return time.time_ns()
-
-    def monotonic_ns(self) -> int:
-        return time.monotonic_ns()
+    time_ns = staticmethod(time.time_ns)
+    monotonic_ns = staticmethod(time.monotonic_ns)
 
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Handle:
         delay = max(0, when_ns - time.monotonic_ns()) / 1e9

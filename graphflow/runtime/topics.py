@@ -85,7 +85,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         if sender.is_wanted:
             payload = self._encode(message)
             self.published += 1
-            sender.put(payload, pack(self.published, self._now_ns(), self._gid))
+            sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
         else:
             self._announced()
             self.published += 1
@@ -103,7 +103,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._announced()
         if self._lease is not None and self._alive is not None:
             self._lease.touch()
-            self._alive.put(b"", b"")
+            self._alive.put(b"", attachment=b"")
 
     def clock_changed(self) -> None:
         for dog in (self._deadline, self._lease):
@@ -128,7 +128,7 @@ class _NotOpen:
 
     is_wanted = False
 
-    def put(self, payload: Payload, attachment: bytes) -> None:
+    def put(self, payload: Payload, *, attachment: bytes) -> None:
         """Nothing is sent."""
 
     def close(self) -> None:

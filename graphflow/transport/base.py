@@ -34,7 +34,7 @@ class Sender(Closable, Protocol):
     def is_wanted(self) -> bool:
         """Whether anything sent now would reach or be kept for somebody."""
 
-    def put(self, payload: Payload, attachment: bytes) -> None:
+    def put(self, payload: Payload, *, attachment: bytes) -> None:
         """Send without waiting. A receiver that cannot keep up loses messages; the sender is not held."""
 
 

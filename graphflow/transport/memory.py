@@ -72,7 +72,7 @@ class _Sender:
     def is_wanted(self) -> bool:
         return bool(self.history.maxlen or self._network.receivers.get(self._key))
 
-    def put(self, payload: Payload, attachment: bytes) -> None:
+    def put(self, payload: Payload, *, attachment: bytes) -> None:
         sample = _Sample(bytes(payload), attachment)
         self.history.append(sample)
         for receiver in self._network.receivers.get(self._key, ()):

@@ -56,16 +56,13 @@ class _ZenohSender(_Declared):
         # On Zenoh's thread, and nothing but an assignment.
         listener = publisher.declare_matching_listener(Callback(self._matching, indirect=False))
         super().__init__(listener, publisher)
-        self._put = publisher.put
+        self.put = publisher.put
         # Those who listened before: the listener may have told of them, and never of their going, by now.
         if publisher.matching_status.matching:
             self.is_wanted = True
 
     def _matching(self, status: Any) -> None:
         self.is_wanted = status.matching
-
-    def put(self, payload: Payload, attachment: bytes) -> None:
-        self._put(payload, attachment=attachment)
 
 
 class _KeepingSender(_Declared):
@@ -75,10 +72,7 @@ class _KeepingSender(_Declared):
 
     def __init__(self, publisher: Any) -> None:
         super().__init__(publisher)
-        self._put = publisher.put
-
-    def put(self, payload: Payload, attachment: bytes) -> None:
-        self._put(payload, attachment=attachment)
+        self.put = publisher.put
 
 
 class _ZenohRequest:

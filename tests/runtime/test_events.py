@@ -81,7 +81,7 @@ async def test_a_gap_in_the_sequence_is_a_loss(graph: Graph) -> None:
     await graph.start(listener)
     network_sender = graph.network.session(listener.context.loop).open_sender(listening.entity.data_key, Qos())  # type: ignore[union-attr]
     for gid, sequence in ((b"a", 5), (b"b", 1), (b"a", 6), (b"a", 9), (b"b", 2), (b"a", 4)):
-        network_sender.put(String(data="x").to_bytes(), attachment.pack(sequence, 0, gid * 16))
+        network_sender.put(String(data="x").to_bytes(), attachment=attachment.pack(sequence, 0, gid * 16))
     for _ in range(6):
         await listening.next_with_info()
     await graph.settle()

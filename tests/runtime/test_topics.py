@@ -276,7 +276,8 @@ def raw_sender(graph: Graph, receiver: TopicSubscription[Any]) -> Callable[[byte
     """Something that puts any bytes on a subscription's key."""
     assert receiver.entity is not None
     session = graph.network.session(asyncio.get_running_loop())
-    return session.open_sender(receiver.entity.data_key, Qos()).put
+    sender = session.open_sender(receiver.entity.data_key, Qos())
+    return lambda payload, beside: sender.put(payload, attachment=beside)
 
 
 @pytest.mark.parametrize("iterated", [False, True])

@@ -49,7 +49,7 @@ async def test_a_publication_reaches_every_receiver_of_its_key(graphflow_runner:
     talk.two.open_receiver("k", VOLATILE, there)
     talk.two.open_receiver("k/more", VOLATILE, elsewhere)
 
-    talk.one.open_sender("k", VOLATILE).put(b"data", b"beside")
+    talk.one.open_sender("k", VOLATILE).put(b"data", attachment=b"beside")
 
     assert heard(talk.one, here) == heard(talk.two, there) == [(b"data", b"beside")]
     assert not elsewhere.items
@@ -67,8 +67,8 @@ async def test_nothing_is_delivered_inside_the_call_that_sent_it(graphflow_runne
     inbox = Inbox(talk.two.bell, 100, ready)
     talk.two.open_receiver("k", VOLATILE, inbox)
     sender = talk.one.open_sender("k", VOLATILE)
-    sender.put(b"1", b"")
-    sender.put(b"2", b"")
+    sender.put(b"1", attachment=b"")
+    sender.put(b"2", attachment=b"")
     assert seen == []
     await settle()
 
@@ -82,7 +82,7 @@ async def test_a_payload_is_what_it_was_when_it_was_sent(graphflow_runner: async
     talk.two.open_receiver("k", VOLATILE, inbox)
     buffer = bytearray(b"old")
 
-    talk.one.open_sender("k", VOLATILE).put(memoryview(buffer), b"")
+    talk.one.open_sender("k", VOLATILE).put(memoryview(buffer), attachment=b"")
     buffer[:] = b"new"
 
     assert heard(talk.two, inbox) == [(b"old", b"")]
@@ -96,7 +96,7 @@ async def test_a_closed_receiver_hears_nothing_more(graphflow_runner: asyncio.Ru
     receiver.close()
     receiver.close()
 
-    talk.one.open_sender("k", VOLATILE).put(b"x", b"")
+    talk.one.open_sender("k", VOLATILE).put(b"x", attachment=b"")
 
     assert not inbox.items
 
@@ -106,7 +106,7 @@ async def test_a_latecomer_gets_the_history_of_a_latched_key(graphflow_runner: a
     talk = Talk()
     sender = talk.one.open_sender("k", LATCHED)
     for n in range(5):
-        sender.put(b"%d" % n, b"")
+        sender.put(b"%d" % n, attachment=b"")
     all_kept, two, none = inbox_of(talk.two), inbox_of(talk.two), inbox_of(talk.two)
 
     talk.two.open_receiver("k", LATCHED, all_kept)
@@ -123,7 +123,7 @@ async def test_no_history_is_left(graphflow_runner: asyncio.Runner, how: str) ->
     """A volatile sender keeps none, and what a latched one kept goes with it or with its session."""
     talk = Talk()
     sender = talk.one.open_sender("k", VOLATILE if how == "volatile" else LATCHED)
-    sender.put(b"x", b"")
+    sender.put(b"x", attachment=b"")
     if how == "sender closed":
         sender.close()
         sender.close()
