@@ -76,16 +76,17 @@ def node_listener(pipe: Connection, topic: str, name: str, picture: bool) -> Non
 
 
 def received_per_second(listeners: list[Peer], send: Callable[[], int]) -> tuple[float, float]:
-    """Messages a second that all listeners together have got, and the share that was lost."""
+    """Messages a second that all listeners together have got while they were sent, and the share that never came."""
     before = sum(p.ask("count") for p in listeners)
     began = time.perf_counter()
     sent = send() * len(listeners)
+    meanwhile = sum(p.ask("count") for p in listeners) - before
     took = time.perf_counter() - began
     got = -1
     while (now := sum(p.ask("count") for p in listeners) - before) != got:
         got = now
         time.sleep(0.1)
-    return got / took, 1 - got / sent
+    return meanwhile / took, 1 - got / sent
 
 
 class Lost(dict[str, list[float]]):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from graphflow.domain import domain_id
 from graphflow.machines.cache import Change, GraphCache
 from graphflow.runtime.clock import Clock, WallClock
+from graphflow.runtime.direct import Switchboard
 from graphflow.system import host_name, user_id
 from graphflow.transport.base import Closable, Session
 from graphflow.wire.liveliness import Entity, watch_key
@@ -43,6 +44,8 @@ class Context:
         """Which distribution's definitions this process offers."""
         self.cache = GraphCache()
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
+        self.switchboard = Switchboard(self)
+        """Calls to and from other graphflow processes."""
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._link: Link | None = None

@@ -23,6 +23,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
+from graphflow.runtime.direct import ClientLine, DirectRequest, ServerLines
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
@@ -71,6 +72,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self.refused = 0
         """Requests answered with ServerBusy because too many were waiting."""
         self._inbox: Inbox | None = None
+        self._lines: ServerLines | None = None
         self._service_events = ServiceEvents(node, type_, name)
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
@@ -82,7 +84,17 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._inbox = Inbox(session.bell, None, self._arrived)
         self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
         self._declared.append(session.open_server(key, self._inbox))
+        self._lines = ServerLines(self.node.context, self._announced(), self._asked)
         self._service_events.open()
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        assert self._lines is not None
+        self._lines.client_came() if alive else self._lines.client_gone(other)
+
+    def _asked(self, request: DirectRequest) -> None:
+        assert self._inbox is not None
+        self._inbox.items.append(request)
+        self._arrived()
 
     def _arrived(self) -> None:
         assert self._inbox is not None
@@ -130,6 +142,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             self.runner.cancel()
         while self._inbox is not None and self._inbox.items:
             self._inbox.items.popleft().reply_error(_STOPPING.to_payload())
+        if self._lines is not None:
+            self._lines.close()
         super().close()
 
 
@@ -148,6 +162,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._sequence = 0
         self._service_events = ServiceEvents(node, type_, name)
         self._caller: Caller | None = None
+        self._line: ClientLine | None = None
+        """To the server, while there is only one."""
         self._pending: set[Future[Answer]] = set()
         self._waiting: set[Future[None]] = set()
 
@@ -195,6 +211,12 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
                     future.set_result(None)
 
     def _matched(self, other: Entity, alive: bool) -> None:
+        if self._line is not None and not alive and other == self._line.server:
+            self._line.close()
+            self._line = None
+        if self._line is None and len(self.matched) == 1:
+            (server,) = self.matched.values()
+            self._line = ClientLine(self.node.context, self._announced(), server)
         self._look_ready()
 
     def _nobody(self) -> str:
@@ -230,7 +252,10 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._sequence += 1
         sequence, gid = self._sequence, self._announced().gid
         self._service_events.tell(ServiceEvent.REQUEST_SENT, gid, sequence, request=request)
-        answer = await self._ask(sequence, payload, None if timeout is None else started + to_ns(timeout), timeout)
+        beside = attachment.pack(sequence, self.node.context.clock.time_ns(), gid)
+        answer = await self._ask(
+            sequence, payload, beside, None if timeout is None else started + to_ns(timeout), timeout
+        )
         message: Response = self._decode(answer.payload)
         self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
         return message
@@ -239,9 +264,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._announced()
         return self._caller is not None and self._caller.has_server
 
-    async def _ask(self, sequence: int, payload: bytes, deadline_ns: int | None, timeout: float | None) -> Answer:
-        entity, caller = self._announced(), self._caller
-        assert caller is not None
+    async def _ask(
+        self, sequence: int, payload: bytes, beside: bytes, deadline_ns: int | None, timeout: float | None
+    ) -> Answer:
         future: Future[Answer] = self.node.context.loop.create_future()
 
         def answered(answer: Answer | None) -> None:
@@ -258,9 +283,12 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if not future.done():
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
-        beside = attachment.pack(sequence, self.node.context.clock.time_ns(), entity.gid)
         self._pending.add(future)
-        give_up = caller.call(payload, beside, answered)
+        if self._line is not None and self._line.is_open and len(self.matched) == 1:
+            give_up = self._line.call(sequence, payload, beside, answered)
+        else:
+            assert self._caller is not None
+            give_up = self._caller.call(payload, beside, answered)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:
             return await future
@@ -279,6 +307,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         for future in waiting:
             if not future.done():
                 future.set_exception(ClosedError(f"the client of {self.name} was closed while a call waited"))
+        if self._line is not None:
+            self._line.close()
+            self._line = None
         super().close()
 
 

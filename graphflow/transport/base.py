@@ -98,12 +98,16 @@ class Session(Protocol):
     bell: Bell
     """Rung by this session's inboxes."""
 
-    def open_sender(self, key: str, qos: Qos) -> Sender: ...
+    def open_sender(self, key: str, qos: Qos, changed: Callable[[], None] | None = None) -> Sender:
+        """Args:
+        changed: Called on the loop when `is_wanted` may have changed; not for TRANSIENT_LOCAL ones, whose never does.
+        """
 
     def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> Closable:
         """Put every publication on `key` into `inbox`; `read` opens what is found there.
 
         Args:
+            key: Its last part may be `*`; `key_of` then tells what was meant.
             ignore_local: Leave out what this session sends itself.
         """
 
@@ -123,6 +127,9 @@ class Session(Protocol):
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
         """Payload and attachment of something that `open_receiver` put into an inbox."""
+
+    def key_of(self, arrival: Any) -> str:
+        """The key on which it was published."""
 
     async def close(self) -> None: ...
 

@@ -1,8 +1,8 @@
 """A network inside one process: for tests and notebooks. Same promises as the real one, and no thread.
 
-Everything is delivered by the loop in the order it was sent, never inside the call that sent it. Like Zenoh, keys
-match exactly, a request goes to every server of its key, and a transient-local sender keeps its last messages for
-receivers that ask for them.
+Everything is delivered by the loop in the order it was sent, never inside the call that sent it. As over Zenoh, a
+request goes to every server of its key, and a transient-local sender keeps its last messages for receivers that ask for
+them. Keys match exactly, but for receivers whose key ends with the part `*`.
 """
 
 from __future__ import annotations
@@ -11,12 +11,10 @@ import itertools
 from asyncio import AbstractEventLoop
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from graphflow.qos import Durability, Qos
 from graphflow.transport.base import Answer, Bell, Inbox, Payload
-
-T = TypeVar("T")
 
 _zids = itertools.count(1)
 
@@ -24,6 +22,7 @@ _zids = itertools.count(1)
 class _Sample(NamedTuple):
     payload: bytes
     attachment: bytes | None
+    key: str
 
 
 class _Receiver(NamedTuple):
@@ -44,6 +43,14 @@ class Network:
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
+    def receivers_of(self, key: str) -> list[_Receiver]:
+        """Who hears what is sent on a key."""
+        return [*self.receivers.get(key, ()), *self.receivers.get(_any_of(key), ())]
+
+    def senders_to(self, key: str) -> list[_Sender]:
+        """Whose messages a receiver on a key hears."""
+        return [s for k, senders in self.senders.items() if key in (k, _any_of(k)) for s in senders]
+
     def session(self, loop: AbstractEventLoop) -> MemorySession:
         """A new participant."""
         return MemorySession(self, loop)
@@ -62,24 +69,32 @@ class _Declared:
 
 
 class _Sender:
-    def __init__(self, network: Network, key: str, qos: Qos, zid: str) -> None:
+    def __init__(
+        self, network: Network, key: str, qos: Qos, zid: str, changed: Callable[[], None] | None = None
+    ) -> None:
         self._network, self._key, self.zid = network, key, zid
+        self._changed = changed
         keeps = qos.durability is Durability.TRANSIENT_LOCAL
         self.history: deque[_Sample] = deque(maxlen=qos.depth if keeps else 0)
         network.senders.setdefault(key, []).append(self)
 
     @property
     def is_wanted(self) -> bool:
-        return bool(self.history.maxlen or self._network.receivers.get(self._key))
+        return bool(self.history.maxlen or self._network.receivers_of(self._key))
+
+    def tell_changed(self) -> None:
+        if self._changed is not None:
+            self._changed()
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
-        sample = _Sample(bytes(payload), attachment)
+        sample = _Sample(bytes(payload), attachment, self._key)
         self.history.append(sample)
-        for receiver in self._network.receivers.get(self._key, ()):
+        for receiver in self._network.receivers_of(self._key):
             if not (receiver.ignore_local and receiver.zid == self.zid):
                 receiver.inbox.put(sample)
 
     def close(self) -> None:
+        self._changed = None
         if self in self._network.senders.get(self._key, ()):
             self._network.senders[self._key].remove(self)
 
@@ -163,8 +178,8 @@ class MemorySession:
         self._network, self._loop = network, loop
         self._declared: list[_Declared] = []
 
-    def open_sender(self, key: str, qos: Qos) -> _Sender:
-        sender = _Sender(self._network, key, qos, self.zid)
+    def open_sender(self, key: str, qos: Qos, changed: Callable[[], None] | None = None) -> _Sender:
+        sender = _Sender(self._network, key, qos, self.zid, changed)
         self._keep(_Declared(sender.close))
         return sender
 
@@ -174,8 +189,21 @@ class MemorySession:
                 for sample in list(sender.history)[-qos.depth :]:
                     if not (ignore_local and sender.zid == self.zid):
                         inbox.put(sample)
+        receivers = self._network.receivers.setdefault(key, [])
         receiver = _Receiver(inbox, self.zid, ignore_local)
-        return self._list(self._network.receivers.setdefault(key, []), receiver)
+        receivers.append(receiver)
+        self._tell_senders(key)
+
+        def withdraw() -> None:
+            receivers.remove(receiver)
+            self._tell_senders(key)
+
+        return self._keep(_Declared(withdraw))
+
+    def _tell_senders(self, key: str) -> None:
+        for sender in self._network.senders_to(key):
+            if not self._loop.is_closed():
+                self._loop.call_soon(sender.tell_changed)
 
     def open_server(self, key: str, inbox: Inbox) -> _Declared:
         servers = self._network.servers.setdefault(key, [])
@@ -216,7 +244,10 @@ class MemorySession:
         return self._keep(_Declared(lambda: self._network.watchers.remove(watcher)))
 
     def read(self, arrival: _Sample) -> tuple[bytes, bytes | None]:
-        return arrival
+        return arrival.payload, arrival.attachment
+
+    def key_of(self, arrival: _Sample) -> str:
+        return arrival.key
 
     async def close(self) -> None:
         for declared in reversed(self._declared):
@@ -229,13 +260,14 @@ class MemorySession:
             if _matches(key, token) and not self._loop.is_closed():
                 self._loop.call_soon(changed, token, alive)
 
-    def _list(self, members: list[T], member: T) -> _Declared:
-        members.append(member)
-        return self._keep(_Declared(lambda: members.remove(member)))
-
     def _keep(self, declared: _Declared) -> _Declared:
         self._declared.append(declared)
         return declared
+
+
+def _any_of(key: str) -> str:
+    """The key with `*` for its last part."""
+    return f"{key.rpartition('/')[0]}/*"
 
 
 def _matches(key: str, token: str) -> bool:

@@ -51,9 +51,10 @@ class _Declared:
 class _ZenohSender(_Declared):
     """A plain publisher, which knows whether anybody listens."""
 
-    def __init__(self, publisher: Any) -> None:
+    def __init__(self, publisher: Any, bell: Bell, changed: Callable[[], None] | None) -> None:
         self.is_wanted = False
-        # On Zenoh's thread, and nothing but an assignment.
+        self._inbox = Inbox(bell, 1, changed) if changed is not None else None
+        # On Zenoh's thread, and next to nothing.
         listener = publisher.declare_matching_listener(Callback(self._matching, indirect=False))
         super().__init__(listener, publisher)
         self.put = publisher.put
@@ -63,6 +64,14 @@ class _ZenohSender(_Declared):
 
     def _matching(self, status: Any) -> None:
         self.is_wanted = status.matching
+        if self._inbox is not None:
+            self._inbox.put(status)
+
+    def close(self) -> None:
+        if self._inbox is not None:
+            self._inbox.ready = _nothing  # it may have been rung for already
+        super().close()
+        self.is_wanted = False
 
 
 class _KeepingSender(_Declared):
@@ -171,7 +180,9 @@ class ZenohSession:
         self.bell = Bell(loop)
         self._loop = loop
 
-    def open_sender(self, key: str, qos: Qos) -> _ZenohSender | _KeepingSender:
+    def open_sender(
+        self, key: str, qos: Qos, changed: Callable[[], None] | None = None
+    ) -> _ZenohSender | _KeepingSender:
         reliable = qos.reliability is Reliability.RELIABLE
         # DROP even for reliable topics: with BLOCK one stopped receiver holds the sending loop for seconds.
         options: dict[str, Any] = {
@@ -179,7 +190,7 @@ class ZenohSession:
             "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
         }
         if qos.durability is Durability.VOLATILE:
-            return _ZenohSender(self.raw.declare_publisher(key, **options))
+            return _ZenohSender(self.raw.declare_publisher(key, **options), self.bell, changed)
         ext = _ext()
         publisher = ext.declare_advanced_publisher(
             self.raw,
@@ -222,6 +233,7 @@ class ZenohSession:
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
             timeout=QUERY_LIMIT_MS / 1000,
+            congestion_control=zenoh.CongestionControl.DROP,
         )
         return _ZenohCaller(querier, self.bell, changed)
 
@@ -259,9 +271,16 @@ class ZenohSession:
         attachment = arrival.attachment
         return arrival.payload.to_bytes(), attachment.to_bytes() if attachment is not None else None
 
+    def key_of(self, arrival: Any) -> str:
+        return str(arrival.key_expr)
+
     async def close(self) -> None:
         await asyncio.to_thread(close_session, self.raw)
         self.bell.close()
+
+
+def _nothing() -> None:
+    """Nobody is told any more."""
 
 
 def _ext() -> Any:

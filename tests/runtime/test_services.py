@@ -25,12 +25,21 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.runtime import services
+from graphflow.runtime.direct import ServerLines
 from graphflow.runtime.services import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer, Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
 from tests.runtime.cast import Log
+
+
+@pytest.fixture(autouse=True, params=["direct", "query"])
+def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """How calls travel: as between graphflow processes, or as with any other."""
+    if request.param == "query":
+        monkeypatch.setattr(ServerLines, "client_came", lambda self: None)
+    return str(request.param)
 
 
 async def nothing() -> None:
@@ -277,21 +286,20 @@ async def test_a_late_reply_is_ignored(graph: Graph, ends: str) -> None:
     assert server.asked == [1, 2]
 
 
-async def test_a_call_that_is_over_is_given_up(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_call_that_is_over_is_given_up(graph: Graph, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
     """The network need not keep it: one that was cancelled or too late; not one that was answered."""
     given_up: list[int] = []
     server = SlowAdder()
     await graph.start(server)
     client = await client_of(graph)
-    caller = client._caller
-    assert caller is not None
+    caller: Any = client._caller if way == "query" else client._line
     really_call = caller.call
 
-    def call(payload: bytes, beside: bytes, answered: Callable[[Answer | None], None]) -> Callable[[], None]:
-        give_up = really_call(payload, beside, answered)
+    def call(*args: Any) -> Callable[[], None]:
+        give_up = really_call(*args)
 
         def note() -> None:
-            given_up.append(attachment.unpack(beside).sequence)
+            given_up.append(attachment.unpack(args[-2]).sequence)
             give_up()
 
         return note

@@ -1,0 +1,214 @@
+"""Calls between graphflow processes: a request and a response as two publications, where a query costs three.
+
+A query makes Zenoh keep account of every call in each process it passes, and hand over every reply on its own. ROS 2
+knows only queries, so every service answers them; two graphflow processes open a *line* beside that, on keys that no
+wildcard of ROS matches:
+
+    @graphflow/<domain>/ask/<server's zid>/<server's eid>       requests, from any client
+    @graphflow/<domain>/answer/<client's zid>/<client's eid>    responses, from any server
+
+Beside each travels the same attachment as in ROS; the sequence number of an error is negative. Both ways must work
+before a line is used. The client's process says sequence number 0 when it knows that somebody listens to its
+requests, with the key that it hears answers on, and the server's process says 0 when it knows that it is heard there.
+Until then, and with a server of another kind or several servers, calls are queries.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from graphflow.errors import DecodeError
+from graphflow.qos import SERVICES
+from graphflow.transport.base import Answer, Closable, Inbox, Payload, Sender
+from graphflow.wire import attachment
+from graphflow.wire.liveliness import Entity
+
+if TYPE_CHECKING:
+    from graphflow.runtime.context import Context
+
+logger = logging.getLogger("graphflow")
+
+_HELLO = 0
+"""The sequence number that opens a line."""
+
+
+class Switchboard:
+    """A process's ends of all lines: who hears what arrives. One per `Context`."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._heard: dict[tuple[str, str], Callable[[bytes, bytes], None]] = {}
+        """By `ask` or `answer` and endpoint id: what is called with payload and attachment."""
+        self._receivers: dict[str, Closable] = {}
+
+    def key(self, what: str, zid: str, eid: str) -> str:
+        return f"@graphflow/{self._context.domain}/{what}/{zid}/{eid}"
+
+    def listen(self, what: str, entity: Entity, heard: Callable[[bytes, bytes], None]) -> None:
+        """Have `heard` called with what comes for an endpoint of this process."""
+        self._heard[what, str(entity.eid)] = heard
+        if what not in self._receivers:
+            # One for the process: Zenoh starts a thread for each.
+            session = self._context.session
+            inbox = Inbox(session.bell, None, lambda: self._deliver(what, inbox))
+            self._receivers[what] = session.open_receiver(self.key(what, session.zid, "*"), SERVICES, inbox)
+
+    def _deliver(self, what: str, inbox: Inbox) -> None:
+        session, heard = self._context.session, self._heard
+        while inbox.items:
+            arrival = inbox.items.popleft()
+            listener = heard.get((what, session.key_of(arrival).rpartition("/")[2]))
+            payload, beside = session.read(arrival)
+            if listener is not None and beside is not None:
+                listener(payload, beside)
+
+    def forget(self, what: str, entity: Entity) -> None:
+        self._heard.pop((what, str(entity.eid)), None)
+
+    def open_sender(self, what: str, zid: str, eid: str, changed: Callable[[], None]) -> Sender:
+        return self._context.session.open_sender(self.key(what, zid, eid), SERVICES, changed)
+
+
+class DirectRequest:
+    """A request that came over a line; see `transport.base.Request`."""
+
+    __slots__ = ("_answer", "attachment", "payload")
+
+    def __init__(self, payload: bytes, beside: bytes, answer: Callable[[Payload, bytes], None]) -> None:
+        self.payload, self.attachment, self._answer = payload, beside, answer
+
+    def reply(self, payload: Payload, attachment: bytes) -> None:
+        self._answer(payload, attachment)
+
+    def reply_error(self, payload: bytes) -> None:
+        sequence, sent_ns, gid = attachment.fields(self.attachment)
+        self._answer(payload, attachment.pack(-sequence, sent_ns, gid))
+
+
+class ServerLines:
+    """A server's ends of the lines to its clients.
+
+    Args:
+        asked: Called with each request.
+    """
+
+    def __init__(self, context: Context, entity: Entity, asked: Callable[[DirectRequest], None]) -> None:
+        self._context, self._entity, self._asked = context, entity, asked
+        self._senders: dict[bytes, Sender] = {}
+        """To the clients, by GID."""
+        self._is_listening = False
+        self._is_closing = False
+        self._unanswered = 0
+
+    def client_came(self) -> None:
+        """There is a client, which may be graphflow's."""
+        if not self._is_listening:
+            self._is_listening = True
+            self._context.switchboard.listen("ask", self._entity, self._heard)
+
+    def client_gone(self, client: Entity) -> None:
+        sender = self._senders.pop(client.gid, None)
+        if sender is not None:
+            sender.close()
+
+    def _heard(self, payload: bytes, beside: bytes) -> None:
+        try:
+            sequence, _, gid = attachment.fields(beside)
+        except DecodeError as error:
+            logger.debug("%s: %s", self._entity.name, error)
+            return
+        if sequence == _HELLO:
+            self._greet(payload, gid)
+        elif gid in self._senders:
+            self._unanswered += 1
+            self._asked(DirectRequest(payload, beside, self._answer))
+
+    def _answer(self, payload: Payload, beside: bytes) -> None:
+        sender = self._senders.get(beside[-16:])
+        if sender is not None:  # else the client has gone meanwhile
+            sender.put(payload, attachment=beside)
+        self._unanswered -= 1
+        if self._is_closing:
+            self.close()
+
+    def _greet(self, where: bytes, gid: bytes) -> None:
+        """A client says where it hears answers."""
+        zid, _, eid = where.decode("ascii", "replace").partition("/")
+        if not (zid.isalnum() and eid.isdecimal()) or gid in self._senders:
+            return
+
+        def changed() -> None:
+            if sender.is_wanted:
+                sender.put(b"", attachment=attachment.pack(_HELLO, 0, self._entity.gid))
+
+        sender = self._senders[gid] = self._context.switchboard.open_sender("answer", zid, eid, changed)
+        changed()
+
+    def close(self) -> None:
+        """Take no more requests; those under way are still answered."""
+        self._is_closing = True
+        self._context.switchboard.forget("ask", self._entity)
+        if not self._unanswered:
+            for sender in self._senders.values():
+                sender.close()
+            self._senders.clear()
+
+
+class ClientLine:
+    """A client's end of the line to one server.
+
+    Args:
+        client, server: Its own entity and the server's.
+    """
+
+    def __init__(self, context: Context, client: Entity, server: Entity) -> None:
+        self.server = server
+        self._context, self._client = context, client
+        self.is_open = False
+        """Whether both ways are known to work."""
+        self._pending: dict[int, Callable[[Answer | None], None]] = {}
+        context.switchboard.listen("answer", client, self._heard)
+        self._sender = context.switchboard.open_sender("ask", server.zid, str(server.eid), self._changed)
+        self._changed()
+
+    def _changed(self) -> None:
+        if not self._sender.is_wanted:
+            self.is_open = False
+        elif not self.is_open:
+            where = f"{self._client.zid}/{self._client.eid}".encode()
+            self._sender.put(where, attachment=attachment.pack(_HELLO, 0, self._client.gid))
+
+    def call(
+        self, sequence: int, payload: Payload, beside: bytes, answered: Callable[[Answer | None], None]
+    ) -> Callable[[], None]:
+        """As `transport.base.Caller.call`; there is one answer, or None when the server is gone."""
+        self._pending[sequence] = answered
+        self._sender.put(payload, attachment=beside)
+        return lambda: self._give_up(sequence)
+
+    def _give_up(self, sequence: int) -> None:
+        self._pending.pop(sequence, None)
+
+    def _heard(self, payload: bytes, beside: bytes) -> None:
+        try:
+            sequence, _, gid = attachment.fields(beside)
+        except DecodeError as error:
+            logger.debug("%s: %s", self._client.name, error)
+            return
+        if sequence == _HELLO:
+            self.is_open = self.is_open or (gid == self.server.gid and self._sender.is_wanted)
+            return
+        answered = self._pending.pop(abs(sequence), None)
+        if answered is not None:
+            answered(Answer(payload, beside, sequence < 0))
+
+    def close(self) -> None:
+        """Hang up. Those who still wait learn that the server is gone."""
+        self.is_open = False
+        self._context.switchboard.forget("answer", self._client)
+        self._sender.close()
+        pending, self._pending = self._pending, {}
+        for answered in pending.values():
+            answered(None)
