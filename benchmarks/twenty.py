@@ -75,13 +75,16 @@ def all_heard(folder: Path) -> float:
     began = time.time()
     subprocess.run([*GRAPHFLOW, "up", "-d", str(folder / "ring.yaml")], check=True, capture_output=True, timeout=LIMIT)
     logs = folder / "graphflow" / "ring" / "latest"
-    while True:
-        times = [re.findall(r"\[INFO\] \[(\d+\.\d+)\] \[n\d+\]: heard", f.read_text()) for f in logs.glob("n*.log")]
-        if len(times) == NODES and all(times):
-            break
-        assert time.time() - began < LIMIT, "not every node has heard something"
-        time.sleep(0.05)
-    down()
+    try:
+        while True:
+            texts = [file.read_text() for file in logs.glob("n*.log")]
+            times = [re.findall(r"\[INFO\] \[(\d+\.\d+)\] \[n\d+\]: heard", text) for text in texts]
+            if len(times) == NODES and all(times):
+                break
+            assert time.time() - began < LIMIT, "not every node has heard something"
+            time.sleep(0.05)
+    finally:
+        down()
     return (max(float(t[0]) for t in times) - began) * 1000
 
 

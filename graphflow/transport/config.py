@@ -21,6 +21,9 @@ PROFILE_VARIABLE = "GRAPHFLOW_NET"
 
 CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
+OPEN_LIMIT = 10.0
+"""Seconds that two sessions may take to agree. Peers that find each other try once: on a busy machine, with twenty of
+them starting, an impatient one would stay without a connection for good."""
 QUERY_LIMIT_MS = 600_000
 """As rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
 
@@ -38,7 +41,7 @@ _CONFIG = """{
   queries_default_timeout: %(query_limit)d,
   adminspace: { enabled: false },
   transport: {
-    unicast: { open_timeout: 500, accept_timeout: 5000 },
+    unicast: { open_timeout: %(open_limit)d, accept_timeout: 10000 },
     // Two signs of life a lease, as rmw_zenoh: in a mesh of twenty they are most of what idle nodes do.
     link: { tx: { lease: 10000, keep_alive: 2 } },
     // Shared memory for publications only: zenoh#2628 affects queries.
@@ -57,7 +60,9 @@ def reaches_out() -> bool:
     return bool(os.environ.get(CONNECT_VARIABLE) or os.environ.get(PROFILE_VARIABLE))
 
 
-def config(mode: str, *, connect: Sequence[str] = (), listen: str | None = None) -> zenoh.Config:
+def config(
+    mode: str, *, connect: Sequence[str] = (), listen: str | None = None, open_limit: float = OPEN_LIMIT
+) -> zenoh.Config:
     """A session configuration. Multicast is off and nothing listens beyond `listen`."""
     return zenoh.Config.from_json5(
         _CONFIG
@@ -66,6 +71,7 @@ def config(mode: str, *, connect: Sequence[str] = (), listen: str | None = None)
             "connect": ", ".join(f'"{endpoint}"' for endpoint in connect),
             "listen": f'"{listen}"' if listen else "",
             "query_limit": QUERY_LIMIT_MS,
+            "open_limit": round(open_limit * 1000),
         }
     )
 

@@ -39,6 +39,8 @@ logger = logging.getLogger("graphflow.link")
 
 PATIENCE = 2.0
 """Seconds that what was sent may go without an acknowledgement."""
+DIAL_LIMIT = 2.0
+"""Seconds until the other side must have answered a dial: time for five exchanges, and soon tried again."""
 LEASE_MS = 4000
 """After so long without a sign of life the other side may take this one for dead; 10 s is Zenoh's own."""
 
@@ -78,7 +80,8 @@ class Link:
 
     def _config(self, profile: NetProfile | None, domain: int) -> zenoh.Config:
         listen = profile.listen if profile is not None else None
-        settings = config("router", connect=[rendezvous_endpoint(), *self._wanted], listen=listen)
+        connect = [rendezvous_endpoint(), *self._wanted]
+        settings = config("router", connect=connect, listen=listen, open_limit=DIAL_LIMIT)
         # Peers here and there need not know of each other's addresses: they would try to reach them directly.
         settings.insert_json5("scouting/gossip/enabled", "false")
         settings.insert_json5("transport/link/tx/lease", str(LEASE_MS))
@@ -144,7 +147,7 @@ def dial() -> zenoh.Session | None:
     endpoints = _endpoints(profile)
     if not endpoints:
         return None
-    settings = config("client", connect=endpoints)
+    settings = config("client", connect=endpoints, open_limit=DIAL_LIMIT)
     if profile is not None:
         settings.insert_json5("transport/link/tls", json.dumps(_tls(profile)))
     try:

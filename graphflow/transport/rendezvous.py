@@ -65,7 +65,7 @@ def join() -> zenoh.Session | None:
 
 def _open_client(endpoint: str) -> zenoh.Session | None:
     try:
-        return open_session(config("client", connect=[endpoint]))
+        return open_session(config("client", connect=[endpoint], open_limit=ANSWER_LIMIT))
     except TransportError:
         return None
 
