@@ -7,6 +7,7 @@ import time
 import click
 
 from graphflow.cli import output
+from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import agree, use_project
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
@@ -38,14 +39,16 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
 
 @service.command(cls=ValueCommand, short_help="Call a service with a request in YAML.")
 @click.argument("name", metavar="SERVICE")
-@click.argument("type_name", metavar="TYPE")
+@click.argument("type_name", metavar="TYPE", required=False)
 @click.argument("values", nargs=-1)
 @click.option(
     "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call again and again, so many times a second."
 )
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
 @click.option("--json", "as_json", is_flag=True, help="The response for programs.")
-def call(name: str, type_name: str, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool) -> None:
+def call(
+    name: str, type_name: str | None, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool
+) -> None:
     """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
     from graphflow.introspect.echo import plain
     from graphflow.msgs import registry
@@ -53,6 +56,10 @@ def call(name: str, type_name: str, values: tuple[str, ...], rate: float | None,
 
     use_project()
     full = expand(name, "/", "cli")
+    if type_name is None:
+        with View(domain_id()) as view:
+            actual = view.service_type(full)
+        raise UsageFault(f"TYPE is missing; {full} is a {actual}: graphflow service call {full} {actual}")
     wanted = registry.full_name(type_name)
     values_read = message_values(values)
     with View(domain_id()) as view:

@@ -68,6 +68,8 @@ def test_turtlesim(machine: Machine) -> None:
     assert "did you mean '/turtlesim'?" in machine.run("param", "get", "/turtelsim", "background_r", code=1)
     assert "did you mean 'background_r'?" in machine.run("param", "get", "/turtlesim", "backgroundr", code=1)
 
+    assert "/spawn is a turtlesim/srv/Spawn" in machine.run("service", "call", "/spawn", code=2)
+    assert "did you mean '/spawn'?" in machine.run("service", "call", "/spwan", code=1)
     spawned = machine.run("service", "call", "/spawn", "turtlesim_msgs/srv/Spawn", "{x: 2, y: 2, theta: 0.2, name: ''}")
     assert "turtlesim/srv/Spawn; using that" in spawned
     assert "turtlesim.srv.Spawn_Response(name='turtle2')" in spawned
