@@ -153,7 +153,10 @@ class Bell:
         self._fd: int | None = None
         if threads and not is_portable():
             self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-            getattr(loop, "hang_bell", loop.add_reader)(self._fd, self._answer)
+            if hasattr(loop, "hang_bell"):
+                loop.hang_bell(self._fd, self._attend)
+            else:
+                loop.add_reader(self._fd, self._answer)
 
     def ring(self) -> None:
         """Have the loop attend to the inboxes in `rung`. From any thread."""
