@@ -6,20 +6,15 @@ more than 0.5 MB; until then allocators settle.
 
 from __future__ import annotations
 
-import os
-import random
 import re
 import subprocess
 import sys
-import tempfile
 import time
-from pathlib import Path
 
 import psutil
 
 from benchmarks.rounds import goal
-from benchmarks.startup import GRAPHFLOW
-from graphflow.transport.rendezvous import free_endpoint
+from benchmarks.startup import GRAPHFLOW, own_machine
 
 LIMIT = 30.0
 NODES = """
@@ -60,13 +55,7 @@ class Answers(Node):
 
 def main() -> None:
     seconds = 60.0 * float(sys.argv[1]) if len(sys.argv) > 1 else 600.0
-    folder = Path(tempfile.mkdtemp())
-    os.environ.update(
-        GRAPHFLOW_RENDEZVOUS=free_endpoint(),
-        GRAPHFLOW_DOMAIN=str(random.randrange(10_000, 1_000_000)),
-        XDG_RUNTIME_DIR=str(folder),
-        XDG_STATE_HOME=str(folder),
-    )
+    folder = own_machine()
     (folder / "nodes").mkdir()
     (folder / "nodes" / "soak.py").write_text(NODES)
     (folder / "pyproject.toml").touch()

@@ -78,7 +78,8 @@ def whole(*command: str) -> float:
     return (time.perf_counter() - began) * 1000
 
 
-def main() -> None:
+def own_machine() -> Path:
+    """Give this process and its children a rendezvous, a domain and folders of their own; returns the folder."""
     folder = tempfile.mkdtemp()
     os.environ.update(
         GRAPHFLOW_RENDEZVOUS=free_endpoint(),
@@ -86,6 +87,11 @@ def main() -> None:
         XDG_RUNTIME_DIR=folder,
         XDG_STATE_HOME=folder,
     )
+    return Path(folder)
+
+
+def main() -> None:
+    own_machine()
     found = compare(
         {"two scripts, raw zenoh": first_raw_message, "graphflow up, 2 nodes": first_message},
         rounds=15,

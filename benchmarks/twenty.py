@@ -9,21 +9,17 @@ Goals: 700 ms from the command to the last first message, 14 MB, 2 %.
 
 from __future__ import annotations
 
-import os
-import random
 import re
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
 import psutil
 
 from benchmarks.rounds import goal
-from benchmarks.startup import GRAPHFLOW
-from graphflow.transport.rendezvous import free_endpoint
+from benchmarks.startup import GRAPHFLOW, own_machine
 
 NODES = 20
 IDLE_SECONDS = 20.0
@@ -109,13 +105,7 @@ def idle(folder: Path) -> tuple[float, float]:
 
 def main() -> None:
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 7
-    folder = Path(tempfile.mkdtemp())
-    os.environ.update(
-        GRAPHFLOW_RENDEZVOUS=free_endpoint(),
-        GRAPHFLOW_DOMAIN=str(random.randrange(10_000, 1_000_000)),
-        XDG_RUNTIME_DIR=str(folder),
-        XDG_STATE_HOME=str(folder),
-    )
+    folder = own_machine()
     project(folder)
     times = [all_heard(folder) for _ in range(rounds)]
     print(f"{NODES} nodes, command to the last first message: " + ", ".join(f"{t:.0f}" for t in sorted(times)) + " ms")

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.errors import DecodeError
 from graphflow.qos import SERVICES
+from graphflow.runtime.scheduler import BURST
 from graphflow.transport.base import Answer, Closable, Inbox, Payload, Sender
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
@@ -33,20 +34,23 @@ logger = logging.getLogger("graphflow")
 _HELLO = 0
 """The sequence number that opens a line."""
 
+Heard = Callable[[bytes, bytes, int, bytes], None]
+"""Called with what arrives: payload, attachment, and of that the sequence number and the GID."""
+
 
 class Switchboard:
     """A process's ends of all lines: who hears what arrives. One per `Context`."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self._heard: dict[tuple[str, str], Callable[[bytes, bytes], None]] = {}
-        """By `ask` or `answer` and endpoint id: what is called with payload and attachment."""
+        self._heard: dict[tuple[str, str], Heard] = {}
+        """By `ask` or `answer` and endpoint id."""
         self._receivers: dict[str, Closable] = {}
 
     def key(self, what: str, zid: str, eid: str) -> str:
         return f"@graphflow/{self._context.domain}/{what}/{zid}/{eid}"
 
-    def listen(self, what: str, entity: Entity, heard: Callable[[bytes, bytes], None]) -> None:
+    def listen(self, what: str, entity: Entity, heard: Heard) -> None:
         """Have `heard` called with what comes for an endpoint of this process."""
         self._heard[what, str(entity.eid)] = heard
         if what not in self._receivers:
@@ -57,12 +61,19 @@ class Switchboard:
 
     def _deliver(self, what: str, inbox: Inbox) -> None:
         session, heard = self._context.session, self._heard
-        while inbox.items:
+        for _ in range(min(BURST, len(inbox.items))):
             arrival = inbox.items.popleft()
             listener = heard.get((what, session.key_of(arrival).rpartition("/")[2]))
-            payload, beside = session.read(arrival)
-            if listener is not None and beside is not None:
-                listener(payload, beside)
+            if listener is not None:
+                payload, beside = session.read(arrival)
+                try:
+                    sequence, _, gid = attachment.fields(beside or b"")
+                except DecodeError as error:
+                    logger.debug("%s: %s", session.key_of(arrival), error)
+                    continue
+                listener(payload, beside or b"", sequence, gid)
+        if inbox.items:  # callers that are faster than the handlers must not hold the loop
+            self._context.loop.call_soon(self._deliver, what, inbox)
 
     def forget(self, what: str, entity: Entity) -> None:
         self._heard.pop((what, str(entity.eid)), None)
@@ -113,12 +124,7 @@ class ServerLines:
         if sender is not None:
             sender.close()
 
-    def _heard(self, payload: bytes, beside: bytes) -> None:
-        try:
-            sequence, _, gid = attachment.fields(beside)
-        except DecodeError as error:
-            logger.debug("%s: %s", self._entity.name, error)
-            return
+    def _heard(self, payload: bytes, beside: bytes, sequence: int, gid: bytes) -> None:
         if sequence == _HELLO:
             self._greet(payload, gid)
         elif gid in self._senders:
@@ -191,12 +197,7 @@ class ClientLine:
     def _give_up(self, sequence: int) -> None:
         self._pending.pop(sequence, None)
 
-    def _heard(self, payload: bytes, beside: bytes) -> None:
-        try:
-            sequence, _, gid = attachment.fields(beside)
-        except DecodeError as error:
-            logger.debug("%s: %s", self._client.name, error)
-            return
+    def _heard(self, payload: bytes, beside: bytes, sequence: int, gid: bytes) -> None:
         if sequence == _HELLO:
             self.is_open = self.is_open or (gid == self.server.gid and self._sender.is_wanted)
             return
