@@ -152,12 +152,21 @@ def host() -> Router | None:
 
 
 def free_endpoint() -> str:
-    """An endpoint on a loopback port that nobody uses now."""
+    """An endpoint on a loopback port that nobody uses now.
+
+    Below those that systems give out themselves: when a rendezvous ends, nobody but its successor is to have its port.
+    """
+    import random
     import socket
 
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    while True:
+        port = random.SystemRandom().randrange(10_000, 32_000)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:  # taken
+                continue
+        return f"tcp/127.0.0.1:{port}"
 
 
 def establish() -> Router | None:
