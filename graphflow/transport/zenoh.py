@@ -191,7 +191,7 @@ class ZenohSession:
         }
         if qos.durability is Durability.VOLATILE:
             return _ZenohSender(self.raw.declare_publisher(key, **options), self.bell, changed)
-        ext = _ext()
+        ext = load_ext()
         publisher = ext.declare_advanced_publisher(
             self.raw,
             key,
@@ -206,7 +206,7 @@ class ZenohSession:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
             return _Declared(self.raw.declare_subscriber(key, inbox.put, allowed_origin=origin))
-        ext = _ext()
+        ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
         history = ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth)
         return _Declared(
@@ -283,7 +283,7 @@ def _nothing() -> None:
     """Nobody is told any more."""
 
 
-def _ext() -> Any:
+def load_ext() -> Any:
     """Advanced pub/sub; only TRANSIENT_LOCAL endpoints need it."""
     import zenoh.ext
 
