@@ -35,7 +35,12 @@ _CONFIG = """{
   },
   listen: { endpoints: [%(listen)s] },
   // Without a delay of 0 opening takes half a second, even with multicast off.
-  scouting: { delay: 0, multicast: { enabled: false }, gossip: { enabled: true } },
+  scouting: {
+    delay: 0,
+    multicast: { enabled: false },
+    // One of two peers dials the other: else both do, and keep both connections.
+    gossip: { enabled: true, autoconnect_strategy: { peer: { to_router: "always", to_peer: "greater-zid" } } },
+  },
   // Advanced publishers, which keep messages for late joiners, order them by time stamp.
   timestamping: { enabled: true },
   queries_default_timeout: %(query_limit)d,
