@@ -107,22 +107,20 @@ class _Preload:
             self._reap()
 
     def _warm_up(self) -> None:
-        """Import and compile what every node needs, then tune memory for many forks."""
+        """Import, compile and rehearse what every node needs, then tune memory for many forks."""
         os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a second thread would make forking unsafe
         import asyncio  # noqa: F401
         import concurrent.futures.thread  # noqa: F401
-        from importlib.util import find_spec
 
         import graphflow.runtime.run
         import graphflow.supervisor.worker
         import graphflow.transport.takeover  # noqa: F401
         from graphflow.msgs import registry
+        from graphflow.supervisor.rehearsal import rehearse
         from graphflow.transport.malloc import keep_freed_memory
         from graphflow.transport.zenoh import load_ext
 
         load_ext()  # Zenoh starts no thread before a session is opened
-        if find_spec("uvloop") is not None:
-            import uvloop  # noqa: F401
         for name in _WARM:
             service = registry.service_schema(name)
             registry.hash_of(name)
@@ -133,6 +131,7 @@ class _Preload:
             registry.interface_class(name)
             registry.codec(name)
             registry.hash_of(name)
+        rehearse()
         keep_freed_memory()
         gc.collect()
         gc.freeze()
