@@ -38,8 +38,13 @@ _CONFIG = """{
   scouting: {
     delay: 0,
     multicast: { enabled: false },
-    // One of two peers dials the other: else both do, and keep both connections.
-    gossip: { enabled: true, autoconnect_strategy: { peer: { to_router: "always", to_peer: "greater-zid" } } },
+    gossip: {
+      enabled: true,
+      // One of two peers dials the other: else both do, and keep both connections.
+      autoconnect_strategy: { peer: { to_router: "always", to_peer: "greater-zid" } },
+      // The rendezvous tells everybody of everybody; peers need not repeat it to each other.
+      target: { router: ["router", "peer"], peer: ["router"] },
+    },
   },
   // Advanced publishers, which keep messages for late joiners, order them by time stamp.
   timestamping: { enabled: true },
