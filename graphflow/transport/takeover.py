@@ -31,19 +31,33 @@ class Takeover:
         self._alarm: asyncio.TimerHandle | None = None
         self._attempt: asyncio.Future[Router | None] | None = None
         self._watcher: Closable | None = None
+        self._gone: set[str] = set()
+        """Sessions whose connection has ended. Zenoh tells of that before it takes a router off its own list."""
         self._warned = False
         self._closed = False
 
     def guard(self, session: ZenohSession) -> None:
         """From now on, take over when the rendezvous that `session` is connected to dies, or has died already."""
         self._session = session
-        self._watcher = session.watch_transports(self._lost)
-        self._lost("")
+        self._watcher = session.watch_transports(self._changed)
+        self._look()
 
     def _is_needed(self) -> bool:
-        return not self._closed and self._router is None and self._session is not None and not self._session.routers()
+        if self._closed or self._router is not None or self._session is None:
+            return False
+        routers = set(self._session.routers())
+        self._gone &= routers
+        return not routers - self._gone
 
-    def _lost(self, _: str) -> None:
+    def _changed(self, zid: str, alive: bool) -> None:
+        """The connection to another session began or ended."""
+        if alive:
+            self._gone.discard(zid)
+        else:
+            self._gone.add(zid)
+            self._look()
+
+    def _look(self) -> None:
         if self._alarm is None and self._attempt is None and self._is_needed():
             # The jitter keeps all the survivors from binding in the same instant.
             self._alarm = self._loop.call_later(random.uniform(0, _JITTER), self._try)  # noqa: S311

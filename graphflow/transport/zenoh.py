@@ -250,14 +250,13 @@ class ZenohSession:
         subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
         return _Declared(subscriber)
 
-    def watch_transports(self, closed: Callable[[str], None]) -> _Declared:
-        """Call `closed(zid)` on the loop whenever the connection to another session ends."""
+    def watch_transports(self, changed: Callable[[str, bool], None]) -> _Declared:
+        """Call `changed(zid, alive)` on the loop whenever a connection to another session begins or ends."""
 
         def deliver() -> None:
             while inbox.items:
                 event = inbox.items.popleft()
-                if event.kind == zenoh.SampleKind.DELETE:
-                    closed(str(event.transport.zid))
+                changed(str(event.transport.zid), event.kind == zenoh.SampleKind.PUT)
 
         inbox = Inbox(self.bell, None, deliver)
         listener = self.raw.info.declare_transport_events_listener(Callback(inbox.put, indirect=False))
