@@ -90,7 +90,7 @@ class Context:
             try:
                 context.open_link()
                 await context.wait_linked()
-            except BaseException:
+            except BaseException:  # a cancellation too: nothing stays open
                 await context.close()
                 raise
         return context

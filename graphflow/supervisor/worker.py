@@ -11,6 +11,7 @@ import socket
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Protocol
 
 from graphflow.errors import GraphflowError
@@ -101,13 +102,10 @@ class SocketReport:
 
     def _listen(self) -> None:
         # Not on the loop: a node whose loop is blocked must not outlive its supervisor either.
-        with self._socket.makefile("rb") as lines:
-            try:
-                for _ in lines:
-                    self._asked.set()
-                    self._stop()
-            except OSError:  # as good as its end
-                pass
+        with self._socket.makefile("rb") as lines, suppress(OSError):  # an error is as good as the end
+            for _ in lines:
+                self._asked.set()
+                self._stop()
         os._exit(EXIT_ERROR)
 
 
