@@ -6,6 +6,9 @@ Zenoh, a log line or user code in a callback can stall every other stream of the
 Data comes through Zenoh's default callback thread, one per subscription, which takes many samples per turn of the
 interpreter's lock; requests, answers and tokens come directly (`indirect=False`), since the default would start a
 thread per declaration and per call.
+
+Large messages go through shared memory by Zenoh's own doing. Buffers taken from a pool of ours gain nothing at 1 MB and
+a quarter at 6 MB, no latency, and cost a pool in every process and allocations that fail under load.
 """
 
 from __future__ import annotations

@@ -16,6 +16,24 @@ pytestmark = pytest.mark.real
 
 NEAR = "nodes:\n  /draw_circle: {class: nodes.draw_circle:DrawCircle}\n"
 ROUTER = str(Path(__file__).with_name("rmw_router.py"))
+SPEAKER = """
+from graphflow import Node, Publisher, Qos, Durability, service
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.msgs.std_srvs.srv import Trigger
+
+class Speaker(Node):
+    said = Publisher(String, "said", Qos(depth=1, durability=Durability.TRANSIENT_LOCAL))
+    times = 0
+
+    async def on_start(self) -> None:
+        self.log.info("listening")
+
+    @service(Trigger, "speak")
+    async def speak(self, request: Trigger.Request) -> Trigger.Response:
+        self.times += 1
+        self.said.publish(String(data=f"word {self.times}"))
+        return Trigger.Response(success=True)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +128,31 @@ def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, t
     near.until(lambda: reaches(near, "/turtlesim") and reaches(far, "/draw_circle"), "both see both again")
     assert "theta: " in near.run("topic", "echo", "/turtle1/pose", "--once")
     assert graph.end() == 0
+
+
+def test_what_a_latched_topic_said_meanwhile_is_heard(
+    hosts: Hosts, near: Machine, far: Machine, tmp_path: Path
+) -> None:
+    """After an outage a listener gets what it missed, and nothing twice."""
+    endpoint = f"tcp/{hosts.far.address}:7447"
+    far.start_python(ROUTER).wait_for("router up")
+    (tmp_path / "speaker.py").write_text(SPEAKER)
+    far.start("run", "speaker:Speaker", cwd=tmp_path).wait_for("listening")
+    start_graph(near, tmp_path, "--connect", endpoint).wait_for(f"linked to {endpoint}")
+    near.until(lambda: reaches(near, "/speaker"), "the robot is seen")
+    echo = near.start("topic", "echo", "/said", "--qos-durability", "transient_local")
+    far.run("service", "call", "/speak", "std_srvs/srv/Trigger")
+    echo.wait_for("word 1")
+
+    hosts.is_cut = True
+    near.until(lambda: not reaches(near, "/speaker"), "the near side has noticed")
+    far.run("service", "call", "/speak", "std_srvs/srv/Trigger")
+    hosts.is_cut = False
+    echo.wait_for("word 2")
+    far.run("service", "call", "/speak", "std_srvs/srv/Trigger")
+    echo.wait_for("word 3")
+    echo.end()
+    assert [line for line in echo.text.splitlines() if "word" in line] == [f"data: word {n}" for n in (1, 2, 3)]
 
 
 def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
