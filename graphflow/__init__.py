@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         timer,
     )
     from graphflow.runtime.events import QosEvent
+    from graphflow.runtime.failures import ErrorBudget
     from graphflow.runtime.node import Node
     from graphflow.runtime.run import run, running
     from graphflow.runtime.timer import TimerInfo
@@ -69,6 +70,7 @@ _HOMES = {
         "timer",
     ),
     "graphflow.runtime.events": ("QosEvent",),
+    "graphflow.runtime.failures": ("ErrorBudget",),
     "graphflow.runtime.timer": ("TimerInfo",),
     "graphflow.wire.attachment": ("MessageInfo",),
     "graphflow.runtime.node": ("Node",),
@@ -86,6 +88,7 @@ __all__ = [
     "Durability",
     "Duration",
     "EncodeError",
+    "ErrorBudget",
     "GraphflowError",
     "Group",
     "History",

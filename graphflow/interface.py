@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from graphflow.errors import ParameterError, Place
 
-EndpointKind = Literal["publisher", "subscription", "service", "client"]
+EndpointKind = Literal["publisher", "subscription", "service", "client", "action", "action client"]
 ParamType = Literal["bool", "int", "float", "str", "list[bool]", "list[int]", "list[float]", "list[str]", "bytes"]
 
 TYPE_IDS: dict[ParamType, int] = {
@@ -153,6 +153,66 @@ COMMON_PARAMETERS: dict[str, Parameter] = {
 """Parameters that every node has, as every ROS 2 node."""
 
 
+WhenFull = Literal["wait", "drop_new", "drop_old", "cancel_running"]
+"""What becomes of work that finds no slot free.
+
+`wait`: it queues. `drop_new`: it is dropped. `drop_old`: it queues, and whatever queued before it is dropped.
+`cancel_running`: the same, and the oldest run under way is cancelled.
+"""
+
+DeadlockPolicy = Literal["raise", "report", "break", "off"]
+"""What is done about a deadlock.
+
+`raise`: a call that cannot succeed fails at once, and any other deadlock is reported. `report`: it is reported.
+`break`: as raise, and the youngest call of a deadlock is ended with DeadlockError. `off`: nobody looks.
+"""
+CALL_TIMEOUT = 10.0
+"""Seconds that a call waits for its answer, unless somebody says otherwise."""
+NO_GROUP = "none"
+"""In a graph file: the handlers that are to be in no group."""
+
+
+@dataclass(frozen=True, slots=True)
+class GroupInfo:
+    """A concurrency group as a class declares it."""
+
+    limit: int | None = 1
+    """Runs at one time, None for any number."""
+    when_full: WhenFull = "wait"
+    thread: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class GroupChange:
+    """What a graph file says of one group of a node: who is in it, and what is to differ from the declaration."""
+
+    handlers: tuple[str, ...] = ()
+    limit: int | None = 1
+    sets_limit: bool = False
+    when_full: WhenFull | None = None
+    thread: bool | None = None
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> GroupChange:
+        return cls(**{**data, "handlers": tuple(data["handlers"])})
+
+
+HandlerKind = Literal["subscription", "timer", "service", "action", "task"]
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """A method that is called: by a timer, a message, a request or a goal."""
+
+    name: str
+    kind: HandlerKind
+    place: Place
+    group: str = ""
+    """The name of its group; empty: it queues behind itself only."""
+    is_async: bool = True
+    thread: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class Interface:
     """Everything one node class declares, its parents' declarations included."""
@@ -165,10 +225,8 @@ class Interface:
     doc: str = ""
     endpoints: tuple[Endpoint, ...] = ()
     params: tuple[Parameter, ...] = ()
-    handlers: tuple[str, ...] = ()
-    """Method names of timers, subscriptions and services."""
-    groups: dict[str, int | None] = field(default_factory=dict)
-    """Limit by group name, None for no limit."""
+    handlers: tuple[Handler, ...] = ()
+    groups: dict[str, GroupInfo] = field(default_factory=dict)
     dynamic_names: bool | tuple[str, ...] = False
     """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
 
@@ -188,11 +246,12 @@ class Interface:
     def from_json(cls, data: dict[str, Any]) -> Interface:
         dynamic = data["dynamic_names"]
         return cls(
-            **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc", "groups")},
+            **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc")},
             place=Place(*data["place"]),
             endpoints=tuple(Endpoint(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
             params=tuple(_parameter(p) for p in data["params"]),
-            handlers=tuple(data["handlers"]),
+            handlers=tuple(Handler(**{**h, "place": Place(*h["place"])}) for h in data["handlers"]),
+            groups={name: GroupInfo(**group) for name, group in data["groups"].items()},
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         )
 

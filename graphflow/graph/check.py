@@ -37,6 +37,23 @@ def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
         return
     yield from _check_params(node, interface)
     yield from _check_remaps(node, interface)
+    yield from _check_groups(node, interface)
+
+
+def _check_groups(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
+    handlers = {h.name: h for h in interface.handlers if h.kind != "task"}
+    tasks = {h.name for h in interface.handlers if h.kind == "task"}
+    for name, group in node.concurrency.items():
+        for handler, place in group.handler_places.items():
+            if handler in tasks:
+                yield Problem(place, f"{handler} is a task, which runs beside everything and is in no group")
+            elif handler not in handlers and interface.dynamic_names is not True:
+                near = did_you_mean(handler, handlers)
+                yield Problem(place, f"{_class(interface)} has no handler {handler!r}{near}")
+        here = [handlers[h] for h in group.change.handlers if h in handlers]
+        if group.change.thread and here and all(h.is_async for h in here):
+            names = ", ".join(h.name for h in here)
+            yield Problem(group.place, f"thread: true is for `def` handlers, and {names} of {name!r} run on the loop")
 
 
 def _at(place: Place) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from pydantic import (
     AfterValidator,
@@ -16,6 +16,8 @@ from pydantic import (
     StrictStr,
     model_validator,
 )
+
+from graphflow.interface import DeadlockPolicy, WhenFull
 
 _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
@@ -37,6 +39,30 @@ def _graph_name(text: str) -> str:
     if not re.match(r"\w[\w.-]*\Z", text):
         raise ValueError(f"{text!r} is no name for a graph; use letters, digits, _, - and .")
     return text
+
+
+def _limit(value: Any) -> Any:
+    if value != "none" and (not isinstance(value, int) or isinstance(value, bool) or value < 1):
+        raise ValueError(f"limit: expected 1 or more, or none for no limit, got {value!r}")
+    return value
+
+
+def _when_full(value: str) -> str:
+    if value not in get_args(WhenFull):
+        raise ValueError(f"when_full: expected one of {', '.join(get_args(WhenFull))}, got {value!r}")
+    return value
+
+
+def _policy(value: str) -> str:
+    if value not in get_args(DeadlockPolicy):
+        raise ValueError(f"deadlock: expected one of {', '.join(get_args(DeadlockPolicy))}, got {value!r}")
+    return value
+
+
+def _call_timeout(value: Any) -> Any:
+    if value != "never" and (not isinstance(value, (int, float)) or isinstance(value, bool) or not value > 0):
+        raise ValueError(f"call_timeout: expected seconds, or never, got {value!r}")
+    return value
 
 
 Scalar = StrictBool | StrictInt | StrictFloat | StrictStr
@@ -68,6 +94,20 @@ class Arg(_Model):
     choices: list[Scalar] = []
 
 
+class GroupSpec(_Model):
+    """One concurrency group of a node; written as a list of handlers when that is all there is to say."""
+
+    handlers: StrictStr | list[StrictStr] = []
+    limit: Annotated[Any, AfterValidator(_limit)] = None
+    thread: StrictBool | None = None
+    when_full: Annotated[StrictStr, AfterValidator(_when_full)] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, data: Any) -> Any:
+        return {"handlers": data} if isinstance(data, (list, str)) else data
+
+
 class NodeSpec(_Model):
     """One node of the graph. Its key is its name, absolute or relative to `namespace`."""
 
@@ -79,6 +119,7 @@ class NodeSpec(_Model):
     process: StrictStr = ""
     env: dict[str, EnvValue] = {}
     after: StrictStr | list[StrictStr] = []
+    concurrency: dict[str, GroupSpec] = {}
 
 
 class StepSpec(_Model):
@@ -99,6 +140,10 @@ class GraphFile(_Model):
     args: dict[str, Arg] = {}
     nodes: dict[str, NodeSpec]
     steps: dict[str, StepSpec] = {}
+    include: StrictStr | None = None
+    override: dict[str, Any] = {}
+    deadlock: Annotated[StrictStr, AfterValidator(_policy)] = "raise"
+    call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
 
 
 TOP_KEYS = tuple(GraphFile.model_fields)

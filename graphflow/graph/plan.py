@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from graphflow.errors import Place
+from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
 from graphflow.names import Remap
 
 
@@ -33,6 +34,26 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedGroup:
+    """A group of a node, and where each handler was put into it."""
+
+    change: GroupChange
+    place: Place
+    handler_places: dict[str, Place] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        change = self.change
+        words = [", ".join(change.handlers)] if change.handlers else []
+        if change.sets_limit:
+            words.append(f"limit {'none' if change.limit is None else change.limit}")
+        if change.when_full is not None:
+            words.append(f"when_full {change.when_full}")
+        if change.thread is not None:
+            words.append("in threads" if change.thread else "on the loop")
+        return "; ".join(words)
+
+
+@dataclass(frozen=True, slots=True)
 class PlannedNode:
     """One node as it would run."""
 
@@ -48,6 +69,8 @@ class PlannedNode:
     env: dict[str, str] = field(default_factory=dict)
     after: tuple[str, ...] = ()
     """Full names of nodes, or names of steps, that come first."""
+    concurrency: dict[str, PlannedGroup] = field(default_factory=dict)
+    """What differs from the groups that the class declares, by group name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +103,9 @@ class Plan:
     steps: tuple[PlannedStep, ...] = ()
     args: dict[str, Any] = field(default_factory=dict)
     domain: int | None = None
+    deadlock: DeadlockPolicy = "raise"
+    call_timeout: float | None = CALL_TIMEOUT
+    """Seconds that calls wait which do not say how long; None for ever."""
 
     def processes(self) -> dict[str, list[PlannedNode]]:
         """Nodes by the process they share, in the order of the file; a process of one is called as its node."""
@@ -107,6 +133,10 @@ class Plan:
         yield f"graph {self.name}  ({self.file}; classes from {self.root})"
         if self.domain is not None:
             yield f"domain {self.domain}"
+        if self.deadlock != "raise":
+            yield f"deadlock {self.deadlock}"
+        if self.call_timeout != CALL_TIMEOUT:
+            yield f"call_timeout {'never' if self.call_timeout is None else self.call_timeout}"
         for name, value in self.args.items():
             yield f"  {name}:={value}"
         for node in self.nodes:
@@ -120,6 +150,8 @@ class Plan:
                 yield f"  param    {name} = {setting.value!r}  # {setting.place}"
             for rule in node.remaps:
                 yield f"  remap    {rule.match} -> {rule.replacement}  # {rule.place}"
+            for name, group in node.concurrency.items():
+                yield f"  group    {name}: {group}  # {group.place}"
             for name, value in node.env.items():
                 yield f"  env      {name}={value}"
         for step in self.steps:
@@ -138,7 +170,13 @@ def node_from_json(data: dict[str, Any]) -> PlannedNode:
         params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
         remaps=tuple(Rule(r["match"], r["replacement"], Place(*r["place"])) for r in data["remaps"]),
         after=tuple(data["after"]),
+        concurrency={name: _group(g) for name, g in data["concurrency"].items()},
     )
+
+
+def _group(data: dict[str, Any]) -> PlannedGroup:
+    places = {name: Place(*place) for name, place in data["handler_places"].items()}
+    return PlannedGroup(GroupChange.from_json(data["change"]), Place(*data["place"]), places)
 
 
 def _step(data: dict[str, Any]) -> PlannedStep:

@@ -11,12 +11,14 @@ from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph import params_file, source
-from graphflow.graph.model import Arg, GraphFile, NodeSpec, StepSpec, keys_of
+from graphflow.graph.include import merged
+from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, StepSpec, keys_of
 from graphflow.graph.params_file import Section
-from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, Rule, Setting
+from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import SubstitutionError, Substitutions
+from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
 
 _MODELS: dict[str, type[BaseModel]] = {"args": Arg, "nodes": NodeSpec, "steps": StepSpec}
@@ -62,14 +64,15 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         what = "the file is empty; " if src.data is None else ""
         problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{_example('nodes')}")
         problems.raise_any()
+    src, folders = merged(src, path, problems.add)
     args = _arguments(src, given, problems)
-    substitutions = Substitutions(args, str(path.resolve().parent), env)
+    substitutions = {file: Substitutions(args, str(folder), env) for file, folder in folders.items()}
     src = _substituted(src, substitutions, problems)
     model = _validated(src, problems)
     if model is None:
         problems.raise_any()
     assert model is not None
-    files = _ParamsFiles(src, path.resolve().parent, problems)
+    files = _ParamsFiles(src, folders, problems)
     nodes = _nodes(src, model, files, problems)
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
@@ -84,6 +87,8 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         steps=tuple(ordered_steps),
         args=args,
         domain=model.domain,
+        deadlock=model.deadlock,  # type: ignore[arg-type]  # its validator has looked
+        call_timeout={None: CALL_TIMEOUT, "never": None}.get(model.call_timeout, model.call_timeout),
     )
 
 
@@ -129,13 +134,13 @@ def _given(text: str, spec: Any) -> Any:
     return text if wants_text and not isinstance(value, str) else value
 
 
-def _substituted(src: Source, substitutions: Substitutions, problems: _Problems) -> Source:
+def _substituted(src: Source, substitutions: Mapping[str, Substitutions], problems: _Problems) -> Source:
     """The same source with every substitution made, in keys too; places follow the values."""
     places, keys = {}, {}
 
     def one(value: Any, place: Place) -> Any:
         try:
-            return substitutions.apply(value)
+            return substitutions[place.file].apply(value)
         except SubstitutionError as error:
             problems.add_unknown(place, str(error))
             return value
@@ -208,6 +213,8 @@ def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, 
 
 
 def _known_keys(path: source.Path) -> list[str]:
+    if len(path) == 5 and path[2] == "concurrency":
+        return keys_of(GroupSpec)
     return keys_of(_MODELS[str(path[0])]) if len(path) == 3 and path[0] in _MODELS else keys_of(GraphFile)
 
 
@@ -258,6 +265,8 @@ _EXAMPLES: dict[source.Path, str] = {
     ("nodes", "", "remap"): "remap: {goal: /turtle1/pose}",
     ("nodes", "", "env"): "env: {LANG: C}",
     ("nodes", "", "after"): "after: /talker",
+    ("nodes", "", "concurrency"): "concurrency: {motion: [control]}",
+    ("nodes", "", "concurrency", ""): "motion: [control], or motion: {handlers: [control], limit: 2}",
     ("steps",): "steps: {spawn: {call: /spawn}}",
     ("steps", ""): "{call: /spawn}",
     ("steps", "", "request"): "request: {x: 1.0}",
@@ -265,7 +274,7 @@ _EXAMPLES: dict[source.Path, str] = {
 
 
 def _example(*path: str | int) -> str:
-    shape = tuple("" if i == 1 else part for i, part in enumerate(path))
+    shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
     return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
 
 
@@ -273,11 +282,11 @@ class _ParamsFiles:
     """The parameter files of a graph; each is read once.
 
     Args:
-        folder: Where relative paths begin: the graph file's folder.
+        folders: Where relative paths begin, by the file that they are written in.
     """
 
-    def __init__(self, src: Source, folder: Path, problems: _Problems) -> None:
-        self._src, self._folder, self._problems = src, folder, problems
+    def __init__(self, src: Source, folders: Mapping[str, Path], problems: _Problems) -> None:
+        self._src, self._folders, self._problems = src, folders, problems
         self._files: dict[Path, list[Section]] = {}
 
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
@@ -285,8 +294,8 @@ class _ParamsFiles:
         found: dict[str, Setting] = {}
         names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
         for i, name in enumerate(names):
-            path = self._folder / name
             place = self._src.place((*at, i))
+            path = self._folders[place.file] / name
             if path not in self._files:
                 self._files[path] = self._read(path, place)
             sections = self._files[path]
@@ -337,10 +346,31 @@ def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: _Proble
             process=spec.process,
             env={k: str(v) for k, v in spec.env.items()},
             after=_names(spec.after),
+            concurrency=_concurrency(src, spec.concurrency, (*base, "concurrency"), problems),
         )
     if not model.nodes:
         problems.add(src.place(("nodes",)), "there is no node")
     return nodes
+
+
+def _concurrency(
+    src: Source, groups: Mapping[str, GroupSpec], path: source.Path, problems: _Problems
+) -> dict[str, PlannedGroup]:
+    found: dict[str, PlannedGroup] = {}
+    taken: dict[str, str] = {}
+    for name, spec in groups.items():
+        at = (*path, name, "handlers") if (*path, name, "handlers") in src.places else (*path, name)
+        places: dict[str, Place] = {}
+        for i, handler in enumerate(_names(spec.handlers)):
+            places[handler] = src.place((*at, i))
+            if handler in taken:
+                text = f"{handler} is put into two groups, {taken[handler]!r} and {name!r}; it can be in one"
+                problems.add(places[handler], text)
+            taken[handler] = name
+        limit = None if spec.limit == "none" else spec.limit
+        change = GroupChange(tuple(places), limit, spec.limit is not None, spec.when_full, spec.thread)  # type: ignore[arg-type]
+        found[name] = PlannedGroup(change, src.key_place((*path, name)), places)
+    return found
 
 
 def _node_name(src: Source, key: str, spec: NodeSpec, problems: _Problems) -> str | None:

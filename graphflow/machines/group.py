@@ -1,9 +1,9 @@
 """Who may run: slots, tickets and the queue of one concurrency group.
 
-A *member* is anything whose runs the group counts: a subscription, a timer, a service. It asks for a slot before each
-run and gives it back after. While the group is full it holds one ticket, in first-come order, however much work it
-has; when a slot is given back it goes straight to the head of the queue, so that nobody can take it in between.
-With n members of which each re-queues after a run, one that has work runs after at most n - 1 other runs.
+A *member* is anything whose runs the group counts: a subscription, a timer, a service, an action. It asks for a slot
+before each run and gives it back after. While the group is full it holds one ticket, in first-come order, however much
+work it has; when a slot is given back it goes straight to the head of the queue, so that nobody can take it in
+between. With n members of which each re-queues after a run, one that has work runs after at most n - 1 other runs.
 
 Source: rules G3, G8, G9 of the concurrency design; rclpy's MutuallyExclusiveCallbackGroup is a limit of 1.
 """
@@ -13,19 +13,34 @@ from __future__ import annotations
 from collections import deque
 from typing import Generic, TypeVar
 
+from graphflow.interface import WhenFull
+
 M = TypeVar("M")
 
 
 class GroupState(Generic[M]):
-    """The state of one group. Args: `limit`: runs at one time, None for any number."""
+    """The state of one group.
 
-    __slots__ = ("_queue", "limit", "running")
+    Args:
+        limit: Runs at one time, None for any number.
+        name: For people.
+        when_full: What members are to do with work that finds no slot free; the group itself only hands out tickets.
+    """
 
-    def __init__(self, limit: int | None = 1) -> None:
+    __slots__ = ("_queue", "limit", "members", "name", "running", "when_full")
+
+    def __init__(self, limit: int | None = 1, name: str = "", when_full: WhenFull = "wait") -> None:
         self.limit = limit
+        self.name = name
+        self.when_full = when_full
         self.running = 0
         """Slots taken."""
+        self.members: list[M] = []
+        """Whose runs the group counts, in the order they joined."""
         self._queue: deque[M] = deque()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name or 'unnamed'} {self.running}/{self.limit} taken>"
 
     @property
     def waiting(self) -> tuple[M, ...]:
@@ -46,6 +61,13 @@ class GroupState(Generic[M]):
         if self._queue and (self.limit is None or self.running <= self.limit):
             return self._queue.popleft()
         self.running -= 1
+        return None
+
+    def grant(self) -> M | None:
+        """Give a slot that is free to the head of the queue, as after a raised limit; None when there is none."""
+        if self._queue and (self.limit is None or self.running < self.limit):
+            self.running += 1
+            return self._queue.popleft()
         return None
 
     def withdraw(self, member: M) -> None:

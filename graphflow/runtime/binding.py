@@ -56,13 +56,14 @@ class Binding:
         options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
             options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
-            options["on_event"] = node.bound(handler.on_event)
+            options |= {"on_event": node.bound(handler.on_event), "on_error": handler.on_error}
             node.create_subscription(handler.type, handler.name, method, handler.qos, **options)
         elif handler.kind == "service":
             node.create_service(handler.type, handler.name, method, introspection=handler.introspection, **options)
         elif handler.rate is not None:
             period = self._period_ns(handler.rate, {}) / 1e9
-            timer = node.create_timer(period, method, takes_info=handler.takes_info, **options)
+            options |= {"takes_info": handler.takes_info, "on_error": handler.on_error}
+            timer = node.create_timer(period, method, **options)
             self._timers.append((handler.rate, timer))
 
     def _period_ns(self, rate: declare.Rate, values: Mapping[str, Any]) -> int:

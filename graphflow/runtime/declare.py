@@ -11,18 +11,20 @@ import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, get_args, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
-from graphflow.interface import Parameter, type_of
+from graphflow.interface import HandlerKind, Parameter, WhenFull, type_of
 from graphflow.msgs import base
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import expand
 from graphflow.qos import Qos
 from graphflow.runtime.clock import period_ns
+from graphflow.runtime.failures import OnError
 from graphflow.runtime.service_events import Introspection
 
 if TYPE_CHECKING:
+    from graphflow.runtime.groups import HandlerGroup
     from graphflow.runtime.node import Node
     from graphflow.runtime.services import ServiceClient
     from graphflow.runtime.topics import TopicPublisher, TopicSubscription
@@ -82,21 +84,42 @@ def _check_group(group: Any, what: str, place: Place) -> None:
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
 
 
+def _check_on_error(on_error: Any, place: Place) -> None:
+    if on_error not in get_args(OnError):
+        raise DeclarationError(f"{place}: on_error is one of {', '.join(get_args(OnError))}, not {on_error!r}")
+
+
 class Group:
-    """A concurrency group: how many of its handlers' runs there may be at one time.
+    """A concurrency group: how many of its handlers' runs there may be at one time. On a node, its `HandlerGroup`.
 
     Args:
         limit: 1 excludes one another (ROS 2's MutuallyExclusive), None sets no limit (Reentrant).
+        when_full: What becomes of work that finds the group full: see `WhenFull`.
+        thread: Run its `def` handlers in threads, where one that blocks holds its slot and not the loop.
+        name: If it is not that of the attribute.
     """
 
-    def __init__(self, limit: int | None = 1) -> None:
-        if limit is not None and (not isinstance(limit, int) or limit < 1):
+    def __init__(
+        self, limit: int | None = 1, when_full: WhenFull = "wait", *, thread: bool = False, name: str = ""
+    ) -> None:
+        if limit is not None and (not isinstance(limit, int) or isinstance(limit, bool) or limit < 1):
             raise DeclarationError(f"{_here()}: a group's limit is 1 or more, or None for no limit, not {limit!r}")
-        self.limit = limit
-        self.name = ""
+        if when_full not in get_args(WhenFull):
+            words = ", ".join(get_args(WhenFull))
+            raise DeclarationError(f"{_here()}: when_full is one of {words}, not {when_full!r}")
+        self.limit, self.when_full, self.thread, self.name = limit, when_full, thread, name
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = self.name or name
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> HandlerGroup: ...
+    @overload
+    def __get__(self, node: object, owner: type) -> Self: ...
+    def __get__(self, node: Any, owner: type) -> Any:
+        return node.groups.at_work(self) if hasattr(node, "groups") else self
 
     def __repr__(self) -> str:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
@@ -306,7 +329,7 @@ class Param(Held, Generic[V]):
 class Handler:
     """A decorated method."""
 
-    kind: str
+    kind: HandlerKind
     place: Place
     group: Group | None = None
     thread: bool = False
@@ -318,6 +341,7 @@ class Handler:
     on_event: Callable[..., Any] | None = None
     introspection: Introspection = "off"
     rate: Rate | None = None
+    on_error: OnError = "budget"
 
 
 class Rate:
@@ -410,6 +434,7 @@ def subscription(
     thread: bool = False,
     ignore_local: bool = False,
     on_event: Callable[..., Any] | None = None,
+    on_error: OnError = "budget",
 ) -> Callable[[F], F]:
     """Have the method called with each message of a topic: `async def heard(self, msg: String) -> None`.
 
@@ -418,14 +443,16 @@ def subscription(
     Args:
         ignore_local: Leave out what this process publishes itself.
         on_event: A method defined above it, called with each `QosEvent`.
+        on_error: What an error of it means for the node.
     """
     place = _here()
+    _check_on_error(on_error, place)
     _check_type(type, Message, "@subscription", place)
     _check_name(name, "@subscription", place)
     _check_group(group, "@subscription", place)
     _check_on_event(on_event, "@subscription", place)
     profile = _qos(qos, depth, place)
-    options: dict[str, Any] = {"ignore_local": ignore_local, "on_event": on_event}
+    options: dict[str, Any] = {"ignore_local": ignore_local, "on_event": on_event, "on_error": on_error}
     handler = Handler("subscription", place, group, thread, type, name, profile, **options)
     return lambda fn: _mark(fn, handler, range(2, 4))
 
@@ -436,12 +463,17 @@ def timer(
     hz: float | Param[Any] | None = None,
     group: Group | None = None,
     thread: bool = False,
+    on_error: OnError = "budget",
 ) -> Callable[[F], F]:
     """Have the method called once a period (seconds) or `hz` times a second; a parameter may stand for either.
 
     Missed periods are skipped and the phase is kept. The method may take a `TimerInfo`.
+
+    Args:
+        on_error: What an error of it means for the node.
     """
     place = _here()
+    _check_on_error(on_error, place)
     if callable(period) and not isinstance(period, Param):
         raise DeclarationError(f"{place}: write @timer(0.5) or @timer(hz=2.0), with a period")
     _check_group(group, "@timer", place)
@@ -450,7 +482,7 @@ def timer(
         rate.period_ns()
     except (ValueError, TypeError) as error:
         raise DeclarationError(f"{place}: @timer: {error}") from None
-    handler = Handler("timer", place, group, thread, rate=rate)
+    handler = Handler("timer", place, group, thread, rate=rate, on_error=on_error)
     return lambda fn: _mark(fn, handler, range(1, 3))
 
 

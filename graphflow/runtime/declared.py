@@ -8,8 +8,9 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from graphflow import interface
 from graphflow.errors import DeclarationError, Place
-from graphflow.interface import COMMON_PARAMETERS, Endpoint, Interface, Parameter
+from graphflow.interface import COMMON_PARAMETERS, Endpoint, GroupInfo, Interface, Parameter
 from graphflow.runtime.declare import (
     HOOK_MARK,
     MARK,
@@ -81,12 +82,13 @@ def check_attributes(cls: type, taken: frozenset[str]) -> None:
     Raises:
         DeclarationError: One does.
     """
-    found: dict[str, Held | Handler] = {**held(cls), **handlers(cls)}
+    found: dict[str, Held | Handler | Group] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, declared in found.items():
-        if attribute in taken:
+        if attribute in taken and attribute != "default_group":
             hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
             text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
-            raise DeclarationError(f"{declared.place}: {text}")
+            place = f"{declared.place}: " if hasattr(declared, "place") else f"{cls.__name__}: "
+            raise DeclarationError(f"{place}{text}")
 
 
 def groups(cls: type) -> dict[str, Group]:
@@ -156,7 +158,17 @@ def interface_of(cls: type[Node]) -> Interface:
         doc=inspect.cleandoc(cls.__doc__ or ""),
         endpoints=tuple(endpoints),
         params=tuple(params.values()),
-        handlers=tuple(name for name, handler in methods.items() if handler.kind != "task"),
-        groups={name: group.limit for name, group in groups(cls).items()},
+        handlers=tuple(_handler(cls, name, handler) for name, handler in methods.items()),
+        groups={name: GroupInfo(g.limit, g.when_full, g.thread) for name, g in groups(cls).items()},
         dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
     )
+
+
+def _handler(cls: type[Node], attribute: str, handler: Handler) -> interface.Handler:
+    # A child may have replaced the body only, by one of the other kind and in another place.
+    function = inspect.unwrap(getattr(cls, attribute))
+    code = getattr(function, "__code__", None)
+    place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)
+    group = None if handler.kind == "task" else handler.group or cls.default_group
+    is_async = inspect.iscoroutinefunction(function)
+    return interface.Handler(attribute, handler.kind, place, group.name if group else "", is_async, handler.thread)

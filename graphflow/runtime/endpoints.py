@@ -51,6 +51,18 @@ class Endpoint(ABC):
         return f"<{type(self).__name__} {self.name} [{self.type_name}]>"
 
     @property
+    def title(self) -> str:
+        """What it is and its name."""
+        return f"{self.kind.name.lower()} {self.name}"
+
+    def statistics(self) -> dict[str, Any]:
+        """Numbers since the start."""
+        return {
+            "matched": len(self.matched),
+            **{kind: n for kind, n in self._event_totals.items() if kind != "matched"},
+        }
+
+    @property
     def is_open(self) -> bool:
         return self.entity is not None
 

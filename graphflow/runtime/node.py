@@ -14,8 +14,7 @@ from types import TracebackType
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
-from graphflow.interface import Interface, may_make
-from graphflow.machines.group import GroupState
+from graphflow.interface import GroupChange, Interface, may_make
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message, Request, Response, Service
 from graphflow.names import Remap, Resolver, did_you_mean
@@ -26,6 +25,8 @@ from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
+from graphflow.runtime.failures import ErrorBudget, Failures, OnError
+from graphflow.runtime.groups import Groups, HandlerGroup
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import Change, Parameters
@@ -66,6 +67,7 @@ class Node:
         namespace: Where it lives: `/` or `/robot1`.
         remap: Rules, first match wins; as objects or as text `from:=to`.
         overrides: Parameter values from outside with where they were written, for graph files and command lines.
+        concurrency: Groups that differ from what the class declares, by name, for graph files.
         start_parameter_services, enable_rosout, enable_logger_service: False for a tool that nobody sets parameters
             of, reads the log of, or asks to say more.
         **params: Parameter values by name.
@@ -73,10 +75,13 @@ class Node:
     Raises:
         InvalidName: The name, the namespace or a rule is not legal.
         ParameterError: A parameter value does not fit its declaration.
+        DeclarationError: `concurrency` puts a handler into two groups.
     """
 
     default_group: ClassVar[declare.Group | None] = None
     """The group of handlers that name none; None lets each queue behind itself only."""
+    error_budget: ClassVar[ErrorBudget | None] = ErrorBudget(20, per=10.0)
+    """Errors of timers and subscriptions that the node bears; None for any number."""
     node_name: ClassVar[str] = ""
     """The name of nodes that are given none; empty: the class's name in snake case."""
     dynamic_names: ClassVar[bool | Sequence[str]] = False
@@ -93,6 +98,7 @@ class Node:
         namespace: str = "/",
         remap: Sequence[Remap | str] = (),
         overrides: Mapping[str, tuple[Any, str]] | None = None,
+        concurrency: Mapping[str, GroupChange] | None = None,
         start_parameter_services: bool = True,
         enable_rosout: bool = True,
         enable_logger_service: bool = True,
@@ -119,7 +125,9 @@ class Node:
         self._rosout: Rosout | None = None
         self._parameter_events: ParameterEvents | None = None
         self._sim_clock: tuple[SimClock, TopicSubscription[Any]] | None = None
-        self._groups: dict[declare.Group, GroupState[Runner]] = {}
+        self.groups = Groups(declared.groups(type(self)), type(self).default_group, concurrency or {})
+        """The node's concurrency groups."""
+        self._failures = Failures(self, self._fail)
         self._made = True
         self._bind_declarations(
             parameter_services=start_parameter_services, rosout=enable_rosout, logger_service=enable_logger_service
@@ -172,8 +180,28 @@ class Node:
         return self.context.clock if self._sim_clock is None else self._sim_clock[0]
 
     @property
+    def group(self) -> HandlerGroup:
+        """The group of the handler that is running: `async with self.group.released(): ...`.
+
+        Raises:
+            RuntimeError: What is running is no handler in a group, but a task, say.
+        """
+        group = getattr(asyncio.current_task(), "group", None)
+        if not isinstance(group, HandlerGroup):
+            raise RuntimeError(f"{self.full_name}: what is running here is no handler that holds a slot of a group")
+        return group
+
+    @property
     def is_running(self) -> bool:
         return self._context is not None
+
+    def statistics(self) -> dict[str, dict[str, Any]]:
+        """Numbers since the start, by the name of each handler, endpoint and group."""
+        found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
+        for openable in self._openables:
+            if isinstance(openable, (Endpoint, Timer)):
+                found[openable.title] = openable.statistics()
+        return found
 
     # create_*: rclpy's names and argument order
 
@@ -195,6 +223,7 @@ class Node:
         takes_info: bool = False,
         ignore_local: bool = False,
         on_event: OnEvent | None = None,
+        on_error: OnError = "budget",
     ) -> TopicSubscription[M]:
         """A subscription on `name`, remapped.
 
@@ -203,13 +232,13 @@ class Node:
             takes_info: Call it with the message and a `MessageInfo`: who sent it, when, its number in the row.
             ignore_local: Leave out what this process publishes itself.
             on_event: Called with each `QosEvent`.
+            on_error: What an error of the callback means for the node.
         """
-        slot = self._slots(group) if callback is not None else None
-        call = self._in_thread(callback) if thread and callback is not None else callback
         label = _label(callback, f"subscription {name}")
+        call, slots = (None, None) if callback is None else self._place(callback, label, group, thread)
         resolved = self.names.resolve(name)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
-        made = TopicSubscription(self, type_, resolved, Qos.of(qos), call, label, slot, **options)
+        made = TopicSubscription(self, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
         return self._add(made, late=callback is not None)
 
     def create_service(
@@ -230,9 +259,9 @@ class Node:
                 request and response too.
         """
         resolved = self.names.resolve(name, "service")
-        call = self._in_thread(callback) if thread else callback
         label = _label(callback, f"service {name}")
-        made = ServiceServer(self, type_, resolved, Qos.of(qos), call, label, self._slots(group))
+        call, slots = self._place(callback, label, group, thread)
+        made = ServiceServer(self, type_, resolved, Qos.of(qos), call, label, slots)
         made.configure_introspection(introspection)
         return self._add(made, late=True)
 
@@ -257,6 +286,7 @@ class Node:
         group: declare.Group | None = None,
         thread: bool = False,
         takes_info: bool = False,
+        on_error: OnError = "budget",
     ) -> Timer:
         """Call `callback` once a `period` (seconds).
 
@@ -264,12 +294,13 @@ class Node:
             ValueError: The period is not positive.
         """
         nanoseconds = period_ns(period, None)
-        call = self._in_thread(callback) if thread else callback
+        label = _label(callback, "timer")
+        call, slots = self._place(callback, label, group, thread)
 
         def run(info: TimerInfo) -> Any:
             return call(info) if takes_info else call()
 
-        return self._add(Timer(self, nanoseconds, run, _label(callback, "timer"), self._slots(group)), late=True)
+        return self._add(Timer(self, nanoseconds, run, label, slots, on_error), late=True)
 
     def declare_parameter(self, name: str, default: Any, *, dynamic: bool = False, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
@@ -335,7 +366,8 @@ class Node:
         """Go on the network: open what is declared, announce it, start timers and tasks.
 
         Raises:
-            GraphflowError: An override names no parameter, or something cannot be opened; nothing is left open.
+            GraphflowError: An override names no parameter, `concurrency` no handler, or something cannot be opened;
+            nothing is left open.
             ClosedError: The node is running already, or has been stopped.
         """
         self.ensure_made()
@@ -354,6 +386,7 @@ class Node:
             if self.parameters.get("use_sim_time"):
                 self._follow_sim_time()
             await self.on_start()
+            self.groups.refuse_strays()
             late, self._late = self._late, None
             for openable in sorted(late, key=lambda o: isinstance(o, Timer)):
                 openable.open()
@@ -444,10 +477,18 @@ class Node:
         except Exception as error:
             self.report_error(what, error)
 
-    def handler_failed(self, label: str, error: BaseException) -> None:
-        """Report an error of a timer or subscription; the node goes on."""
-        if not isinstance(error, CancelledError):
+    def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
+        """An error of a handler.
+
+        Args:
+            on_error: What it means for the node; None where a caller has it, so that it is only logged.
+        """
+        if isinstance(error, CancelledError):
+            return
+        if on_error is None:
             self.report_error(label, error)
+        else:
+            self._failures.failed(label, error, on_error)
 
     def report_error(self, label: str, error: BaseException) -> None:
         """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
@@ -466,13 +507,14 @@ class Node:
     def runner(
         self,
         label: str,
-        group: GroupState[Runner] | None,
+        group: HandlerGroup | None,
         items: deque[Any],
         invoke: Callable[[Any], Any],
         finished: Finished,
+        refused: Callable[[Any], None] | None = None,
     ) -> Runner:
         """A runner for one of the node's handlers; without a group it queues behind itself only."""
-        return Runner(self.context.loop, f"{self.full_name}.{label}", group, items, invoke, finished)
+        return Runner(self.context.loop, f"{self.full_name}.{label}", group, items, invoke, finished, refused)
 
     def forget(self, openable: _Openable) -> None:
         """Take an endpoint that was closed off the list."""
@@ -494,11 +536,13 @@ class Node:
             openable.open()
         return openable
 
-    def _slots(self, group: declare.Group | None) -> GroupState[Runner] | None:
-        chosen = group if group is not None else self.default_group
-        if chosen is None:
-            return None
-        return self._groups.setdefault(chosen, GroupState(chosen.limit))
+    def _place(
+        self, callback: Callable[..., Any], label: str, group: declare.Group | None, thread: bool
+    ) -> tuple[Callable[..., Any], HandlerGroup | None]:
+        """A handler as it is to be called, and the group whose slots its runs take."""
+        place = self.groups.place(label, group)
+        threaded = thread or (place.is_threaded and not inspect.iscoroutinefunction(callback))
+        return self._in_thread(callback) if threaded else callback, place.group
 
     def _in_thread(self, fn: Callable[..., Any]) -> Callable[..., Coroutine[Any, Any, Any]]:
         if inspect.iscoroutinefunction(fn):
@@ -571,14 +615,19 @@ class Node:
             error = task.exception()
             assert error is not None
             self.report_error(f"task {task.get_name()}", error)
+            self._fail(error)
+
+    def _fail(self, error: BaseException) -> None:
+        """End the node with an error."""
+        if self._ended is not None and not self._ended.done():
             self.failure = error
             self._ended.set_exception(error)
             self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
 
 
 _TAKEN = frozenset(dir(Node)) | {
-    *("id", "names", "log", "parameters", "failure", "failure_taken"),
-    *("_binding", "_context", "_ended", "_entered", "_groups", "_late", "_openables", "_parameter_events"),
+    *("id", "names", "log", "parameters", "failure", "failure_taken", "groups"),
+    *("_binding", "_context", "_ended", "_entered", "_failures", "_late", "_openables", "_parameter_events"),
     *("_own_services", "_rosout", "_sim_clock", "_tasks", "_token"),
 }
 """Attributes that no declaration may hide."""

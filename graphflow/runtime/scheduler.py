@@ -10,6 +10,7 @@ A `Runner` feeds the items of one queue to one handler, a run at a time or as ma
 from __future__ import annotations
 
 import asyncio
+import itertools
 from asyncio import AbstractEventLoop, CancelledError
 from asyncio.tasks import _enter_task, _leave_task
 from collections import deque
@@ -19,10 +20,13 @@ from inspect import iscoroutine
 from types import CoroutineType
 from typing import Any
 
-from graphflow.machines.group import GroupState
+from graphflow.runtime.groups import HandlerGroup
 
 BURST = 64
 """Runs of one handler in a row before the loop gets a turn."""
+
+
+_next_number = itertools.count(1).__next__
 
 
 class Activity:
@@ -43,7 +47,9 @@ class Activity:
         "_fut_waiter",
         "_loop",
         "_must_cancel",
+        "group",
         "name",
+        "returning_to",
     )
 
     def __init__(
@@ -63,6 +69,10 @@ class Activity:
         self._must_cancel = False
         self._cancel_message: Any = None
         self._cancel_requests = 0
+        self.group: HandlerGroup | None = None
+        """Whose slot it holds."""
+        self.returning_to: HandlerGroup | None = None
+        """The group that it waits to come back to."""
 
     def __repr__(self) -> str:
         return f"<Activity {self.name}{' done' if self.done() else ''}>"
@@ -174,12 +184,24 @@ class Activity:
         return self._loop
 
 
-class _Run(Activity):
-    """An activity of a `Runner`, which it tells of its end. One is made for every message."""
+class Run(Activity):
+    """An activity of a `Runner`, which it tells of its end. One is made for every message.
 
-    __slots__ = ("_item", "_runner")
+    Attributes:
+        item: What it was begun for.
+        number: Rises from run to run through the whole process, and is never used twice.
+    """
 
-    def __init__(self, runner: Runner, item: Any, coroutine: Coroutine[Any, Any, Any], context: Context) -> None:
+    __slots__ = ("item", "number", "runner")
+
+    def __init__(
+        self,
+        runner: Runner,
+        item: Any,
+        coroutine: Coroutine[Any, Any, Any],
+        context: Context,
+        group: HandlerGroup | None,
+    ) -> None:
         # Written out: to call the constructor above would take a tenth of a run.
         self.name = runner.name
         self._loop = runner._loop
@@ -189,13 +211,18 @@ class _Run(Activity):
         self._must_cancel = False
         self._cancel_message = None
         self._cancel_requests = 0
-        self._runner, self._item = runner, item
+        self.group = group
+        self.returning_to = None
+        self.runner, self.item = runner, item
+        self.number = _next_number()
 
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
-        item = self._item
-        del self._item  # a message is free when its run has ended
-        self._runner._ended(self, item, result, error)
+        item = self.item
+        del self.item  # a message is free when its run has ended
+        runner = self.runner
+        runner.active.discard(self)
+        runner._ended(self.group, item, result, error)
 
 
 Finished = Callable[[Any, Any, BaseException | None], None]
@@ -210,19 +237,22 @@ class Runner:
         items: The queue, filled by somebody else, who then calls `wake`.
         invoke: Called with an item; returns a result, or a coroutine that will.
         finished: Called with (item, result, error) after each run.
+        refused: Called with an item that is dropped because the group is full.
     """
 
     __slots__ = (
-        "_active",
         "_closed",
         "_context",
         "_finished",
-        "_group",
         "_idle",
         "_invoke",
         "_loop",
+        "_refused",
         "_scheduled",
         "_waking",
+        "active",
+        "errors",
+        "group",
         "items",
         "name",
         "runs",
@@ -232,29 +262,34 @@ class Runner:
         self,
         loop: AbstractEventLoop,
         name: str,
-        group: GroupState[Runner] | None,
+        group: HandlerGroup | None,
         items: deque[Any],
         invoke: Callable[[Any], Any],
         finished: Finished,
+        refused: Callable[[Any], None] | None = None,
     ) -> None:
         self.name = name
         self.items = items
         self.runs = 0
         """Runs begun since the start."""
-        self._loop, self._group = loop, group
-        self._invoke, self._finished = invoke, finished
+        self.errors = 0
+        """Runs that ended with an error."""
+        self.group = group
+        self.active: set[Run] = set()
+        """Runs that have begun and not ended."""
+        self._loop = loop
+        self._invoke, self._finished, self._refused = invoke, finished, refused
         # Every run begins with the variables of where the handler was made, never with those of an earlier run.
         self._context = copy_context()
-        self._active: set[Activity] = set()
         self._waking = False
         self._scheduled = False
         self._closed = False
         self._idle: asyncio.Future[None] | None = None
+        if group is not None:
+            group.members.append(self)
 
-    @property
-    def active(self) -> int:
-        """Runs that have begun and not ended."""
-        return len(self._active)
+    def __repr__(self) -> str:
+        return f"<Runner {self.name}>"
 
     @property
     def closed(self) -> bool:
@@ -265,7 +300,7 @@ class Runner:
         """There may be something in the queue: run what the group allows."""
         if self._waking or self._closed or self._scheduled:
             return
-        group, active, items = self._group, self._active, self.items
+        group, active, items = self.group, self.active, self.items
         self._waking = True
         try:
             for _ in range(BURST):
@@ -276,10 +311,13 @@ class Runner:
                         return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
                 elif (group.limit is not None and len(active) >= group.limit) or not group.admit(self):
+                    if group.when_full != "wait":
+                        self._overflow(group)
                     return
                 self.runs += 1
                 context = self._context.copy()
-                context.run(self._begin, items.popleft(), context)
+                context.run(self._begin, items.popleft(), context, group)
+                group = self.group  # the handler may have moved itself
         finally:
             self._waking = False
         if self.items:
@@ -290,65 +328,97 @@ class Runner:
         self._scheduled = False
         self.wake()
 
-    def _granted(self) -> None:
-        """A slot was handed over."""
-        assert self._group is not None
-        if self.items and not self._closed:
+    def _overflow(self, group: HandlerGroup) -> None:
+        """The group is full, and not everything is to wait for it."""
+        if group.when_full == "drop_new":
+            group.withdraw(self)
+            self._refuse(0)
+            return
+        self._refuse(1)
+        for other in group.waiting:
+            if other is not self:
+                other.yields()
+        group.admit(self)
+        if group.when_full == "cancel_running":
+            runs = [run for member in group.members if isinstance(member, Runner) for run in member.active]
+            if runs and not any(run.cancelling() for run in runs):
+                min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
+
+    def _refuse(self, keep: int) -> None:
+        """Drop what waits, but for the newest."""
+        while len(self.items) > keep:
+            item = self.items.popleft()
+            if self._refused is not None:
+                self._refused(item)
+
+    def yields(self) -> None:
+        if self.group is not None:
+            self.group.withdraw(self)
+        self._refuse(0)
+
+    def granted(self, group: HandlerGroup) -> None:
+        if self.items and not self._closed and group is self.group:
             self.runs += 1
             context = self._context.copy()
-            context.run(self._begin, self.items.popleft(), context)
+            context.run(self._begin, self.items.popleft(), context, group)
         else:
-            self._release(self._group)
+            group.give_back(self._loop)
         self.wake()
 
-    def _begin(self, item: Any, context: Context) -> None:
+    def move(self, group: HandlerGroup | None) -> None:
+        """Take the slots of another group from the next run on; runs under way keep what they hold."""
+        if self.group is not None:
+            self.group.withdraw(self)
+            self.group.members.remove(self)
+        self.group = group
+        if group is not None:
+            group.members.append(self)
+        self._loop.call_soon(self.wake)
+
+    def _begin(self, item: Any, context: Context, group: HandlerGroup | None) -> None:
         """Run the handler, within its context, to its end or to its first suspension."""
         try:
             result = self._invoke(item)
         except (KeyboardInterrupt, SystemExit):
             raise
         except BaseException as error:
-            self._ended(None, item, None, error)
+            self._ended(group, item, None, error)
             return
         if result.__class__ is not CoroutineType and not iscoroutine(result):
-            self._ended(None, item, result, None)
+            self._ended(group, item, result, None)
             return
-        run = _Run(self, item, result, context)
-        self._active.add(run)
+        run = Run(self, item, result, context, group)
+        self.active.add(run)
         run.step()
 
-    def _ended(self, activity: Activity | None, item: Any, result: Any, error: BaseException | None) -> None:
-        if activity is not None:
-            self._active.discard(activity)
+    def _ended(self, group: HandlerGroup | None, item: Any, result: Any, error: BaseException | None) -> None:
+        if error is not None and not isinstance(error, CancelledError):
+            self.errors += 1
         try:
             self._finished(item, result, error)
         except Exception as failure:
             message = f"{self.name}: the end of a run could not be reported"
             self._loop.call_exception_handler({"message": message, "exception": failure})
-        if self._group is not None:
-            self._release(self._group)
+        if group is not None:
+            group.give_back(self._loop)
         if self._idle is not None:
             self._look_idle()
         if self.items and not self._waking:
             self.wake()
 
-    def _release(self, group: GroupState[Runner]) -> None:
-        successor = group.release()
-        if successor is not None:
-            self._loop.call_soon(successor._granted)
-
     def cancel(self) -> asyncio.Future[None]:
         """Begin no more runs and cancel those under way; the future is done when they have ended."""
+        if not self._closed and self.group is not None:
+            self.group.withdraw(self)
+            self.group.members.remove(self)
         self._closed = True
-        if self._group is not None:
-            self._group.withdraw(self)
         if self._idle is None:
             self._idle = self._loop.create_future()
-        for activity in list(self._active):
-            activity.cancel()
+        for run in list(self.active):
+            run.cancel()
         self._look_idle()
         return self._idle
 
     def _look_idle(self) -> None:
-        if self._idle is not None and not self._active and not self._idle.done():
+        if self._idle is not None and not self.active and not self._idle.done():
             self._idle.set_result(None)

@@ -18,13 +18,13 @@ from graphflow.errors import (
     ServerLost,
     ServiceUnavailable,
 )
-from graphflow.machines.group import GroupState
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.direct import ClientLine, DirectRequest, ServerLines
 from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.times import to_ns
@@ -35,7 +35,7 @@ from graphflow.wire.liveliness import Entity, Kind
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
-REQUEST_QUEUE = 1_000
+REQUEST_QUEUE = 64
 """Requests that may wait for a service; more are refused with ServerBusy."""
 DISCOVERY_GRACE = 1.0
 """Seconds a call waits for a server that nobody has announced yet."""
@@ -57,7 +57,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         qos: Qos,
         callback: Callable[[Request], Any],
         label: str = "",
-        group: GroupState[Runner] | None = None,
+        group: HandlerGroup | None = None,
     ) -> None:
         super().__init__(node, type_.NAME, name, qos)
         self.type = type_
@@ -82,7 +82,9 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def _open(self, key: str) -> None:
         session = self.node.context.session
         self._inbox = Inbox(session.bell, None, self._arrived)
-        self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
+        self.runner = self.node.runner(
+            self._label, self._group, self._inbox.items, self._invoke, self._finished, self._refuse
+        )
         self._declared.append(session.open_server(key, self._inbox))
         self._lines = ServerLines(self.node.context, self._announced(), self._asked)
         self._service_events.open()
@@ -101,9 +103,11 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         assert self.runner is not None
         self.runner.wake()
         while len(self._inbox.items) > REQUEST_QUEUE:
-            self.refused += 1
-            busy = f"{self.name} has {REQUEST_QUEUE} requests waiting"
-            self._inbox.items.pop().reply_error(RemoteError(ServerBusy.__name__, busy).to_payload())
+            self._refuse(self._inbox.items.pop(), f"has {REQUEST_QUEUE} requests waiting")
+
+    def _refuse(self, request: Any, why: str = "runs in a group that is full and drops requests") -> None:
+        self.refused += 1
+        request.reply_error(RemoteError(ServerBusy.__name__, f"{self.name} {why}").to_payload())
 
     def _invoke(self, request: Any) -> Any:
         asked = attachment.unpack(request.attachment or b"")
@@ -135,6 +139,13 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         now = self.node.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
+
+    def statistics(self) -> dict[str, Any]:
+        """Requests answered or under way, failed, waiting and refused."""
+        runner, waiting = self.runner, 0 if self._inbox is None else len(self._inbox.items)
+        runs, errors = (0, 0) if runner is None else (runner.runs, runner.errors)
+        counts = {"runs": runs, "errors": errors, "waiting": waiting, "refused": self.refused}
+        return {**counts, **super().statistics()}
 
     def close(self) -> None:
         self._service_events.close()

@@ -6,8 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from graphflow.machines.group import GroupState
 from graphflow.runtime.clock import period_ns
+from graphflow.runtime.failures import OnError
+from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ class Timer:
         period_ns: int,
         callback: Callable[[TimerInfo], Any],
         label: str,
-        group: GroupState[Runner] | None = None,
+        group: HandlerGroup | None = None,
+        on_error: OnError = "budget",
     ) -> None:
         self.node = node
         self.skipped = 0
@@ -43,6 +45,7 @@ class Timer:
         self._label = label
         self._callback = callback
         self._group = group
+        self._on_error = on_error
         self._next_ns = 0
         self._handle: Any = None
         self._due: deque[TimerInfo] = deque()
@@ -51,6 +54,15 @@ class Timer:
 
     def __repr__(self) -> str:
         return f"<Timer {self._label} {self._period_ns / 1e9:g} s>"
+
+    @property
+    def title(self) -> str:
+        return f"timer {self._label}"
+
+    def statistics(self) -> dict[str, Any]:
+        """Runs, failed runs and skipped periods since the start."""
+        runs, errors = (0, 0) if self.runner is None else (self.runner.runs, self.runner.errors)
+        return {"runs": runs, "errors": errors, "skipped": self.skipped}
 
     @property
     def period(self) -> float:
@@ -69,7 +81,9 @@ class Timer:
 
     def open(self) -> None:
         """Start. Done by the node."""
-        self.runner = self.node.runner(self._label, self._group, self._due, self._callback, self._finished)
+        self.runner = self.node.runner(
+            self._label, self._group, self._due, self._callback, self._finished, self._refused
+        )
         self.reset()
 
     def reset(self) -> None:
@@ -106,7 +120,11 @@ class Timer:
 
     def _finished(self, info: TimerInfo, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self.node.handler_failed(self._label, error)
+            self.node.handler_failed(self._label, error, self._on_error)
+
+    def _refused(self, info: TimerInfo) -> None:
+        self.skipped += 1
+        self._missed += 1
 
     def cancel(self) -> None:
         """Stop the timer; `reset` starts it again."""

@@ -8,12 +8,13 @@ from collections.abc import AsyncIterator, Callable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError, EncodeError
-from graphflow.machines.group import GroupState
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.qos import DEFAULT, INFINITE_NS, History, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, Watchdog
+from graphflow.runtime.failures import OnError
+from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import BURST, Runner
 from graphflow.transport.base import Closable, Inbox, Payload, Sender
 from graphflow.wire import attachment
@@ -110,6 +111,9 @@ class TopicPublisher(Endpoint, Generic[M]):
             if dog is not None:
                 dog.move(self.node.clock)
 
+    def statistics(self) -> dict[str, Any]:
+        return {"published": self.published, **super().statistics()}
+
     def get_subscription_count(self) -> int:
         """Subscriptions in the graph that get these messages."""
         self._announced()
@@ -177,11 +181,12 @@ class TopicSubscription(Endpoint, Generic[M]):
         qos: Qos,
         callback: Callable[..., Any] | None = None,
         label: str = "",
-        group: GroupState[Runner] | None = None,
+        group: HandlerGroup | None = None,
         *,
         takes_info: bool = False,
         ignore_local: bool = False,
         on_event: OnEvent | None = None,
+        on_error: OnError = "budget",
     ) -> None:
         super().__init__(node, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
@@ -194,6 +199,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._ignore_local = ignore_local
         self._label = label or f"subscription {name}"
         self._group = group
+        self._on_error = on_error
         self._decode = registry.codec(self.type_name).decode
         self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unreadable
         self.runner: Runner | None = None
@@ -212,7 +218,9 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._inbox = Inbox(context.session.bell, bound, self._arrived)
         else:
             self._inbox = Inbox(context.session.bell, bound, _nothing)
-            self.runner = self.node.runner(self._label, self._group, self._inbox.items, self._invoke, self._finished)
+            self.runner = self.node.runner(
+                self._label, self._group, self._inbox.items, self._invoke, self._finished, self._refused
+            )
             self._inbox.ready = self.runner.wake
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
@@ -247,6 +255,15 @@ class TopicSubscription(Endpoint, Generic[M]):
     def lost(self) -> int:
         """Messages that never arrived, told by gaps in the publishers' sequence numbers."""
         return self.event_total("message_lost")
+
+    def statistics(self) -> dict[str, Any]:
+        """Messages received, waiting, dropped, malformed and expired; runs and failed runs of the callback."""
+        waiting = 0 if self._inbox is None else len(self._inbox.items)
+        counts = {"received": self.received, "waiting": waiting, "dropped": self.dropped}
+        counts |= {"malformed": self.malformed, "expired": self.expired}
+        if self.runner is not None:
+            counts |= {"runs": self.runner.runs, "errors": self.runner.errors}
+        return {**counts, **super().statistics()}
 
     def clock_changed(self) -> None:
         leases = [source.lease for source in self._sources.values()]
@@ -367,7 +384,11 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self.node.handler_failed(self._label, error)
+            self.node.handler_failed(self._label, error, self._on_error)
+
+    def _refused(self, arrival: Any) -> None:
+        assert self._inbox is not None
+        self._inbox.dropped += 1
 
     def _count_malformed(self, error: DecodeError) -> None:
         self.malformed += 1

@@ -50,7 +50,13 @@ def make_node(planned: PlannedNode) -> Node:
         for name, setting in planned.params.items()
         if not setting.is_optional or has(name) is not None
     }
-    node = cls(names.name, namespace=names.namespace, remap=[r.remap() for r in planned.remaps], overrides=overrides)
+    node = cls(
+        names.name,
+        namespace=names.namespace,
+        remap=[r.remap() for r in planned.remaps],
+        overrides=overrides,
+        concurrency={name: group.change for name, group in planned.concurrency.items()},
+    )
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
     return node

@@ -12,7 +12,7 @@ from graphflow.graph import source
 from graphflow.graph.check import Interfaces, check, offered_services, resolver, step_type
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import resolve
-from graphflow.interface import Endpoint, Interface, Parameter
+from graphflow.interface import Endpoint, Handler, Interface, Parameter
 
 NOWHERE = Place("code.py", 1)
 
@@ -39,6 +39,11 @@ CHASER = Interface(
         Parameter("turbo", "bool", False, NOWHERE),
         Parameter("limits.speed", "float", 1.0, NOWHERE),
         Parameter("points", "list[float]", [0.0], NOWHERE),
+    ),
+    handlers=(
+        Handler("control", "timer", NOWHERE),
+        Handler("load", "service", NOWHERE, is_async=False),
+        Handler("watch", "task", NOWHERE),
     ),
 )
 SIM = Interface(
@@ -75,6 +80,8 @@ def chaser(line: str) -> list[str]:
         "params: {limits: {speed: 1.0}}",
         "remap: {goal: /turtle1/pose, cmd_vel: vel, /clock: /time, ~/stop: /halt, spawn: /sim/spawn}",
         "remap: {/t/goal: /turtle1/pose, /t/c/stop: /halt}",
+        "concurrency: {motion: [control], none: [load]}",
+        "concurrency: {motion: {handlers: [control, load], thread: true}}",
     ],
 )
 def test_what_fits_is_no_problem(line: str) -> None:
@@ -96,6 +103,12 @@ def test_what_fits_is_no_problem(line: str) -> None:
         ("params: {turbo: on}", "4:21: parameter 'turbo' is of type boolean, 'on' is not"),
         ("remap: {gaol: /x}", "4:13: Chaser has no topic or service 'gaol'; did you mean 'goal'?"),
         ("remap: {/goal: /x}", "4:13: Chaser has no topic or service '/goal'; did you mean 'goal'?"),
+        ("concurrency: {m: [contrl]}", "4:23: Chaser has no handler 'contrl'; did you mean 'control'?"),
+        ("concurrency: {m: [watch]}", "4:23: watch is a task, which runs beside everything and is in no group"),
+        (
+            "concurrency: {m: {handlers: [control], thread: true}}",
+            "4:19: thread: true is for `def` handlers, and control of 'm' run on the loop",
+        ),
         ("remap: {~/goal: /x}", "4:13: Chaser has no topic or service '~/goal'; did you mean 'goal'?"),
     ],
 )

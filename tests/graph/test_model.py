@@ -21,10 +21,20 @@ def test_the_smallest_file() -> None:
 
 def test_keys_are_those_written_in_files() -> None:
     """`class` is a key; Python's name for it is not."""
-    assert keys_of(NodeSpec) == ["class", "namespace", "params", "params_file", "remap", "process", "env", "after"]
+    assert keys_of(NodeSpec) == [
+        "class",
+        "namespace",
+        "params",
+        "params_file",
+        "remap",
+        "process",
+        "env",
+        "after",
+        "concurrency",
+    ]
     assert keys_of(StepSpec) == ["call", "type", "request", "after", "timeout"]
     assert keys_of(Arg) == ["default", "doc", "unit", "choices"]
-    assert TOP_KEYS == ("name", "domain", "args", "nodes", "steps")
+    assert TOP_KEYS == ("name", "domain", "args", "nodes", "steps", "include", "override", "deadlock", "call_timeout")
     with pytest.raises(ValidationError):
         NodeSpec.model_validate({"class_": "a:B"})
 

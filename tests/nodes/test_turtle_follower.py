@@ -20,7 +20,7 @@ def test_it_has_what_its_parent_has() -> None:
         ("subscription", "pose"),
         ("subscription", "goal"),
     }
-    assert set(interface.handlers) == {"located", "control", "goal_moved"}
+    assert {handler.name for handler in interface.handlers} == {"located", "control", "goal_moved"}
 
 
 async def test_it_reaches_its_goal_and_follows_it(graph: Graph) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -10,11 +11,15 @@ import pytest
 
 from graphflow import (
     CallTimeout,
+    DeclarationError,
     Group,
     Node,
+    ServerBusy,
     service,
     subscription,
+    timer,
 )
+from graphflow.interface import GroupChange, WhenFull
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.srv import ListParameters
 from graphflow.msgs.std_msgs.msg import String
@@ -51,17 +56,17 @@ async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | No
     gate = asyncio.Event()
 
     class Crowd(Node):
-        group = Group(limit)
+        crowd = Group(limit)
 
         async def go_in(self) -> None:
             peak[self.name] = peak.get(self.name, 0) + 1
             await gate.wait()
 
-        @subscription(String, "x", group=group)
+        @subscription(String, "x", group=crowd)
         async def first(self, _: String) -> None:
             await self.go_in()
 
-        @subscription(String, "x", group=group)
+        @subscription(String, "x", group=crowd)
         async def second(self, _: String) -> None:
             await self.go_in()
 
@@ -131,3 +136,261 @@ async def test_a_call_to_oneself_in_one_group_waits_for_ever(graph: Graph) -> No
     await graph.clock.advance(1.0)
 
     assert node.outcome == ["late"]
+
+
+class Worker(Node):
+    """Works on each message for as long as the test likes."""
+
+    work = Group(1)
+
+    def __init__(self, when_full: WhenFull = "wait", **options: Any) -> None:
+        changes = {"work": GroupChange(when_full=when_full)}
+        super().__init__("worker", concurrency=changes, **options)
+        self.begun = Log()
+        self.gate = asyncio.Event()
+        self.ended = Log()
+
+    @subscription(String, "x", group=work)
+    async def first(self, message: String) -> None:
+        await self.run(message.data)
+
+    @service(AddTwoInts, "add", group=work)
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        await self.run("add")
+        return AddTwoInts.Response()
+
+    async def run(self, what: str) -> None:
+        self.begun(what)
+        try:
+            await self.gate.wait()
+            self.ended(what)
+        except asyncio.CancelledError:
+            self.ended(f"{what} cancelled")
+            raise
+
+
+async def say(graph: Graph, *words: str) -> None:
+    for word in words:
+        graph.publisher(String, "/x").publish(String(data=word))
+        await graph.settle()
+
+
+@pytest.mark.parametrize(
+    ("when_full", "begun", "ended", "dropped"),
+    [
+        ("wait", ["a", "b", "c"], ["a", "b", "c"], 0),
+        ("drop_new", ["a"], ["a"], 2),
+        ("drop_old", ["a", "c"], ["a", "c"], 1),
+        ("cancel_running", ["a", "b", "c"], ["a cancelled", "b cancelled", "c"], 0),
+    ],
+)
+async def test_what_becomes_of_work_that_finds_its_group_full(
+    graph: Graph, when_full: WhenFull, begun: list[str], ended: list[str], dropped: int
+) -> None:
+    """It waits, is dropped, or takes the place of what waits or of what runs; nothing is dropped uncounted."""
+    node = Worker(when_full)
+    await graph.start(node)
+    await say(graph, "a", "b", "c")
+    node.gate.set()
+    await graph.settle()
+
+    assert node.begun == begun
+    assert node.ended == ended
+    assert node.statistics()["subscription /x"]["dropped"] == dropped
+    assert node.groups.by_name["work"].running == 0
+
+
+@pytest.mark.parametrize("when_full", ["drop_new", "drop_old"])
+async def test_a_request_that_is_dropped_is_refused(graph: Graph, when_full: WhenFull) -> None:
+    """Nobody waits for an answer that cannot come: not the one that is dropped, whichever it is."""
+    node = Worker(when_full)
+    await graph.start(node)
+    await say(graph, "a")
+    calls = [asyncio.ensure_future(graph.call(AddTwoInts, "/add", AddTwoInts.Request())) for _ in range(2)]
+    await graph.settle()
+    refused = calls if when_full == "drop_new" else calls[:1]
+    for call in refused:
+        with pytest.raises(ServerBusy, match="/add runs in a group that is full and drops requests"):
+            await call
+    node.gate.set()
+    await graph.settle()
+    assert all(call.done() for call in calls)
+
+
+async def test_newer_work_of_another_member_displaces_what_waits(graph: Graph) -> None:
+    """`drop_old` keeps the newest of the whole group, not of each member."""
+    node = Worker("drop_old")
+    await graph.start(node)
+    await say(graph, "a", "b")
+    call = asyncio.ensure_future(graph.call(AddTwoInts, "/add", AddTwoInts.Request()))
+    await graph.settle()
+    node.gate.set()
+    await call
+
+    assert node.begun == ["a", "add"]
+
+
+async def test_a_slot_can_be_released_for_a_while(graph: Graph) -> None:
+    """Others of the group run meanwhile, and the handler comes back at the tail of the queue."""
+    log, gate, busy = Log(), asyncio.Event(), asyncio.Event()
+
+    class Polite(Node):
+        motion = Group(1)
+
+        @subscription(String, "x", group=motion)
+        async def slow(self, _: String) -> None:
+            log("begins")
+            async with self.group.released():
+                await gate.wait()
+                log("wants back")
+            log("is back")
+
+        @subscription(String, "y", group=motion)
+        async def other(self, _: String) -> None:
+            log("other")
+            await busy.wait()
+            log("other ends")
+
+    node = Polite()
+    await graph.start(node)
+    await say(graph, "go")
+    graph.publisher(String, "/y").publish(String())
+    await graph.settle()
+    gate.set()
+    await graph.settle()
+    assert log == ["begins", "other", "wants back"]
+    busy.set()
+    await graph.settle()
+
+    assert log == ["begins", "other", "wants back", "other ends", "is back"]
+    assert node.motion.running == 0
+
+
+async def test_a_cancelled_handler_comes_back_before_its_cleanup(graph: Graph) -> None:
+    """The group protects the clean-up too, also against those who run while it was away; then it ends cancelled."""
+    log, busy = Log(), asyncio.Event()
+
+    class Polite(Node):
+        motion = Group(1, "cancel_running")
+
+        @subscription(String, "x", group=motion)
+        async def slow(self, _: String) -> None:
+            try:
+                async with self.motion.released():
+                    await asyncio.Event().wait()
+            finally:
+                log("cleans up")
+
+        @subscription(String, "y", group=motion)
+        async def other(self, _: String) -> None:
+            await busy.wait()
+            log("other ends")
+
+    node = Polite()
+    await graph.start(node)
+    await say(graph, "go")
+    graph.publisher(String, "/y").publish(String())
+    await graph.settle()
+    stopped = asyncio.ensure_future(graph.stop(node))
+    await graph.settle()
+    assert log[:1] == ["cleans up"]
+    await stopped
+
+    assert node.motion.running == 0
+
+
+async def test_only_the_handler_itself_can_release_its_slot(graph: Graph) -> None:
+    """A task that it started, and what is no handler, are told."""
+    log = Log()
+
+    class Rude(Node):
+        motion = Group(1)
+        other = Group(1)
+
+        @subscription(String, "x", group=motion)
+        async def handle(self, _: String) -> None:
+            for group in (self.motion, self.other):
+                try:
+                    await asyncio.create_task(self.let_go(group))
+                except RuntimeError as error:
+                    log(str(error))
+
+        async def let_go(self, group: Any) -> None:
+            async with group.released():
+                log("released")
+
+    node = Rude()
+    await graph.start(node)
+    await say(graph, "go")
+
+    assert len(log) == 2
+    assert all("cannot be released here: only a handler that runs in it can do that" in text for text in log)
+    with pytest.raises(RuntimeError, match="no handler that holds a slot"):
+        _ = node.group
+
+
+async def test_a_graph_file_moves_handlers(graph: Graph) -> None:
+    """Into groups of its own, into declared ones with other limits, and out of all."""
+
+    class Mixed(Node):
+        io = Group(None)
+
+        @subscription(String, "x", group=io)
+        async def a(self, _: String) -> None:
+            """Handle nothing."""
+
+        @subscription(String, "x", group=io)
+        async def b(self, _: String) -> None:
+            """Handle nothing."""
+
+        @timer(1.0)
+        async def c(self) -> None:
+            """Do nothing."""
+
+    changes = {
+        "own": GroupChange(("a", "c"), 2, sets_limit=True),
+        "none": GroupChange(("b",)),
+        "io": GroupChange((), 3, sets_limit=True),
+    }
+    node = Mixed(concurrency=changes)
+    await graph.start(node)
+
+    groups = node.groups.by_name
+    assert {name: group.limit for name, group in groups.items()} == {"io": 3, "own": 2}
+    assert [member.name for member in groups["own"].members] == ["/mixed.a", "/mixed.c"]  # type: ignore[attr-defined]
+    assert not groups["io"].members
+
+
+async def test_a_graph_file_that_names_what_is_not_there(graph: Graph) -> None:
+    """An unknown handler and one in two groups are errors with the nearest name."""
+    with pytest.raises(DeclarationError, match="first is put into two groups, 'a' and 'b'"):
+        Node("n", concurrency={"a": GroupChange(("first",)), "b": GroupChange(("first",))})
+    with pytest.raises(DeclarationError, match="names 'frist', which is no handler of this node; did you mean 'first'"):
+        await graph.start(MisplacedWorker())
+
+
+class MisplacedWorker(Worker):
+    def __init__(self) -> None:
+        Node.__init__(self, concurrency={"work": GroupChange(("frist",))})
+
+
+async def test_blocking_handlers_of_a_threaded_group_hold_the_slot_and_not_the_loop(graph: Graph) -> None:
+    """The loop goes on while a `def` of the group blocks in its thread."""
+    entered, gate = asyncio.Event(), threading.Event()
+
+    class Blocking(Node):
+        heavy = Group(1, thread=True)
+
+        @subscription(String, "x", group=heavy)
+        def work(self, _: String) -> None:
+            self.context.loop.call_soon_threadsafe(entered.set)
+            assert gate.wait(10.0)
+
+    node = Blocking()
+    await graph.start(node)
+    await say(graph, "go")
+    await entered.wait()
+    assert node.heavy.running == 1
+    gate.set()
+    while node.heavy.running:
+        await asyncio.sleep(0.001)

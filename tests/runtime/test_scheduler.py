@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.machines.group import GroupState
+from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import BURST, Activity, Runner
 from graphflow.testing.clock import settle
 
@@ -24,12 +24,12 @@ Handler = Callable[[Any], Any]
 class Bench:
     """A runner with a queue to fill, and a record of how its runs ended."""
 
-    def __init__(self, handler: Handler, group: GroupState[Runner] | None = None, name: str = "bench") -> None:
+    def __init__(self, handler: Handler, group: HandlerGroup | None = None, name: str = "bench") -> None:
         self.loop = asyncio.get_running_loop()
         self.items: deque[Any] = deque()
         self.ended: list[tuple[Any, Any, BaseException | None]] = []
         self._enough: tuple[int, asyncio.Future[None]] | None = None
-        slots: GroupState[Runner] = group if group is not None else GroupState(1)
+        slots: HandlerGroup = group if group is not None else HandlerGroup(1)
         self.runner = Runner(self.loop, name, slots, self.items, handler, self._finished)
 
     def _finished(self, item: Any, result: Any, error: BaseException | None) -> None:
@@ -293,7 +293,7 @@ async def test_events_queues_and_locks(graphflow_runner: asyncio.Runner) -> None
         for _ in range(3):
             log.append(f"got {await queue.get()}")
 
-    producer, consumer = Bench(produce, GroupState(None)), Bench(consume)
+    producer, consumer = Bench(produce, HandlerGroup(None)), Bench(consume)
     producer.put(0, 1, 2)
     consumer.put(0)
     await settle()
@@ -316,7 +316,7 @@ async def test_a_condition_and_a_semaphore(graphflow_runner: asyncio.Runner) -> 
             await condition.wait()
             awake.append(n)
 
-    bench = Bench(handler, GroupState(None))
+    bench = Bench(handler, HandlerGroup(None))
     bench.put(1, 2)
     await settle()
     async with condition:
@@ -339,7 +339,7 @@ async def test_sleep_zero_gives_the_loop_a_turn(graphflow_runner: asyncio.Runner
             log.append(f"{name}{n}")
             await asyncio.sleep(0)
 
-    bench = Bench(handler, GroupState(None))
+    bench = Bench(handler, HandlerGroup(None))
     bench.put("a", "b")
     await settle()
 
@@ -461,7 +461,7 @@ async def test_a_suspended_run_is_cancelled_at_its_await(graphflow_runner: async
     assert log == ["cancelled", "cleaned up"]
     assert [item for item, _, _ in bench.ended] == [1]
     assert isinstance(bench.errors[0], CancelledError)
-    assert bench.runner.active == 0
+    assert not bench.runner.active
 
 
 async def test_cancelling_an_idle_runner_is_done_at_once(graphflow_runner: asyncio.Runner) -> None:
@@ -773,13 +773,13 @@ async def test_handlers_of_different_groups_do_not_wait_for_each_other(graphflow
     await settle()
 
     assert second.results == [1, 2]
-    assert first.runner.active == 1
+    assert len(first.runner.active) == 1
     await first.runner.cancel()
 
 
 async def test_a_shared_group_of_one_excludes(graphflow_runner: asyncio.Runner) -> None:
     """Two handlers of one group never run at one time, and take turns."""
-    group: GroupState[Runner] = GroupState(1)
+    group: HandlerGroup = HandlerGroup(1)
     inside: list[str] = []
     log: list[str] = []
 
@@ -804,7 +804,7 @@ async def test_a_shared_group_of_one_excludes(graphflow_runner: asyncio.Runner) 
 @pytest.mark.parametrize(("limit", "most"), [(None, 6), (2, 2), (4, 4)])
 async def test_as_many_runs_as_the_group_allows(graphflow_runner: asyncio.Runner, limit: int | None, most: int) -> None:
     """A group's limit counts the runs of all its handlers together; None sets none."""
-    group: GroupState[Runner] = GroupState(limit)
+    group: HandlerGroup = HandlerGroup(limit)
     now = peak = 0
 
     async def handler(_: object) -> None:
@@ -827,7 +827,7 @@ async def test_as_many_runs_as_the_group_allows(graphflow_runner: asyncio.Runner
 
 async def test_a_slot_is_held_until_the_cleanup_has_ended(graphflow_runner: asyncio.Runner) -> None:
     """The `finally` of a run is over before the next one of its group begins."""
-    group: GroupState[Runner] = GroupState(1)
+    group: HandlerGroup = HandlerGroup(1)
     log: list[str] = []
 
     async def first(_: object) -> None:
@@ -848,7 +848,7 @@ async def test_a_slot_is_held_until_the_cleanup_has_ended(graphflow_runner: asyn
 
 async def test_a_cancelled_waiter_passes_its_slot_on(graphflow_runner: asyncio.Runner) -> None:
     """A handler that ends after a slot was handed to it, and before it ran, gives the slot to the next."""
-    group: GroupState[Runner] = GroupState(1)
+    group: HandlerGroup = HandlerGroup(1)
     gate = asyncio.Event()
 
     async def holds(_: object) -> None:
@@ -875,7 +875,7 @@ async def test_a_cancelled_waiter_passes_its_slot_on(graphflow_runner: asyncio.R
 
 async def test_a_cancelled_handler_takes_its_ticket_back(graphflow_runner: asyncio.Runner) -> None:
     """Nobody waits behind a handler that no longer wants to run."""
-    group: GroupState[Runner] = GroupState(1)
+    group: HandlerGroup = HandlerGroup(1)
     gate = asyncio.Event()
 
     async def holds(_: object) -> None:
@@ -898,7 +898,7 @@ async def test_any_schedule(graphflow_runner: asyncio.Runner, seed: int) -> None
     """With random handlers, arrivals, errors and cancellations no run is lost, doubled or out of order."""
     random = Random(seed)
     limit = random.choice([1, 1, 2, 3, None])
-    group: GroupState[Runner] = GroupState(limit)
+    group: HandlerGroup = HandlerGroup(limit)
     now = 0
     begun: list[list[int]] = [[], [], [], []]
 
@@ -997,7 +997,7 @@ async def test_arrivals_do_not_add_up_to_longer_bursts(graphflow_runner: asyncio
 
 async def test_a_busy_topic_does_not_starve_a_timer_of_its_group(graphflow_runner: asyncio.Runner) -> None:
     """A handler that waits for its turn in a shared group gets it after one run of the busy one."""
-    group: GroupState[Runner] = GroupState(1)
+    group: HandlerGroup = HandlerGroup(1)
     log: list[str] = []
 
     async def busy(_: object) -> None:

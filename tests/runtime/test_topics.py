@@ -310,7 +310,7 @@ async def test_a_decode_error_of_the_handlers_own_is_an_error(graph: Graph, capl
     await graph.start(node)
     for _ in range(2):
         graph.publisher(String, "/x").publish(String(data="?"))
-    await graph.settle()
+        await graph.clock.advance(1.0)
 
     assert subscribed.malformed == 0
     assert [r.levelno for r in caplog.records] == [logging.ERROR] * 2

@@ -1,0 +1,75 @@
+"""What a node does about errors of its handlers: it says them, not too often, and ends when there are too many."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from graphflow.errors import GraphflowError
+from graphflow.times import NANOSECONDS, to_ns
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+OnError = Literal["budget", "log", "end"]
+"""What an error of a timer or subscription means for its node.
+
+`budget`: it is logged and counted, and too many end the node. `log`: it is logged. `end`: it ends the node.
+"""
+
+
+class ErrorBudget(NamedTuple):
+    """So many errors in so many seconds are borne; one more ends the node."""
+
+    errors: int
+    per: float
+
+
+class TooManyErrors(GraphflowError):
+    """A node's error budget is spent."""
+
+
+class Failures:
+    """The errors of one node's handlers.
+
+    Args:
+        end: Called with the error that ends the node.
+    """
+
+    def __init__(self, node: Node, end: Callable[[BaseException], None]) -> None:
+        self._node, self._end = node, end
+        self._counted: deque[int] = deque()
+        self._silence: dict[str, tuple[int, int]] = {}
+        """By handler: until when its errors are not logged, and how many were not."""
+
+    def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
+        """A handler has raised."""
+        now = self._node.context.clock.monotonic_ns()
+        self._say(label, error, now)
+        if on_error == "end":
+            self._end(error)
+        elif on_error == "budget" and self._node.error_budget is not None:
+            self._count(label, error, now, self._node.error_budget)
+
+    def _say(self, label: str, error: BaseException, now: int) -> None:
+        """Log the first error of a handler, and then one a second."""
+        until, unsaid = self._silence.get(label, (0, 0))
+        if now < until:
+            self._silence[label] = until, unsaid + 1
+            return
+        self._silence[label] = now + NANOSECONDS, 0
+        self._node.report_error(f"{label} ({unsaid} more before this)" if unsaid else label, error)
+
+    def _count(self, label: str, error: BaseException, now: int, budget: ErrorBudget) -> None:
+        self._counted.append(now)
+        while self._counted[0] <= now - to_ns(budget.per):
+            self._counted.popleft()
+        if len(self._counted) > budget.errors:
+            self._counted.clear()
+            text = (
+                f"{budget.errors + 1} errors of handlers within {budget.per:g} s, the last in {label}: "
+                f"{type(error).__name__}: {error}. The node ends; on_error='log' keeps a handler out of the count, and "
+                f"error_budget of the class sets it"
+            )
+            self._end(TooManyErrors(text))

@@ -1,0 +1,70 @@
+"""What a node does about errors of its handlers."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow import ErrorBudget, Node, timer
+from graphflow.runtime.failures import OnError, TooManyErrors
+from graphflow.testing import Graph
+
+
+async def failing() -> None:
+    raise ValueError("again")
+
+
+async def test_a_storm_of_errors_is_not_a_storm_of_lines(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The first is logged at once, then one a second with the number of those left out."""
+    node = Node("n")
+    node.create_timer(0.1, failing, on_error="log")
+    await graph.start(node)
+    await graph.clock.advance(2.05)
+
+    assert [r.getMessage() for r in caplog.records] == [
+        "failing: ValueError: again",
+        "failing (9 more before this): ValueError: again",
+    ]
+    assert node.is_running
+    assert node.statistics()["timer failing"] == {"runs": 20, "errors": 20, "skipped": 0}
+
+
+async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None:
+    """Twenty errors in ten seconds are borne, and one more is not."""
+    node = Node("n")
+    node.create_timer(0.1, failing)
+    await graph.start(node)
+    await graph.clock.advance(2.0)
+    assert node.failure is None
+    await graph.clock.advance(0.1)
+
+    with pytest.raises(TooManyErrors, match=r"21 errors of handlers within 10 s, the last in failing: ValueError: aga"):
+        await node.wait_ended()
+
+
+async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:
+    """What is older than the budget's time does not count."""
+    node = Node("n")
+    node.create_timer(0.5, failing)
+    await graph.start(node)
+    await graph.clock.advance(60.0)
+
+    assert node.failure is None
+
+
+@pytest.mark.parametrize(("on_error", "ends"), [("log", False), ("end", True), ("budget", True)])
+async def test_a_handler_says_what_its_errors_mean(graph: Graph, on_error: OnError, ends: bool) -> None:
+    """They are logged only, end the node at once, or count against the class's budget."""
+
+    class Strict(Node):
+        error_budget = ErrorBudget(0, per=1.0)
+
+        @timer(1.0, on_error=on_error)
+        async def fail(self) -> None:
+            raise KeyError("lost")
+
+    node = Strict()
+    await graph.start(node)
+    await graph.clock.advance(1.0)
+
+    assert (node.failure is not None) is ends
+    node.failure_taken = True
