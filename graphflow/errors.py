@@ -12,6 +12,13 @@ GraphflowError
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
 |-- ClosedError               you closed it and then used it
 |-- SupervisorError           a graph could not be started, or is not running
+|-- Abort                     what an action's handler raises to end its goal as aborted
+|-- GoalError                 a goal ended without success
+|   |-- GoalRejected          the server did not take it
+|   |-- GoalAborted           the server gave it up; carries its result
+|   |-- GoalCanceled          somebody cancelled it; carries its partial result
+|   `-- GoalLost              the server went away: nobody knows how it ended
+|-- LoopBlockedError          a call that blocks was made on the event loop
 `-- CallError                 a call ended without a response
     |-- ServiceUnavailable    nobody serves that name
     |-- ServerLost            the server went away during the call
@@ -106,6 +113,50 @@ class GraphFileError(GraphflowError):
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(sorted(problems))
         super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class Abort(GraphflowError):
+    """Raised by the handler of an action: `raise Abort(result)`, `raise Abort("the way is blocked")`.
+
+    The goal ends as aborted, with `result` or else with what `goal.partial` holds.
+    """
+
+    def __init__(self, result: object = None, reason: str = "") -> None:
+        is_reason = isinstance(result, str)
+        super().__init__(result if is_reason else reason)
+        self.result = None if is_reason else result
+
+
+class GoalError(GraphflowError):
+    """A goal ended without success.
+
+    Attributes:
+        result: What the server sent with it; None when it sent nothing.
+    """
+
+    def __init__(self, message: str, result: object = None) -> None:
+        super().__init__(message)
+        self.result = result
+
+
+class GoalRejected(GoalError):
+    """The server did not accept the goal: it is busy, or its accept hook refused."""
+
+
+class GoalAborted(GoalError):
+    """The server gave the goal up."""
+
+
+class GoalCanceled(GoalError):
+    """The goal was cancelled, by this client or another."""
+
+
+class GoalLost(GoalError):
+    """The server went away; what has become of the goal is not known."""
+
+
+class LoopBlockedError(GraphflowError):
+    """A call that blocks was made on the event loop, which would stop the whole process; await it instead."""
 
 
 class CallError(GraphflowError):

@@ -122,7 +122,7 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
             continue
         names = resolver(node)
         for endpoint in interface.endpoints:
-            kind: Kind = "service" if endpoint.kind in ("service", "client") else "topic"
+            kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
             name = names.resolve(endpoint.name, kind)
             type_, owner = first.setdefault((kind, name), (endpoint.type, node.name))
             if type_ != endpoint.type:

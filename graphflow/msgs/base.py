@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
@@ -103,7 +104,33 @@ class Service(Generic[Request, Response]):
     Event: ClassVar[type[Message]]
 
 
+class Handle(ABC, Generic[Goal, Result, Feedback]):
+    """A goal as the handler of an action has it.
+
+    Attributes:
+        request: What the client asked for.
+        partial: The result so far: what the client gets if the goal is cancelled or aborted.
+    """
+
+    request: Goal
+    partial: Result
+
+    @property
+    @abstractmethod
+    def goal_id(self) -> bytes:
+        """16 bytes, made by the client."""
+
+    @property
+    @abstractmethod
+    def is_cancel_requested(self) -> bool:
+        """Whether the goal is to end; for handlers in threads. On the loop `CancelledError` says it."""
+
+    @abstractmethod
+    def feedback(self, feedback: Feedback) -> None:
+        """Tell the client how it goes. Never waits."""
+
+
 class Action(Generic[Goal, Result, Feedback]):
-    """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes."""
+    """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes; handlers take a `Handle`."""
 
     NAME: ClassVar[str]

@@ -90,7 +90,9 @@ def _classes(full_name: str) -> list[str]:
         case Action() as action:
             parts = (action.goal, action.result, action.feedback, action.feedback_message)
             carriers = [text for service in action.services for text in _service_messages(service)]
-            return [*map(_message, parts), *carriers, _holder(name, "Action", ("Goal", "Result", "Feedback"))]
+            holder = _holder(name, "Action", ("Goal", "Result", "Feedback"))
+            handle = "    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]"
+            return [*map(_message, parts), *carriers, f"{holder}\n{handle}"]
 
 
 def _service_messages(service: Service) -> list[str]:

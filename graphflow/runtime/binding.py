@@ -60,6 +60,13 @@ class Binding:
             node.create_subscription(handler.type, handler.name, method, handler.qos, **options)
         elif handler.kind == "service":
             node.create_service(handler.type, handler.name, method, introspection=handler.introspection, **options)
+        elif handler.action is not None:
+            options |= {"accept": node.bound(handler.action.accept), "policy": handler.action.policy}
+            cancellable = handler.action.cancellable
+            options["cancellable"] = cancellable if isinstance(cancellable, bool) else node.bound(cancellable)
+            options["on_client_loss"] = handler.action.on_client_loss
+            options["cleanup_timeout"] = handler.action.cleanup_timeout
+            node.create_action_server(handler.type, handler.name, method, **options)
         elif handler.rate is not None:
             period = self._period_ns(handler.rate, {}) / 1e9
             options |= {"takes_info": handler.takes_info, "on_error": handler.on_error}

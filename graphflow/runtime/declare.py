@@ -16,14 +16,16 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, get_args
 from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
 from graphflow.interface import HandlerKind, Parameter, WhenFull, type_of
 from graphflow.msgs import base
-from graphflow.msgs.base import Message, Request, Response, Service
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import expand
 from graphflow.qos import Qos
+from graphflow.runtime.actions import GoalPolicy, OnClientLoss
 from graphflow.runtime.clock import period_ns
 from graphflow.runtime.failures import OnError
 from graphflow.runtime.service_events import Introspection
 
 if TYPE_CHECKING:
+    from graphflow.runtime.action_client import GoalClient
     from graphflow.runtime.groups import HandlerGroup
     from graphflow.runtime.node import Node
     from graphflow.runtime.services import ServiceClient
@@ -245,6 +247,26 @@ class Client(Held, Generic[Request, Response]):
         return node.create_client(self.type, self.name, introspection=self.introspection)
 
 
+class ActionClient(Held, Generic[Goal, Result, Feedback]):
+    """An action whose goals the node sends: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
+
+    def __init__(self, type: type[Action[Goal, Result, Feedback]], name: str) -> None:  # noqa: A002
+        self.place = _here()
+        _check_type(type, Action, "ActionClient", self.place)
+        _check_name(name, "ActionClient", self.place)
+        self.type, self.name = type, name
+
+    @overload
+    def __get__(self, node: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, node: Node, owner: type) -> GoalClient[Goal, Result, Feedback]: ...
+    def __get__(self, node: Node | None, owner: type) -> Any:
+        return self if node is None else node.held(self.attribute)
+
+    def bind(self, node: Node) -> GoalClient[Goal, Result, Feedback]:
+        return node.create_action_client(self.type, self.name)
+
+
 class Param(Held, Generic[V]):
     """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
 
@@ -342,6 +364,18 @@ class Handler:
     introspection: Introspection = "off"
     rate: Rate | None = None
     on_error: OnError = "budget"
+    action: ActionOptions | None = None
+
+
+@dataclass(frozen=True)
+class ActionOptions:
+    """How an action treats its goals: see `Node.create_action_server`. Functions are methods of the class body."""
+
+    policy: GoalPolicy
+    accept: Callable[..., Any] | None
+    cancellable: bool | Callable[..., Any]
+    on_client_loss: OnClientLoss
+    cleanup_timeout: float
 
 
 class Rate:
@@ -504,6 +538,45 @@ def service(
     _check_name(name, "@service", place)
     _check_group(group, "@service", place)
     handler = Handler("service", place, group, thread, type, name, introspection=introspection)
+    return lambda fn: _mark(fn, handler, range(2, 3))
+
+
+def action(
+    type: type[Action[Goal, Result, Feedback]],  # noqa: A002
+    name: str,
+    *,
+    group: Group | None = None,
+    thread: bool = False,
+    policy: GoalPolicy = "reject",
+    accept: Callable[..., Any] | None = None,
+    cancellable: bool | Callable[..., Any] = True,
+    on_client_loss: OnClientLoss = "continue",
+    cleanup_timeout: float = 10.0,
+) -> Callable[[F], F]:
+    """Have the method carry out goals: `async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result`.
+
+    Returning a result succeeds, raising `Abort` or any other error aborts. A goal that is cancelled gets
+    `CancelledError` at its next `await`; its client then has what `goal.partial` held.
+
+    Args:
+        policy: What becomes of a goal that comes while another is under way: `reject`, `queue`, `preempt`, `parallel`.
+        accept: A method defined above it, called with each goal's message; False rejects the goal.
+        cancellable: Whether cancel requests are granted; or a method, called with the handle, that decides.
+        on_client_loss: What becomes of a goal whose client has gone: `continue` or `cancel`.
+        cleanup_timeout: Seconds that a cancelled body gets; then its goal counts as aborted.
+    """
+    place = _here()
+    _check_type(type, Action, "@action", place)
+    _check_name(name, "@action", place)
+    _check_group(group, "@action", place)
+    for word, value, allowed in (("policy", policy, GoalPolicy), ("on_client_loss", on_client_loss, OnClientLoss)):
+        if value not in get_args(allowed):
+            raise DeclarationError(f"{place}: {word} is one of {', '.join(get_args(allowed))}, not {value!r}")
+    for word, hook in (("accept", accept), ("cancellable", cancellable)):
+        if not (hook is None or isinstance(hook, bool) or inspect.isfunction(hook)):
+            raise DeclarationError(f"{place}: @action: {word}= takes a method defined above it, not {hook!r}")
+    options = ActionOptions(policy, accept, cancellable, on_client_loss, cleanup_timeout)
+    handler = Handler("action", place, group, thread, type, name, action=options)
     return lambda fn: _mark(fn, handler, range(2, 3))
 
 

@@ -14,6 +14,7 @@ from graphflow.interface import COMMON_PARAMETERS, Endpoint, GroupInfo, Interfac
 from graphflow.runtime.declare import (
     HOOK_MARK,
     MARK,
+    ActionClient,
     Client,
     Group,
     Handler,
@@ -125,7 +126,12 @@ def interface_of(cls: type[Node]) -> Interface:
         place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
     endpoints: list[Endpoint] = []
     params: dict[str, Parameter] = {}
-    kinds = {Publisher: "publisher", Subscription: "subscription", Client: "client"}
+    kinds = {
+        Publisher: "publisher",
+        Subscription: "subscription",
+        Client: "client",
+        ActionClient: "action client",
+    }
     for attribute, declared in held(cls).items():
         if isinstance(declared, Param):
             p = declared.parameter
@@ -136,8 +142,9 @@ def interface_of(cls: type[Node]) -> Interface:
             if p.name in params:
                 raise DeclarationError(f"{p.place}: {cls.__name__} declares the parameter {p.name!r} twice")
             params[p.name] = p
-        elif isinstance(declared, (Publisher, Subscription, Client)):
-            type_name = declared.type.NAME if isinstance(declared, Client) else declared.type.SCHEMA.name
+        elif isinstance(declared, (Publisher, Subscription, Client, ActionClient)):
+            is_topic = isinstance(declared, (Publisher, Subscription))
+            type_name = declared.type.SCHEMA.name if is_topic else declared.type.NAME  # type: ignore[union-attr]
             kind: Any = kinds[type(declared)]
             endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
     methods = handlers(cls)
@@ -146,8 +153,8 @@ def interface_of(cls: type[Node]) -> Interface:
             if name not in params:
                 text = f"{attribute} reads its period from the parameter {name!r}, which {cls.__name__} does not have"
                 raise DeclarationError(f"{handler.place}: {text}")
-        if handler.kind in ("subscription", "service"):
-            type_name = handler.type.NAME if handler.kind == "service" else handler.type.SCHEMA.name
+        if handler.kind in ("subscription", "service", "action"):
+            type_name = handler.type.SCHEMA.name if handler.kind == "subscription" else handler.type.NAME
             kind = handler.kind
             endpoints.append(Endpoint(kind, handler.name, type_name, attribute, handler.place))
     dynamic = cls.dynamic_names

@@ -16,10 +16,12 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
 from graphflow.interface import GroupChange, Interface, may_make
 from graphflow.msgs import registry
-from graphflow.msgs.base import Message, Request, Response, Service
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolver, did_you_mean
 from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare, declared
+from graphflow.runtime.action_client import GoalClient
+from graphflow.runtime.actions import GoalPolicy, GoalServer, OnClientLoss
 from graphflow.runtime.binding import Binding
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
@@ -195,11 +197,22 @@ class Node:
     def is_running(self) -> bool:
         return self._context is not None
 
+    @property
+    def endpoints(self) -> list[Endpoint]:
+        """Everything it has on the network; of actions, the services and topics that they are made of."""
+        found: list[Endpoint] = []
+        for openable in self._openables:
+            if isinstance(openable, (GoalServer, GoalClient)):
+                found += openable.endpoints
+            elif isinstance(openable, Endpoint):
+                found.append(openable)
+        return found
+
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Numbers since the start, by the name of each handler, endpoint and group."""
         found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
         for openable in self._openables:
-            if isinstance(openable, (Endpoint, Timer)):
+            if isinstance(openable, (Endpoint, GoalServer, Timer)):
                 found[openable.title] = openable.statistics()
         return found
 
@@ -277,6 +290,52 @@ class Node:
         made = ServiceClient(self, type_, self.names.resolve(name, "service"), Qos.of(qos))
         made.configure_introspection(introspection)
         return self._add(made)
+
+    def create_action_server(
+        self,
+        type_: type[Action[Goal, Result, Feedback]],
+        name: str,
+        callback: Callable[[Any], Any],
+        *,
+        group: declare.Group | None = None,
+        thread: bool = False,
+        policy: GoalPolicy = "reject",
+        accept: Callable[[Goal], Any] | None = None,
+        cancellable: bool | Callable[[Any], bool] = True,
+        on_client_loss: OnClientLoss = "continue",
+        cleanup_timeout: float = 10.0,
+    ) -> GoalServer[Goal, Result, Feedback]:
+        """An action on `name`, remapped; `callback` takes the goal's `Handle` and returns the result.
+
+        Args:
+            policy: What becomes of a goal that comes while another is under way.
+            accept: Called with each goal's message; False rejects it.
+            cancellable: Whether cancel requests are granted, or a function of the `Handle` that decides.
+            on_client_loss: What becomes of a goal whose client has gone.
+            cleanup_timeout: Seconds that a cancelled body gets; then its goal counts as aborted.
+        """
+        label = _label(callback, f"action {name}")
+        call, slots = self._place(callback, label, group, thread)
+        made: GoalServer[Goal, Result, Feedback] = GoalServer(
+            self,
+            type_,
+            self.names.resolve(name, "service"),
+            call,
+            label,
+            slots,
+            policy=policy,
+            accept=accept,
+            cancellable=cancellable,
+            on_client_loss=on_client_loss,
+            cleanup_timeout=cleanup_timeout,
+        )
+        return self._add(made, late=True)
+
+    def create_action_client(
+        self, type_: type[Action[Goal, Result, Feedback]], name: str
+    ) -> GoalClient[Goal, Result, Feedback]:
+        """A client of the action `name`, remapped."""
+        return self._add(GoalClient(self, type_, self.names.resolve(name, "service")))
 
     def create_timer(
         self,
@@ -437,6 +496,8 @@ class Node:
         for openable in self._openables:
             if isinstance(openable, Timer):
                 openable.cancel()
+            if isinstance(openable, GoalServer):
+                openable.drop_waiting()
             runner: Runner | None = getattr(openable, "runner", None)
             if runner is not None:
                 ending[runner.cancel()] = runner.name
@@ -563,7 +624,7 @@ class Node:
                 self._serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
             self._parameter_events = self._add(ParameterEvents(self))
             if self.parameters.get("start_type_description_service"):
-                descriptions = TypeDescriptions(lambda: [o for o in self._openables if isinstance(o, Endpoint)])
+                descriptions = TypeDescriptions(lambda: self.endpoints)
                 type_name = "type_description_interfaces/srv/GetTypeDescription"
                 self._serve("get_type_description", type_name, descriptions.get, SERVICES)
         if logger_service:
@@ -603,9 +664,10 @@ class Node:
             self._sim_clock = None
             former[1].close()
             former[0].retire(self.clock)
-        for openable in list(self._openables):
-            if isinstance(openable, (Endpoint, Timer)):
-                openable.clock_changed()
+        for endpoint in self.endpoints:
+            endpoint.clock_changed()
+        for timer in [o for o in self._openables if isinstance(o, Timer)]:
+            timer.clock_changed()
 
     def _task_done(self, task: asyncio.Task[Any]) -> None:
         self._tasks.discard(task)

@@ -255,6 +255,7 @@ class Runner:
         "group",
         "items",
         "name",
+        "one_at_a_time",
         "runs",
     )
 
@@ -275,6 +276,8 @@ class Runner:
         self.errors = 0
         """Runs that ended with an error."""
         self.group = group
+        self.one_at_a_time = False
+        """Whether its runs exclude each other even in a group that allows more."""
         self.active: set[Run] = set()
         """Runs that have begun and not ended."""
         self._loop = loop
@@ -309,6 +312,8 @@ class Runner:
                 if group is None:
                     if active:
                         return
+                elif self.one_at_a_time and active:
+                    return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
                 elif (group.limit is not None and len(active) >= group.limit) or not group.admit(self):
                     if group.when_full != "wait":
@@ -357,7 +362,8 @@ class Runner:
         self._refuse(0)
 
     def granted(self, group: HandlerGroup) -> None:
-        if self.items and not self._closed and group is self.group:
+        may_run = not self._closed and group is self.group and not (self.one_at_a_time and self.active)
+        if self.items and may_run:
             self.runs += 1
             context = self._context.copy()
             context.run(self._begin, self.items.popleft(), context, group)

@@ -1,0 +1,340 @@
+"""Actions at work, on the client's side: goals that are sent, followed, and cancelled when their block is left."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from asyncio import CancelledError, Future
+from collections import deque
+from collections.abc import AsyncGenerator, AsyncIterator, Coroutine
+from contextlib import asynccontextmanager, suppress
+from typing import TYPE_CHECKING, Any, Generic
+
+from graphflow.errors import (
+    CallError,
+    ClosedError,
+    EncodeError,
+    GoalAborted,
+    GoalCanceled,
+    GoalError,
+    GoalLost,
+    GoalRejected,
+    ServerLost,
+    ServiceUnavailable,
+)
+from graphflow.interface import CALL_TIMEOUT
+from graphflow.machines.goal import CancelCode, GoalStatus
+from graphflow.msgs import registry
+from graphflow.msgs.base import Action, Feedback, Goal, Result
+from graphflow.names import did_you_mean
+from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.services import DISCOVERY_GRACE, ServiceClient
+from graphflow.runtime.topics import TopicSubscription
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+CANCEL_TIMEOUT = 2.0
+"""Seconds that leaving a goal's block waits for the goal's end."""
+LOST_GRACE = 1.0
+"""Seconds in which a server that was lost may be found to live on."""
+FEEDBACK_KEPT = 100
+"""Feedback messages that wait for a slow reader; the oldest go."""
+
+
+class ClientGoal(Generic[Goal, Result, Feedback]):
+    """A goal at its client."""
+
+    def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
+        self.request = request
+        self.goal_id = os.urandom(16)
+        self.status = GoalStatus.UNKNOWN
+        """As far as it is known here; `LOST` when the server has gone."""
+        self.latest: Feedback | None = None
+        """The last feedback."""
+        self.dropped = 0
+        """Feedback messages that nobody read in time."""
+        loop = client.node.context.loop
+        self.ended: Future[Result] = loop.create_future()
+        self._client = client
+        self._waiting: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
+        self._news: Future[None] | None = None
+
+    def __repr__(self) -> str:
+        return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
+
+    @property
+    def done(self) -> bool:
+        """Whether it has ended."""
+        return self.status.is_terminal
+
+    async def feedback(self) -> AsyncIterator[Feedback]:
+        """Every feedback from now on, until the goal ends."""
+        while True:
+            while self._waiting:
+                yield self._waiting.popleft()
+            if self.done:
+                return
+            self._news = self._client.node.context.loop.create_future()
+            await self._news
+
+    async def result(self, *, timeout: float | None = None) -> Result:
+        """Wait for the result of a goal that succeeds.
+
+        Args:
+            timeout: Seconds; None for as long as it takes.
+
+        Raises:
+            GoalAborted, GoalCanceled: It ended so; the error's `result` is what the server sent with it.
+            GoalLost: The server has gone.
+            TimeoutError: It has not ended in time, and goes on.
+        """
+        if timeout is None:
+            return await asyncio.shield(self.ended)
+        async with self._client.node.clock.timeout(timeout):
+            return await asyncio.shield(self.ended)
+
+    async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
+        """Ask the server to cancel it; whether it agrees. The goal ends a little later, or not as cancelled at all.
+
+        Raises:
+            CallError: The server did not answer.
+        """
+        return await self._client.cancel(self, timeout=timeout)
+
+    def heard(self, feedback: Feedback) -> None:
+        """Feedback has come. Done by the client."""
+        self.latest = feedback
+        self.dropped += len(self._waiting) == FEEDBACK_KEPT
+        self._waiting.append(feedback)
+        self._wake()
+
+    def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
+        """It has ended. Done by the client."""
+        if self.done:
+            return
+        self.status = status
+        if not self.ended.done():
+            if error is None:
+                self.ended.set_result(result)
+            else:
+                self.ended.set_exception(error)
+                self.ended.exception()  # whoever does not ask for the result is not told of it either
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._news is not None and not self._news.done():
+            self._news.set_result(None)
+
+
+class GoalClient(Generic[Goal, Result, Feedback]):
+    """A client of an action, at work."""
+
+    def __init__(self, node: Node, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
+        self.node, self.type, self.name = node, type_, name
+        self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
+        self._goals: dict[bytes, ClientGoal[Goal, Result, Feedback]] = {}
+        self._followers: set[asyncio.Task[None]] = set()
+        self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
+        self._cancel: ServiceClient[Any, Any] = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
+        self._get: ServiceClient[Any, Any] = self._service("get_result", f"{type_.NAME}_GetResult")
+        feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
+        status: Any = registry.interface_class("action_msgs/msg/GoalStatusArray")
+        at = f"{name}/_action"
+        self._feedback = TopicSubscription[Any](node, feedback, f"{at}/feedback", Qos(), self._heard)
+        self._status = TopicSubscription[Any](node, status, f"{at}/status", ACTION_STATUS, self._told)
+        self.endpoints = (self._feedback, self._status, self._get, self._cancel, self._send)
+
+    def __repr__(self) -> str:
+        return f"<GoalClient {self.name} [{self.type.NAME}]>"
+
+    def _service(self, part: str, type_name: str) -> ServiceClient[Any, Any]:
+        type_: Any = registry.interface_class(type_name)
+        return ServiceClient(self.node, type_, f"{self.name}/_action/{part}", SERVICES)
+
+    def open(self) -> None:
+        for endpoint in self.endpoints:
+            endpoint.open()
+
+    def close(self) -> None:
+        """Withdraw it. Goals go on at their server; nobody here learns of their end."""
+        for task in self._followers:
+            task.cancel()
+        for goal in list(self._goals.values()):
+            goal.end(GoalStatus.LOST, None, GoalLost(f"the client of {self.name} was closed before the goal ended"))
+        for endpoint in reversed(self.endpoints):
+            endpoint.close()
+        self.node.forget(self)
+
+    def server_is_ready(self) -> bool:
+        """Whether an action server of this name and type is in the graph, all five parts of it."""
+        services = (self._send, self._cancel, self._get)
+        return all(s.service_is_ready() for s in services) and bool(self._feedback.matched and self._status.matched)
+
+    async def wait_ready(self, timeout: float | None = None) -> None:
+        """Wait until there is a server.
+
+        Args:
+            timeout: Seconds; None for as long as it takes.
+
+        Raises:
+            ServiceUnavailable: None came in time.
+        """
+        if self.server_is_ready():
+            return
+        try:
+            async with self.node.clock.timeout(timeout if timeout is not None else 1e9):
+                for service in (self._send, self._cancel, self._get):
+                    await service.wait_ready()
+                for topic in (self._feedback, self._status):
+                    await topic.wait_matched()
+        except TimeoutError:
+            raise ServiceUnavailable(self._nobody()) from None
+
+    def _nobody(self) -> str:
+        actions = self.node.context.cache.actions()
+        offered = [type_ for type_ in actions.get(self.name, ()) if type_ != self.type.NAME]
+        if offered:
+            return f"action {self.name} is a {offered[0]}, not a {self.type.NAME}"
+        near = did_you_mean(self.name, [name for name in actions if name != self.name])
+        return f"nobody offers the action {self.name} [{self.type.NAME}]{near}"
+
+    @asynccontextmanager
+    async def send(
+        self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
+    ) -> AsyncGenerator[ClientGoal[Goal, Result, Feedback], None]:
+        """Send a goal for the length of a block: leaving it before the goal has ended cancels the goal.
+
+            async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
+                async for feedback in goal.feedback():
+                    ...
+                result = await goal.result()
+
+        Args:
+            timeout: Seconds until the server must have accepted.
+            detach: Let the goal go on when the block is left.
+
+        Raises:
+            GoalRejected: The server does not take it.
+            CallError: The server did not answer, or there is none.
+            EncodeError: The goal does not fit its type.
+        """
+        sent = await self.send_goal(goal, timeout=timeout)
+        try:
+            yield sent
+        finally:
+            if not detach and not sent.done:
+                await self._leave(sent)
+
+    async def send_goal(
+        self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
+    ) -> ClientGoal[Goal, Result, Feedback]:
+        """Send a goal that goes on whatever becomes of the caller. Arguments and errors as `send`."""
+        if goal.__class__ is not self._goal_class:
+            raise EncodeError(f"{self.name} takes {self._goal_class.__qualname__}, not {goal!r}")
+        sent = ClientGoal(self, goal)
+        self._goals[sent.goal_id] = sent  # before it is sent: what is told of it may come before the answer
+        request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
+        try:
+            if not self.server_is_ready():
+                await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+            answer = await self._send.call(request, timeout=timeout)
+        except CancelledError:
+            # The server may have it by now.
+            del self._goals[sent.goal_id]
+            self._in_background(self._withdraw(sent))
+            raise
+        except BaseException:
+            del self._goals[sent.goal_id]
+            raise
+        if not answer.accepted:
+            del self._goals[sent.goal_id]
+            raise GoalRejected(f"{self.name} has rejected the goal")
+        if sent.status is GoalStatus.UNKNOWN:
+            sent.status = GoalStatus.ACCEPTED
+        self._in_background(self._follow(sent))
+        return sent
+
+    async def cancel(self, goal: ClientGoal[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT) -> bool:
+        """As `ClientGoal.cancel`."""
+        answer = await self._cancel.call(self._cancel_request(goal), timeout=timeout)
+        granted = [bytes(info.goal_id.uuid) for info in answer.goals_canceling]
+        # rclpy's servers answer NONE with an empty list when they refuse.
+        return answer.return_code == CancelCode.NONE and goal.goal_id in granted
+
+    def _cancel_request(self, goal: ClientGoal[Goal, Result, Feedback]) -> Any:
+        return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
+
+    async def _leave(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        """Cancel a goal whose block is left, and wait a little for its end, also if the leaving itself is cancelled."""
+        leaving = self._in_background(self._cancel_and_wait(goal))
+        cancelled: CancelledError | None = None
+        while not leaving.done():
+            try:
+                await asyncio.shield(leaving)
+            except CancelledError as error:
+                cancelled = error
+        if cancelled is not None:
+            raise cancelled
+
+    async def _cancel_and_wait(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        try:
+            async with self.node.clock.timeout(CANCEL_TIMEOUT):
+                await self._cancel.call(self._cancel_request(goal), timeout=None)
+                with suppress(GoalError):  # its end is all that is waited for
+                    await asyncio.shield(goal.ended)
+        except TimeoutError:
+            self.node.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
+        except (CallError, ClosedError) as error:
+            self.node.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
+
+    async def _withdraw(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        with suppress(CallError, ClosedError):  # nobody waits for what becomes of it
+            await self._cancel.call(self._cancel_request(goal), timeout=CANCEL_TIMEOUT)
+
+    async def _follow(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        """Wait for a goal's end."""
+        request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+        try:
+            while True:
+                try:
+                    answer = await self._get.call(request, timeout=None)
+                    break
+                except ServerLost:
+                    # The connection may have been lost and not the server, which then still knows the goal.
+                    await self._get.wait_ready(LOST_GRACE)
+            self._end(goal, GoalStatus(answer.status), answer.result)
+        except (CallError, ClosedError, ValueError) as error:
+            lost = f"{self.name}: the server has gone, and with it the goal, last known as {goal.status.name}"
+            goal.end(GoalStatus.LOST, None, GoalLost(lost))
+            if not isinstance(error, (CallError, ClosedError)):
+                raise
+        finally:
+            self._goals.pop(goal.goal_id, None)
+
+    def _end(self, goal: ClientGoal[Goal, Result, Feedback], status: GoalStatus, result: Any) -> None:
+        error: GoalError | None = None
+        if status is GoalStatus.ABORTED:
+            error = GoalAborted(f"{self.name} has aborted the goal", result)
+        elif status is GoalStatus.CANCELED:
+            error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
+        elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name knows nothing of it
+            status, error = GoalStatus.LOST, GoalLost(f"{self.name} does not know the goal: its server was replaced")
+        goal.end(status, result, error)
+
+    def _heard(self, message: Any) -> None:
+        goal = self._goals.get(bytes(message.goal_id.uuid))
+        if goal is not None:
+            goal.heard(message.feedback)
+
+    def _told(self, message: Any) -> None:
+        for entry in message.status_list:
+            goal = self._goals.get(bytes(entry.goal_info.goal_id.uuid))
+            if goal is not None and not GoalStatus(entry.status).is_terminal:
+                goal.status = GoalStatus(entry.status)  # the end comes with the result
+
+    def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        task = self.node.context.loop.create_task(work, name=f"{self.node.full_name}: {self.name}")
+        self._followers.add(task)
+        task.add_done_callback(self._followers.discard)
+        return task

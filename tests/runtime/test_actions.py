@@ -1,0 +1,490 @@
+"""Actions: goals accepted, run, cancelled, pre-empted and remembered, as their clients see it."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import Any
+
+import pytest
+
+from graphflow import (
+    Abort,
+    ActionClient,
+    GoalAborted,
+    GoalCanceled,
+    GoalLost,
+    GoalRejected,
+    GoalStatus,
+    Group,
+    Node,
+    ServiceUnavailable,
+    action,
+    task,
+)
+from graphflow.errors import EncodeError
+from graphflow.msgs.action_msgs.msg import GoalStatusArray
+from graphflow.msgs.action_msgs.srv import CancelGoal
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.registry import interface_class
+from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.actions import GoalPolicy
+from graphflow.testing import Graph
+from graphflow.testing.graph import TRANSIENT_LOCAL
+from tests.runtime.cast import Log
+
+Goal = ClientGoal[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+
+
+class Asker(Node):
+    fibonacci = ActionClient(Fibonacci, "fibonacci")
+
+    async def order(self, order: int) -> Goal:
+        return await self.fibonacci.send_goal(Fibonacci.Goal(order=order))
+
+
+class Server(Node):
+    """Counts like rabbits, one generation a second, until cancelled."""
+
+    rabbits = Group(None)
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.told = Log()
+        self.bodies = 0
+
+    def fits(self, goal: Fibonacci.Goal) -> bool:
+        if goal.order == 13:
+            raise ValueError("unlucky")
+        return goal.order < 100
+
+    def may_end(self, goal: Fibonacci.Handle) -> bool:
+        return goal.request.order != 7
+
+    @action(Fibonacci, "fibonacci", group=rabbits, accept=fits, cancellable=may_end)
+    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        sequence = [0, 1]
+        self.bodies += 1
+        assert self.bodies == 1
+        try:
+            while len(sequence) < goal.request.order:
+                await self.clock.sleep(1.0)
+                sequence.append(sequence[-1] + sequence[-2])
+                goal.feedback(Fibonacci.Feedback(sequence=sequence.copy()))
+                goal.partial = Fibonacci.Result(sequence=sequence.copy())
+            return Fibonacci.Result(sequence=sequence)
+        except asyncio.CancelledError as error:
+            self.told(str(error))
+            raise
+        finally:
+            self.bodies -= 1
+
+
+async def pair(graph: Graph, server: Node | None = None) -> tuple[Any, Asker]:
+    made, asker = server or Server(), Asker()
+    await graph.start(made, asker)
+    return made, asker
+
+
+async def test_a_goal_succeeds(graph: Graph) -> None:
+    """The client gets every feedback, then the result; states follow ROS 2's machine."""
+    _, asker = await pair(graph)
+    states = graph.tap(GoalStatusArray, "/fibonacci/_action/status", TRANSIENT_LOCAL)
+    heard, result = Log(), Log()
+
+    async def follow() -> None:
+        async with asker.fibonacci.send(Fibonacci.Goal(order=5)) as goal:
+            async for feedback in goal.feedback():
+                heard(list(feedback.sequence))
+            result(list((await goal.result()).sequence))
+            assert goal.status is GoalStatus.SUCCEEDED
+
+    following = asyncio.ensure_future(follow())
+    await graph.clock.advance(3.0)
+    await following
+
+    assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
+    assert result == [[0, 1, 1, 2, 3]]
+    assert [[s.status for s in m.status_list] for m in states if m.status_list] == [[1], [2], [4]]
+
+
+async def test_leaving_the_block_cancels(graph: Graph) -> None:
+    """The body gets CancelledError once, and the client the partial result."""
+    server, asker = await pair(graph)
+    ended = Log()
+
+    async def give_up() -> None:
+        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
+            async for _ in goal.feedback():
+                break
+        ended(goal.status)
+        with pytest.raises(GoalCanceled) as caught:
+            await goal.result()
+        ended(list(caught.value.result.sequence))  # type: ignore[attr-defined]
+
+    giving_up = asyncio.ensure_future(give_up())
+    await graph.clock.advance(1.0)
+    await giving_up
+
+    assert ended == [GoalStatus.CANCELED, [0, 1, 1]]
+    assert server.told == ["cancel requested"]
+    assert server.bodies == 0
+
+
+async def test_a_client_that_is_cancelled_cancels_its_goal_first(graph: Graph) -> None:
+    """Then the cancellation goes on its way."""
+    server, asker = await pair(graph)
+
+    async def follow() -> None:
+        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
+            await goal.result()
+
+    following = asyncio.ensure_future(follow())
+    await graph.clock.advance(1.0)
+    following.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await following
+
+    assert server.told == ["cancel requested"]
+
+
+async def test_a_detached_goal_goes_on(graph: Graph) -> None:
+    """Whoever says so may leave its block."""
+    server, asker = await pair(graph)
+    async with asker.fibonacci.send(Fibonacci.Goal(order=4), detach=True) as goal:
+        assert goal.status is GoalStatus.ACCEPTED
+    await graph.clock.advance(2.0)
+
+    assert list((await goal.result()).sequence) == [0, 1, 1, 2]
+    assert server.told == []
+
+
+@pytest.mark.parametrize("order", [100, 13])
+async def test_a_goal_can_be_refused(graph: Graph, order: int) -> None:
+    """By the accept hook, also by one that fails."""
+    _, asker = await pair(graph)
+
+    with pytest.raises(GoalRejected, match="/fibonacci has rejected the goal"):
+        await asker.order(order)
+
+
+async def test_a_cancel_request_can_be_refused(graph: Graph) -> None:
+    """The goal goes on, and the code says why."""
+    _, asker = await pair(graph)
+    goal = await asker.order(7)
+    await graph.settle()
+
+    assert not await goal.cancel()
+    answer = await graph.call(CancelGoal, "/fibonacci/_action/cancel_goal", CancelGoal.Request())
+    assert (answer.return_code, len(answer.goals_canceling)) == (1, 0)
+    assert goal.status is GoalStatus.EXECUTING
+
+
+@pytest.mark.parametrize(
+    ("ending", "status", "numbers"),
+    [
+        ("abort", "ABORTED", [1]),
+        ("abort with result", "ABORTED", [2]),
+        ("error", "ABORTED", [1]),
+        ("wrong type", "ABORTED", [1]),
+        ("swallows", "SUCCEEDED", [3]),
+    ],
+)
+async def test_how_a_body_can_end(graph: Graph, ending: str, status: str, numbers: list[int]) -> None:
+    """Abort gives its result or the partial one, an error the partial one; a body may succeed although cancelled."""
+
+    class Ends(Node):
+        @action(Fibonacci, "fibonacci")
+        async def compute(self, goal: Fibonacci.Handle) -> Any:
+            goal.partial = Fibonacci.Result(sequence=[1])
+            if ending == "abort":
+                raise Abort("no way")
+            if ending == "abort with result":
+                raise Abort(Fibonacci.Result(sequence=[2]))
+            if ending == "error":
+                raise KeyError("lost")
+            if ending == "wrong type":
+                return Fibonacci.Feedback()
+            try:
+                await asyncio.Event().wait()
+            except asyncio.CancelledError:
+                return Fibonacci.Result(sequence=[3])
+
+    _, asker = await pair(graph, Ends())
+    goal = await asker.order(1)
+    await graph.settle()
+    if ending == "swallows":
+        assert await goal.cancel()
+        await graph.settle()
+
+    assert goal.status.name == status
+    if status == "ABORTED":
+        with pytest.raises(GoalAborted) as caught:
+            await goal.result()
+        assert list(caught.value.result.sequence) == numbers  # type: ignore[attr-defined]
+    else:
+        assert list((await goal.result()).sequence) == numbers
+
+
+class Recorder(Node):
+    """Tells what its bodies do; each ends when told, and takes its time to clean up."""
+
+    def __init__(self, policy: GoalPolicy, **options: Any) -> None:
+        super().__init__("recorder")
+        self.log_of = Log()
+        self.gate = asyncio.Event()
+        self.most = self.now = 0
+        self.create_action_server(Fibonacci, "fibonacci", self.compute, policy=policy, **options)
+
+    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        n = goal.request.order
+        self.now += 1
+        self.most = max(self.most, self.now)
+        self.log_of(f"{n} begins")
+        try:
+            await self.gate.wait()
+        finally:
+            if self.gate.is_set() or goal.is_cancel_requested:
+                await self.clock.sleep(0.5)
+            self.now -= 1
+            self.log_of(f"{n} ends")
+        return Fibonacci.Result(sequence=[n])
+
+
+async def send_three(graph: Graph, policy: GoalPolicy, **options: Any) -> tuple[Recorder, list[Any]]:
+    server, asker = await pair(graph, Recorder(policy, **options))
+    outcomes: list[Any] = []
+    for n in (1, 2, 3):
+        try:
+            outcomes.append(await asker.order(n))
+        except GoalRejected:
+            outcomes.append("rejected")
+        await graph.settle()
+    server.gate.set()
+    await graph.clock.advance(5.0)
+    return server, [o if o == "rejected" else o.status.name for o in outcomes]
+
+
+@pytest.mark.parametrize(
+    ("policy", "outcomes", "log", "most"),
+    [
+        ("reject", ["SUCCEEDED", "rejected", "rejected"], ["1 begins", "1 ends"], 1),
+        ("queue", ["SUCCEEDED"] * 3, [f"{n} {w}" for n in (1, 2, 3) for w in ("begins", "ends")], 1),
+        ("preempt", ["ABORTED", "ABORTED", "SUCCEEDED"], ["1 begins", "1 ends", "3 begins", "3 ends"], 1),
+        ("parallel", ["SUCCEEDED"] * 3, [f"{n} {w}" for w in ("begins", "ends") for n in (1, 2, 3)], 3),
+    ],
+)
+@pytest.mark.parametrize("group", [None, Group(None)])
+async def test_policies(
+    graph: Graph, policy: GoalPolicy, outcomes: list[str], log: list[str], most: int, group: Group | None
+) -> None:
+    """One goal at a time, whatever the group allows, but for `parallel`; pre-empted goals clean up before the next."""
+    server, got = await send_three(graph, policy, group=group)
+
+    assert got == outcomes
+    assert server.log_of == log
+    assert server.most == most
+
+
+async def test_a_thousand_preemptions_never_run_two_bodies(graph: Graph) -> None:
+    """However quickly new goals come."""
+    server, asker = await pair(graph, Recorder("preempt", group=Group(None)))
+    goals = []
+    for n in range(1000):
+        goals.append(await asker.order(n))
+        if n % 7 == 0:
+            await graph.settle()
+        if n % 31 == 0:
+            await graph.clock.advance(0.5)
+    server.gate.set()
+    await graph.clock.advance(5.0)
+
+    assert server.most == 1
+    assert server.now == 0
+    assert {goal.status.name for goal in goals[:-1]} == {"ABORTED"}
+    assert goals[-1].status is GoalStatus.SUCCEEDED
+
+
+async def test_a_goal_that_waits_is_cancelled_without_running(graph: Graph) -> None:
+    """It is CANCELED at once, and its body never sees it."""
+    server, asker = await pair(graph, Recorder("queue"))
+    await asker.order(1)
+    waiting = await asker.order(2)
+    await graph.settle()
+
+    assert await waiting.cancel()
+    await graph.settle()
+
+    assert waiting.status is GoalStatus.CANCELED
+    assert server.log_of == ["1 begins"]
+
+
+async def test_a_goal_cancelled_before_its_body_was_reached(graph: Graph) -> None:
+    """Between its acceptance and its first step."""
+    server, asker = await pair(graph, Recorder("queue"))
+    sending = asyncio.ensure_future(asker.order(1))
+    while not server._openables[-1].goals:
+        await asyncio.sleep(0)
+    [handle] = server._openables[-1].goals.values()
+    server._openables[-1].cancel(handle)
+    goal = await sending
+    await graph.settle()
+
+    assert goal.status is GoalStatus.CANCELED
+    assert server.log_of == []
+
+
+async def test_a_body_that_outstays_its_cancellation(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Its goal is aborted when the clean-up takes too long; the slot stays taken until the body has really ended."""
+
+    class Stubborn(Node):
+        work = Group(1)
+        gate = asyncio.Event()
+
+        @action(Fibonacci, "fibonacci", group=work, cleanup_timeout=2.0)
+        async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+            try:
+                await asyncio.Event().wait()
+            finally:
+                await self.gate.wait()
+            raise AssertionError
+
+    server, asker = await pair(graph, Stubborn())
+    goal = await asker.order(1)
+    await graph.settle()
+    assert await goal.cancel()
+    await graph.clock.advance(1.9)
+    assert not goal.done
+    await graph.clock.advance(0.1)
+
+    assert goal.status is GoalStatus.ABORTED
+    assert server.work.running == 1
+    assert "compute still runs 2 s after it was cancelled" in caplog.text
+    server.gate.set()
+    await graph.settle()
+    assert server.work.running == 0
+
+
+async def test_a_goal_sent_twice_runs_once(graph: Graph) -> None:
+    """A client that has not heard the answer may ask again with the same id, before and after the end."""
+    server, _ = await pair(graph)
+    send: Any = interface_class("example_interfaces/action/Fibonacci_SendGoal")
+    request = send.Request(goal_id={"uuid": [7] * 16}, goal=Fibonacci.Goal(order=3))
+    answers = [await graph.call(send, "/fibonacci/_action/send_goal", request)]
+    await graph.clock.advance(1.0)
+    answers.append(await graph.call(send, "/fibonacci/_action/send_goal", request))
+
+    assert [a.accepted for a in answers] == [True, True]
+    assert answers[0].stamp == answers[1].stamp
+    assert server.statistics()["action /fibonacci"]["runs"] == 1
+
+
+async def test_a_result_can_be_asked_for_later_and_by_others(graph: Graph) -> None:
+    """For a quarter of an hour from the goal's end on; then, as for any unknown goal, the state is UNKNOWN."""
+    _, asker = await pair(graph)
+    goal = await asker.order(4)
+    get: Any = interface_class("example_interfaces/action/Fibonacci_GetResult")
+    request = get.Request(goal_id={"uuid": list(goal.goal_id)})
+    asked = [asyncio.ensure_future(graph.call(get, "/fibonacci/_action/get_result", request)) for _ in range(3)]
+    await graph.clock.advance(2.0)
+    assert [list((await a).result.sequence) for a in asked] == [[0, 1, 1, 2]] * 3
+    await graph.clock.advance(899.0)
+    assert (await graph.call(get, "/fibonacci/_action/get_result", request)).status == 4
+    await graph.clock.advance(2.0)
+    await asker.order(2)  # the book is cleared when something is written into it
+
+    answer = await graph.call(get, "/fibonacci/_action/get_result", request)
+    assert (answer.status, len(answer.result.sequence)) == (0, 0)
+
+
+async def test_a_server_that_stops_aborts_its_goals(graph: Graph) -> None:
+    """Their clients get the partial results, also of those that waited for their turn."""
+    server, asker = await pair(graph, Recorder("queue"))
+    goals = [await asker.order(n) for n in (1, 2)]
+    await graph.settle()
+    await graph.stop(server)
+
+    assert [goal.status.name for goal in goals] == ["ABORTED", "ABORTED"]
+
+
+async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
+    """The client is told that nobody knows how they ended; nothing waits for ever."""
+    server, asker = await pair(graph)
+    goal = await asker.order(50)
+    await graph.settle()
+    for endpoint in server._openables[-1].endpoints:
+        endpoint.close()
+    await graph.clock.advance(1.0)
+
+    assert goal.status is GoalStatus.LOST
+    with pytest.raises(GoalLost, match="the server has gone, and with it the goal, last known as EXECUTING"):
+        await goal.result()
+
+
+@pytest.mark.parametrize(("on_client_loss", "status"), [("continue", 2), ("cancel", 5)])
+async def test_a_client_that_dies(graph: Graph, on_client_loss: str, status: int) -> None:
+    """Its goal goes on or is cancelled, after a while in which it could have come back."""
+    server, asker = await pair(graph, Recorder("reject", on_client_loss=on_client_loss))
+    goal = await asker.order(1)
+    await graph.settle()
+    await graph.stop(asker)
+    await graph.clock.advance(4.9)
+    [handle] = server._openables[-1].goals.values()
+    assert handle.status is GoalStatus.EXECUTING
+    await graph.clock.advance(1.0)
+
+    assert handle.goal_id == goal.goal_id
+    assert handle.status == status
+
+
+async def test_no_server_and_another_type(graph: Graph) -> None:
+    """The error says what is missing, and who is near."""
+    asker = Asker()
+    other = Node("other")
+    other.create_action_server(Fibonacci, "fibonaci", print)
+    await graph.start(other, asker)
+    sending = asyncio.ensure_future(asker.order(1))
+    await graph.clock.advance(1.0)
+
+    with pytest.raises(ServiceUnavailable, match=r"nobody offers the action /fibonacci .*did you mean '/fibonaci'"):
+        await sending
+    with pytest.raises(EncodeError, match=r"takes .*Fibonacci_Goal, not"):
+        await asker.fibonacci.send_goal(Fibonacci.Result())  # type: ignore[arg-type]
+
+
+async def test_a_blocking_body_in_a_thread_polls_for_its_cancellation(graph: Graph) -> None:
+    """A thread cannot be interrupted; it looks, and its goal is canceled when it raises CancelledError."""
+    begun = asyncio.Event()
+
+    class Blocking(Node):
+        @action(Fibonacci, "fibonacci", thread=True)
+        def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+            self.context.loop.call_soon_threadsafe(begun.set)
+            while not goal.is_cancel_requested:
+                threading.Event().wait(0.001)
+            raise asyncio.CancelledError
+
+    _, asker = await pair(graph, Blocking())
+    goal = await asker.order(1)
+    await begun.wait()
+    assert await goal.cancel()
+    with pytest.raises(GoalCanceled):
+        await goal.result()
+
+
+async def test_a_node_may_send_a_goal_to_itself(graph: Graph) -> None:
+    """From a task, with the goal's body in whatever group."""
+
+    class Both(Server):
+        mine = ActionClient(Fibonacci, "fibonacci")
+
+        @task
+        async def ask(self) -> None:
+            async with self.mine.send(Fibonacci.Goal(order=3)) as goal:
+                self.told(list((await goal.result()).sequence))
+
+    both = Both()
+    await graph.start(both)
+    await graph.clock.advance(1.0)
+
+    assert both.told == [[0, 1, 1]]
