@@ -13,18 +13,25 @@ Source: turtlesim 1.8.
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
 
 import graphflow
-from graphflow import Node, Param, service, task, timer
+from graphflow import Abort, Node, Param, service, task, timer
 from graphflow.errors import InvalidName
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
+from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
 from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from nodes.turtle_canvas import Colour, Pen
 from nodes.turtle_picture import svg
-from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World
+from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
+
+TURNING_SPEED = 1.0
+"""Of `rotate_absolute`, in rad/s."""
+CLOSE_ENOUGH = 0.02
+"""Radians from where `rotate_absolute` is to end."""
 
 
 class TurtleSim(Node):
@@ -38,6 +45,7 @@ class TurtleSim(Node):
         "*/set_pen",
         "*/teleport_absolute",
         "*/teleport_relative",
+        "*/rotate_absolute",
     )
 
     background_r = Param(69, ge=0, le=255, doc="Red part of the background colour.")
@@ -65,6 +73,7 @@ class TurtleSim(Node):
     async def update(self) -> None:
         now_ns = self.clock.monotonic_ns()
         for reins in self.reins.values():
+            reins.rotate()
             beyond = self.world.step(reins.turtle, now_ns)
             if beyond is not None:
                 self.log.warning("Oh no! I hit the wall! (Clamping from [x=%f, y=%f])", *beyond)
@@ -137,8 +146,18 @@ class TurtleSim(Node):
         self.world.kill(name)
 
 
+class Rotation:
+    """A goal of `rotate_absolute` under way: where it began, and what it waits for."""
+
+    def __init__(self, goal: RotateAbsolute.Handle, start: float) -> None:
+        self.goal, self.start = goal, start
+        self.ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+
 class Reins:
-    """The topics and services of one turtle. Their names are relative: the node's namespace and remaps apply."""
+    """The topics, services and the action of one turtle. Their names are relative: namespace and remaps apply."""
+
+    rotation: Rotation | None = None
 
     def __init__(self, node: TurtleSim, turtle: Turtle) -> None:
         self.node, self.turtle = node, turtle
@@ -148,6 +167,9 @@ class Reins:
             node.create_service(TeleportAbsolute, f"{name}/teleport_absolute", self.teleport_absolute),
             node.create_service(TeleportRelative, f"{name}/teleport_relative", self.teleport_relative),
             node.create_service(SetPen, f"{name}/set_pen", self.set_pen),
+            node.create_action_server(
+                RotateAbsolute, f"{name}/rotate_absolute", self.rotate_absolute, policy="preempt"
+            ),
             node.create_subscription(Twist, f"{name}/cmd_vel", self.command, 7),
             pose := node.create_publisher(Pose, f"{name}/pose", 7),
             color := node.create_publisher(Color, f"{name}/color_sensor", 7),
@@ -166,7 +188,47 @@ class Reins:
         r, g, b = self.node.world.canvas.colour_at(t.position) or self.node.background
         self.color.publish(Color(r=r, g=g, b=b))
 
+    async def rotate_absolute(self, goal: RotateAbsolute.Handle) -> RotateAbsolute.Result:
+        rotation = self.rotation = Rotation(goal, self.turtle.theta)
+        try:
+            await rotation.ended
+        except asyncio.CancelledError:
+            if goal.is_preempted:
+                log = "Rotation goal received before a previous goal finished. Aborting previous goal"
+                self.node.log.warning(log)
+            else:
+                self.node.log.info("Rotation goal canceled")
+            self.stand_still()
+            raise
+        finally:
+            self.rotation = None
+        self.stand_still()
+        self.node.log.info("Rotation goal completed successfully")
+        return goal.partial
+
+    def stand_still(self) -> None:
+        """End whatever command there is."""
+        self.turtle.command(0.0, 0.0, 0.0, self.node.clock.monotonic_ns())
+
+    def rotate(self) -> None:
+        """Turn towards the goal, if there is one, and see whether it is reached."""
+        if self.rotation is None or self.rotation.ended.done():
+            return
+        goal, turtle = self.rotation.goal, self.turtle
+        remaining = normalize(goal.request.theta - turtle.theta)
+        # The way back, as turtlesim has it: negative for a turn to the left.
+        goal.partial = RotateAbsolute.Result(delta=normalize(self.rotation.start - turtle.theta))
+        goal.feedback(RotateAbsolute.Feedback(remaining=remaining))
+        if abs(remaining) < CLOSE_ENOUGH:
+            self.rotation.ended.set_result(None)
+        else:
+            turning = -TURNING_SPEED if remaining < 0 else TURNING_SPEED
+            turtle.command(0.0, 0.0, turning, self.node.clock.monotonic_ns())
+
     def command(self, twist: Twist) -> None:
+        if self.rotation is not None and not self.rotation.ended.done():
+            self.node.log.warning("Velocity command received during rotation goal. Aborting goal")
+            self.rotation.ended.set_exception(Abort())
         sideways = twist.linear.y if self.node.holonomic else 0.0
         self.turtle.command(twist.linear.x, sideways, twist.angular.z, self.node.clock.monotonic_ns())
 

@@ -29,6 +29,7 @@ _VERBS = {
     "node": ("node", "List and describe nodes."),
     "topic": ("topic", "List, describe, show and publish topics."),
     "service": ("service", "List and call services."),
+    "action": ("action", "List actions, and send goals to them."),
     "param": ("param", "List, get, set, describe, dump and load parameters."),
     "interface": ("interface", "Show message, service and action types."),
 }

@@ -9,7 +9,7 @@ import click
 from graphflow.cli import output
 from graphflow.domain import domain_id
 from graphflow.introspect.view import View
-from graphflow.machines.cache import GraphCache
+from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, GraphCache
 from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind, qos_chunk
 
@@ -20,7 +20,6 @@ _SECTIONS = (
     ("Service Clients", Kind.CLIENT),
 )
 _ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.SUBSCRIPTION))
-_FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 
 
 @click.group()
@@ -80,8 +79,8 @@ def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
     for title, kind in _ACTION_SECTIONS:
         output.data(f"  {title}:")
         for e in cache.endpoints(kind, node=full):
-            if e.name.endswith(_FEEDBACK):
-                output.data(f"    {e.name.removesuffix(_FEEDBACK)}: {e.type.removesuffix(_FEEDBACK_TYPE)}")
+            if e.name.endswith(ACTION_FEEDBACK):
+                output.data(f"    {e.name.removesuffix(ACTION_FEEDBACK)}: {e.type.removesuffix(ACTION_FEEDBACK_TYPE)}")
     output.data("")
 
 

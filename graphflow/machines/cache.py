@@ -11,8 +11,8 @@ from typing import NamedTuple
 from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
-_FEEDBACK = "/_action/feedback"
-_FEEDBACK_TYPE = "_FeedbackMessage"
+ACTION_FEEDBACK = "/_action/feedback"
+ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
 
 
 class Change(NamedTuple):
@@ -94,9 +94,9 @@ class GraphCache:
     def actions(self) -> dict[str, list[str]]:
         """Types by action, told by the feedback topics."""
         return {
-            name.removesuffix(_FEEDBACK): [t.removesuffix(_FEEDBACK_TYPE) for t in types]
+            name.removesuffix(ACTION_FEEDBACK): [t.removesuffix(ACTION_FEEDBACK_TYPE) for t in types]
             for name, types in self.topics(hidden=True).items()
-            if name.endswith(_FEEDBACK)
+            if name.endswith(ACTION_FEEDBACK)
         }
 
     def _types(self, *kinds: Kind, hidden: bool) -> dict[str, list[str]]:

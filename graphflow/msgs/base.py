@@ -110,10 +110,12 @@ class Handle(ABC, Generic[Goal, Result, Feedback]):
     Attributes:
         request: What the client asked for.
         partial: The result so far: what the client gets if the goal is cancelled or aborted.
+        is_preempted: Whether it is to end because a newer goal has come.
     """
 
     request: Goal
     partial: Result
+    is_preempted: bool
 
     @property
     @abstractmethod

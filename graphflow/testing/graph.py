@@ -7,8 +7,9 @@ import itertools
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
-from graphflow.msgs.base import Message, Request, Response, Service
+from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Durability, Qos
+from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.runtime.topics import TopicPublisher
@@ -91,6 +92,12 @@ class Graph:
             return await client.call(request, timeout=timeout)
         finally:
             client.close()
+
+    def action_client(
+        self, type_: type[Action[Goal, Result, Feedback]], name: str
+    ) -> GoalClient[Goal, Result, Feedback]:
+        """A client for the test to send goals with."""
+        return self._test_node().create_action_client(type_, name)
 
     async def settle(self) -> None:
         """Let everything happen that can happen without time passing."""

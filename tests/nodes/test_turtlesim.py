@@ -1,18 +1,22 @@
 """The turtle simulator."""
 
+import asyncio
 import logging
 import math
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
-from graphflow import ParameterError, RemoteError
+from graphflow import GoalStatus, ParameterError, RemoteError
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import Parameter, ParameterValue
 from graphflow.msgs.rcl_interfaces.srv import SetParameters
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
+from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
 from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from graphflow.runtime.action_client import ClientGoal
 from graphflow.testing import Graph
 from nodes.turtle_world import SIZE
 from nodes.turtlesim import TurtleSim
@@ -72,6 +76,7 @@ def test_it_is_called_turtlesim_and_says_what_it_makes_at_run_time() -> None:
         "*/set_pen",
         "*/teleport_absolute",
         "*/teleport_relative",
+        "*/rotate_absolute",
     )
 
 
@@ -313,6 +318,104 @@ async def test_reset_begins_again(graph: Graph, caplog: pytest.LogCaptureFixture
     graph.publisher(Twist, "/turtle1/cmd_vel").publish(twist(1.0, 0.0))
     await graph.clock.advance(0.16)
     assert poses.latest.x == pytest.approx(SIZE / 2 + 0.16, abs=1e-5)
+
+
+# rotate_absolute
+
+
+async def rotation(graph: Graph, theta: float) -> ClientGoal[Any, Any, Any]:
+    client = graph.action_client(RotateAbsolute, "/turtle1/rotate_absolute")
+    await graph.settle()
+    return await client.send_goal(RotateAbsolute.Goal(theta=theta))
+
+
+async def test_a_turtle_turns_to_an_absolute_angle(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """At 1 rad/s, with feedback every tick; the result has turtlesim's sign, and ends within its tolerance."""
+    caplog.set_level(logging.INFO)
+    await graph.start(TurtleSim())
+    poses = graph.tap(Pose, "/turtle1/pose", 1000)
+    goal = await rotation(graph, 1.57)
+    heard: list[float] = []
+
+    async def listen() -> None:
+        async for feedback in goal.feedback():
+            heard.append(feedback.remaining)
+
+    listening = asyncio.ensure_future(listen())
+    await graph.clock.advance(2.0)
+    await listening
+
+    assert (await goal.result()).delta == pytest.approx(-1.552, abs=1e-3)
+    assert len(heard) == 98
+    assert heard[0] == pytest.approx(1.57)
+    assert heard[-1] == pytest.approx(0.018, abs=1e-3)
+    assert {round(p.angular_velocity, 6) for p in poses} == {0.0, 1.0}
+    assert poses.latest.angular_velocity == 0.0
+    assert caplog.messages[-1] == "Rotation goal completed successfully"
+
+
+async def test_the_short_way_round(graph: Graph) -> None:
+    """Past pi it turns to the right."""
+    await graph.start(TurtleSim())
+    poses = graph.tap(Pose, "/turtle1/pose", 1000)
+    goal = await rotation(graph, 4.0)
+    await graph.clock.advance(3.0)
+
+    assert goal.status is GoalStatus.SUCCEEDED
+    assert min(p.angular_velocity for p in poses) == -1.0
+    assert poses.latest.theta == pytest.approx(4.0 - math.tau, abs=0.02)
+
+
+async def test_a_rotation_is_cancelled(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The turtle stops where it is."""
+    caplog.set_level(logging.INFO)
+    await graph.start(TurtleSim())
+    poses = graph.tap(Pose, "/turtle1/pose", 1000)
+    goal = await rotation(graph, 3.0)
+    await graph.clock.advance(1.0)
+    assert await goal.cancel()
+    await graph.clock.advance(1.0)
+
+    assert goal.status is GoalStatus.CANCELED
+    assert poses.latest.theta == pytest.approx(1.0, abs=0.05)
+    assert caplog.messages[-1] == "Rotation goal canceled"
+
+
+async def test_a_newer_rotation_aborts_the_older(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """As turtlesim does, and says."""
+    await graph.start(TurtleSim())
+    older = await rotation(graph, 3.0)
+    await graph.clock.advance(0.5)
+    newer = await rotation(graph, 0.0)
+    await graph.clock.advance(1.0)
+
+    assert (older.status, newer.status) == (GoalStatus.ABORTED, GoalStatus.SUCCEEDED)
+    assert caplog.messages == ["Rotation goal received before a previous goal finished. Aborting previous goal"]
+
+
+async def test_a_velocity_command_aborts_a_rotation(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """As turtlesim does, and says; the turtle obeys the command."""
+    await graph.start(TurtleSim())
+    poses = graph.tap(Pose, "/turtle1/pose", 1000)
+    goal = await rotation(graph, 3.0)
+    await graph.clock.advance(0.5)
+    graph.publisher(Twist, "/turtle1/cmd_vel").publish(twist(1.0))
+    await graph.clock.advance(0.5)
+
+    assert goal.status is GoalStatus.ABORTED
+    assert caplog.messages == ["Velocity command received during rotation goal. Aborting goal"]
+    assert (poses.latest.linear_velocity, poses.latest.angular_velocity) == (1.0, 0.0)
+
+
+async def test_a_turtle_that_is_killed_while_it_turns(graph: Graph) -> None:
+    """Its goal ends with it."""
+    await graph.start(TurtleSim())
+    goal = await rotation(graph, 3.0)
+    await graph.clock.advance(0.5)
+    await graph.call(Kill, "/kill", Kill.Request(name="turtle1"))
+    await graph.clock.advance(2.0)
+
+    assert goal.done
 
 
 # the drawing

@@ -1,0 +1,128 @@
+"""`graphflow action list`, `info`, `type`, `find` and `send_goal`."""
+
+from __future__ import annotations
+
+import click
+
+from graphflow.cli import output
+from graphflow.cli.exits import UsageFault
+from graphflow.cli.types import agree, use_project
+from graphflow.cli.words import ValueCommand, message_values
+from graphflow.domain import domain_id
+from graphflow.introspect.view import View
+from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE
+from graphflow.names import did_you_mean, expand
+from graphflow.wire.liveliness import Kind
+
+
+@click.group()
+def action() -> None:
+    """List actions, and send goals to them."""
+
+
+@action.command(name="list")
+@click.option("-t", "--show-types", is_flag=True, help="With their types.")
+@click.option("-c", "--count-actions", is_flag=True, help="Only how many.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def list_(show_types: bool, count_actions: bool, as_json: bool) -> None:
+    """List the names of all actions."""
+    with View(domain_id()) as view:
+        actions = view.cache.actions()
+    if as_json:
+        output.as_json(actions)
+    elif count_actions:
+        output.data(str(len(actions)))
+    else:
+        output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in actions.items())
+
+
+@action.command(name="type")
+@click.argument("name", metavar="ACTION")
+def type_(name: str) -> None:
+    """Print the type of an action."""
+    with View(domain_id()) as view:
+        output.lines(_types(view, expand(name, "/", "cli")))
+
+
+@action.command()
+@click.argument("type_name", metavar="TYPE")
+@click.option("-c", "--count-actions", is_flag=True, help="Only how many.")
+def find(type_name: str, count_actions: bool) -> None:
+    """List the actions of a type."""
+    from graphflow.msgs import registry
+
+    use_project()
+    wanted = registry.full_name(type_name)
+    with View(domain_id()) as view:
+        found = [name for name, types in view.cache.actions().items() if wanted in types]
+    output.lines([str(len(found))] if count_actions else found)
+
+
+@action.command()
+@click.argument("name", metavar="ACTION")
+@click.option("-t", "--show-types", is_flag=True, help="With the type that each node has.")
+@click.option("-c", "--count", is_flag=True, help="Only how many.")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
+    """Tell which nodes serve an action, and which send goals to it."""
+    full = expand(name, "/", "cli")
+    with View(domain_id()) as view:
+        _types(view, full)
+        found = {
+            word: [
+                (e.node_name, e.type.removesuffix(ACTION_FEEDBACK_TYPE))
+                for e in view.cache.endpoints(kind, f"{full}{ACTION_FEEDBACK}")
+            ]
+            for word, kind in (("clients", Kind.SUBSCRIPTION), ("servers", Kind.PUBLISHER))
+        }
+    if as_json:
+        nodes = {word: [{"node": n, "type": t} for n, t in entries] for word, entries in found.items()}
+        output.as_json({"action": full, **nodes})
+        return
+    output.data(f"Action: {full}")
+    for word, entries in found.items():
+        output.data(f"Action {word}: {len(entries)}")
+        if not count:
+            output.lines(f"    {node} [{type_}]" if show_types else f"    {node}" for node, type_ in entries)
+
+
+def _types(view: View, name: str) -> list[str]:
+    """The types of an action that is there."""
+    actions = view.cache.actions()
+    if name not in actions:
+        raise UsageFault(f"there is no action {name}{did_you_mean(name, actions) or '; graphflow action list has all'}")
+    return actions[name]
+
+
+@action.command(name="send_goal", cls=ValueCommand, short_help="Send a goal in YAML, and wait for its end.")
+@click.argument("name", metavar="ACTION")
+@click.argument("type_name", metavar="TYPE", required=False)
+@click.argument("values", nargs=-1)
+@click.option("-f", "--feedback", is_flag=True, help="Show the feedback as it comes.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    default=10.0,
+    show_default=True,
+    help="Seconds in which a server must be there and accept.",
+)
+def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float) -> int:
+    """Send a goal: VALUES are its fields in YAML, such as "{theta: 1.57}". Ctrl-C cancels the goal.
+
+    Exit code 0: it succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost.
+    """
+    from graphflow.cli.sending import send
+    from graphflow.msgs import registry
+    from graphflow.msgs.values import from_plain
+
+    use_project()
+    full = expand(name, "/", "cli")
+    with View(domain_id()) as view:
+        there = view.cache.actions().get(full)
+        if type_name is None:
+            types = _types(view, full)
+            raise UsageFault(f"TYPE is missing; {full} is a {types[0]}: graphflow action send_goal {full} {types[0]}")
+    wanted = registry.full_name(type_name)
+    actual = agree(wanted, there[0], full) if there else wanted
+    goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values))
+    return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout)

@@ -1,0 +1,72 @@
+"""What `action send_goal` does once it has a goal."""
+
+from __future__ import annotations
+
+from asyncio import CancelledError
+from textwrap import indent
+from typing import Any
+
+from graphflow.cli import exits, output
+from graphflow.cli.visiting import visit
+from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected
+from graphflow.introspect.echo import block, plain
+from graphflow.msgs.base import Message
+from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.node import Node
+
+
+def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float) -> int:
+    """Send a goal and follow it to its end; returns the exit code."""
+
+    async def work(node: Node) -> int:
+        client = node.create_action_client(type_, name)
+        if not client.server_is_ready():
+            output.data("Waiting for an action server to become available...")
+            await client.wait_ready(timeout)
+        output.data(f"Sending goal:\n{_shown(goal)}")
+        try:
+            return await _follow(client.send(goal, timeout=timeout), show_feedback)
+        except GoalRejected:
+            output.data("Goal was rejected.")
+            return exits.FAILED
+
+    return visit(work)
+
+
+async def _follow(sending: Any, show_feedback: bool) -> int:
+    sent: ClientGoal[Any, Any, Any] | None = None
+    try:
+        async with sending as sent:
+            assert sent is not None
+            output.data(f"Goal accepted with ID: {sent.goal_id.hex()}\n")
+            try:
+                if show_feedback:
+                    async for feedback in sent.feedback():
+                        output.data(f"Feedback:\n{_shown(feedback)}")
+                return await _result(sent)
+            except CancelledError:
+                output.data("Canceling goal...")
+                raise
+    except CancelledError:
+        if sent is not None:
+            output.data("Goal canceled." if sent.status.name == "CANCELED" else f"Goal is {sent.status.name}.")
+        raise
+
+
+async def _result(sent: ClientGoal[Any, Any, Any]) -> int:
+    code = exits.FAILED
+    try:
+        result = await sent.result()
+        code = exits.OK
+    except (GoalAborted, GoalCanceled) as error:
+        result = error.result
+    except GoalLost as error:
+        output.error(str(error))
+        return exits.FAILED
+    output.data(f"Result:\n{_shown(result)}")
+    output.data(f"Goal finished with status: {sent.status.name}")
+    return code
+
+
+def _shown(message: Any) -> str:
+    return indent(block(plain(message)).rstrip("\n"), "    ") + "\n"
