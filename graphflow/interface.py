@@ -166,6 +166,15 @@ DeadlockPolicy = Literal["raise", "report", "break", "off"]
 `raise`: a call that cannot succeed fails at once, and any other deadlock is reported. `report`: it is reported.
 `break`: as raise, and the youngest call of a deadlock is ended with DeadlockError. `off`: nobody looks.
 """
+GoalPolicy = Literal["reject", "queue", "preempt", "parallel"]
+"""What becomes of a goal that comes while another is under way.
+
+`reject`: it is not accepted. `queue`: it waits for its turn. `preempt`: the one under way is ended, as aborted, and the
+new one begins when that has ended. `parallel`: they run beside each other, as far as their group allows.
+"""
+OnClientLoss = Literal["continue", "cancel"]
+"""What becomes of a goal whose client has gone."""
+
 CALL_TIMEOUT = 10.0
 """Seconds that a call waits for its answer, unless somebody says otherwise."""
 NO_GROUP = "none"

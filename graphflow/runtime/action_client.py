@@ -59,6 +59,8 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         self._client = client
         self._waiting: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
         self._news: Future[None] | None = None
+        self.action = client.name
+        client.node.context.waits.goals[self.ended] = self
 
     def __repr__(self) -> str:
         return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
@@ -75,8 +77,13 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
                 yield self._waiting.popleft()
             if self.done:
                 return
-            self._news = self._client.node.context.loop.create_future()
-            await self._news
+            waits = self._client.node.context.waits
+            self._news = news = self._client.node.context.loop.create_future()
+            waits.goals[news] = self
+            try:
+                await news
+            finally:
+                del waits.goals[news]
 
     async def result(self, *, timeout: float | None = None) -> Result:
         """Wait for the result of a goal that succeeds.
@@ -114,6 +121,7 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         if self.done:
             return
         self.status = status
+        self._client.node.context.waits.goals.pop(self.ended, None)
         if not self.ended.done():
             if error is None:
                 self.ended.set_result(result)

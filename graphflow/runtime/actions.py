@@ -14,13 +14,15 @@ from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import Awaitable, Callable
 from inspect import isawaitable
-from typing import TYPE_CHECKING, Any, Generic, Literal
+from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import Abort
+from graphflow.interface import GoalPolicy, OnClientLoss
 from graphflow.machines.goal import CancelCode, GoalBook, GoalEvent, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Handle, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime import waits
 from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.services import ServiceServer
@@ -31,15 +33,6 @@ from graphflow.wire.liveliness import Entity
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
-
-GoalPolicy = Literal["reject", "queue", "preempt", "parallel"]
-"""What becomes of a goal that comes while another is under way.
-
-`reject`: it is not accepted. `queue`: it waits for its turn. `preempt`: the one under way is ended, as aborted, and the
-new one begins when that has ended. `parallel`: they run beside each other, as far as their group allows.
-"""
-OnClientLoss = Literal["continue", "cancel"]
-"""What becomes of a goal whose client has gone."""
 
 QUEUE_DEPTH = 16
 """Goals that wait for their turn under the policy `queue`; more are rejected."""
@@ -169,7 +162,8 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         group = self._group
         if group is None and self.policy == "parallel":
             group = HandlerGroup(None, self._label)
-        runner = self.node.runner(self._label, group, self._waiting, self._run, self._finished, self._refused)
+        queue = (self._waiting, self._run, self._finished, self._refused)
+        runner = self.node.runner(self._label, group, *queue, kind="action")
         runner.one_at_a_time = self.policy != "parallel"
         self.runner = runner
         for endpoint in self.endpoints:
@@ -267,7 +261,12 @@ class GoalServer(Generic[Goal, Result, Feedback]):
             return self._get_response(status=int(GoalStatus.UNKNOWN))
         if not goal.status.is_terminal:
             goal.waiters.append(ended := self.node.context.loop.create_future())
-            await ended
+            served = self.node.context.waits.served
+            served[ended] = waits.goal_id(goal.goal_id)
+            try:
+                await ended
+            finally:
+                del served[ended]
         return self._get_response(status=int(goal.status), result=goal.result)
 
     # what becomes of a goal
@@ -422,7 +421,7 @@ class _GoalService(ServiceServer[Any, Any]):
         self._server = server
 
     def _invoke(self, request: Any) -> Any:
-        asked = attachment.unpack(request.attachment or b"")
+        asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
         return self._callback(self._decode(request.payload), asked.gid)  # type: ignore[call-arg]
 
     def _matched(self, other: Entity, alive: bool) -> None:

@@ -12,9 +12,13 @@ from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from graphflow.domain import domain_id
+from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import Change, GraphCache
 from graphflow.runtime.clock import Clock, WallClock
+from graphflow.runtime.detector import Detector
 from graphflow.runtime.direct import Switchboard
+from graphflow.runtime.waits import Waits
+from graphflow.runtime.watchdog import Watchdog
 from graphflow.system import host_name, user_id
 from graphflow.transport.base import Closable, Session
 from graphflow.wire.liveliness import Entity, watch_key
@@ -33,9 +37,22 @@ LINK_GRACE = 3.0
 
 
 class Context:
-    """One process's part in a domain. Made by `open` or, over any session, by the constructor."""
+    """One process's part in a domain. Made by `open` or, over any session, by the constructor.
 
-    def __init__(self, session: Session, *, domain: int = 0, clock: Clock | None = None) -> None:
+    Args:
+        deadlock: What is done about deadlocks in which this process has a part.
+        call_timeout: Seconds that calls wait which do not say how long; None for ever.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        domain: int = 0,
+        clock: Clock | None = None,
+        deadlock: DeadlockPolicy = "raise",
+        call_timeout: float | None = CALL_TIMEOUT,
+    ) -> None:
         self.session = session
         self.domain = domain
         self.clock = clock or WallClock()
@@ -46,6 +63,11 @@ class Context:
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self.switchboard = Switchboard(self)
         """Calls to and from other graphflow processes."""
+        self.call_timeout = call_timeout
+        self.waits = Waits(self)
+        """What the handlers of this process wait for."""
+        self.detector = Detector(self, deadlock)
+        self.watchdog = Watchdog(self, self.detector.probe_blocked)
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._link: Link | None = None
@@ -56,7 +78,14 @@ class Context:
 
     @classmethod
     async def open(
-        cls, domain: int | None = None, *, mode: str = "peer", checked: bool = False, link: bool = True
+        cls,
+        domain: int | None = None,
+        *,
+        mode: str = "peer",
+        checked: bool = False,
+        link: bool = True,
+        deadlock: DeadlockPolicy = "raise",
+        call_timeout: float | None = CALL_TIMEOUT,
     ) -> Context:
         """Join the machine's graphs over Zenoh.
 
@@ -65,6 +94,7 @@ class Context:
             mode: Of the Zenoh session: `peer` or `client`.
             checked: The rendezvous was looked at a moment ago by a process this one trusts.
             link: Link this machine to others too, if the environment says so.
+            deadlock, call_timeout: As for `Context`.
 
         Raises:
             TransportError: The rendezvous cannot be reached or hosted, or is another user's.
@@ -81,8 +111,9 @@ class Context:
         except BaseException:  # a cancellation too: nothing stays open
             await takeover.close()
             raise
-        context = cls(session, domain=domain)
+        context = cls(session, domain=domain, deadlock=deadlock, call_timeout=call_timeout)
         context._takeover = takeover
+        context.watchdog.start()
         takeover.guard(session)
         token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}/{host_name()}"
         context._declared.append(session.announce(token))
@@ -190,6 +221,8 @@ class Context:
 
     async def close(self) -> None:
         """Leave the network. Nodes are to be stopped before."""
+        self.watchdog.close()
+        self.detector.close()
         if self._link is not None:
             await asyncio.to_thread(self._link.close)
         if self._takeover is not None:

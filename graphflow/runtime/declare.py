@@ -14,12 +14,11 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Generic, Literal, Self, TypeVar, get_args, overload
 
 from graphflow.errors import DeclarationError, GraphflowError, InvalidName, ParameterError, Place
-from graphflow.interface import HandlerKind, Parameter, WhenFull, type_of
+from graphflow.interface import GoalPolicy, HandlerKind, OnClientLoss, Parameter, WhenFull, type_of
 from graphflow.msgs import base
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import expand
 from graphflow.qos import Qos
-from graphflow.runtime.actions import GoalPolicy, OnClientLoss
 from graphflow.runtime.clock import period_ns
 from graphflow.runtime.failures import OnError
 from graphflow.runtime.service_events import Introspection

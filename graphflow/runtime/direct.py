@@ -46,6 +46,19 @@ class Switchboard:
         self._heard: dict[tuple[str, str], Heard] = {}
         """By `ask` or `answer` and endpoint id."""
         self._receivers: dict[str, Closable] = {}
+        self._inboxes: dict[str, Inbox] = {}
+
+    def arrived(self) -> list[tuple[str, bytes, int]]:
+        """Requests that the loop has not seen yet: the server's endpoint id, the client's GID, the sequence number."""
+        found: list[tuple[str, bytes, int]] = []
+        session = self._context.session
+        for arrival in list(self._inboxes["ask"].items) if "ask" in self._inboxes else ():
+            try:
+                sequence, _, gid = attachment.fields((session.read(arrival)[1] or b"")[: attachment.SIZE])
+            except DecodeError:
+                continue
+            found.append((session.key_of(arrival).rpartition("/")[2], gid, sequence))
+        return found
 
     def key(self, what: str, zid: str, eid: str) -> str:
         return f"@graphflow/{self._context.domain}/{what}/{zid}/{eid}"
@@ -56,7 +69,7 @@ class Switchboard:
         if what not in self._receivers:
             # One for the process: Zenoh starts a thread for each.
             session = self._context.session
-            inbox = Inbox(session.bell, None, lambda: self._deliver(what, inbox))
+            inbox = self._inboxes[what] = Inbox(session.bell, None, lambda: self._deliver(what, inbox))
             self._receivers[what] = session.open_receiver(self.key(what, session.zid, "*"), SERVICES, inbox)
 
     def _deliver(self, what: str, inbox: Inbox) -> None:
@@ -67,7 +80,7 @@ class Switchboard:
             if listener is not None:
                 payload, beside = session.read(arrival)
                 try:
-                    sequence, _, gid = attachment.fields(beside or b"")
+                    sequence, _, gid = attachment.fields((beside or b"")[: attachment.SIZE])
                 except DecodeError as error:
                     logger.debug("%s: %s", session.key_of(arrival), error)
                     continue
@@ -83,7 +96,7 @@ class Switchboard:
 
 
 class DirectRequest:
-    """A request that came over a line; see `transport.base.Request`."""
+    """A request that came over a line; see `transport.base.Request`. Its attachment may end with a chain."""
 
     __slots__ = ("_answer", "attachment", "payload")
 
@@ -94,7 +107,7 @@ class DirectRequest:
         self._answer(payload, attachment)
 
     def reply_error(self, payload: bytes) -> None:
-        sequence, sent_ns, gid = attachment.fields(self.attachment)
+        sequence, sent_ns, gid = attachment.fields(self.attachment[: attachment.SIZE])
         self._answer(payload, attachment.pack(-sequence, sent_ns, gid))
 
 

@@ -13,15 +13,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from graphflow.errors import ClosedError, DeclarationError, GraphflowError, ParameterError
-from graphflow.interface import GroupChange, Interface, may_make
+from graphflow.errors import ClosedError, DeadlockError, DeclarationError, GraphflowError, ParameterError
+from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, may_make
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolver, did_you_mean
 from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declare, declared
 from graphflow.runtime.action_client import GoalClient
-from graphflow.runtime.actions import GoalPolicy, GoalServer, OnClientLoss
+from graphflow.runtime.actions import GoalServer
 from graphflow.runtime.binding import Binding
 from graphflow.runtime.clock import Clock, period_ns
 from graphflow.runtime.context import Context
@@ -120,7 +120,10 @@ class Node:
         self._late: list[_Openable] | None = []
         """What is opened once `on_start` has returned; None from then on."""
         self._entered = AsyncExitStack()
-        self._tasks: set[asyncio.Task[Any]] = set()
+        self.tasks: set[asyncio.Task[Any]] = set()
+        """What `spawn` has started and has not ended."""
+        self.runners: list[Runner] = []
+        """What runs its handlers."""
         self._ended: asyncio.Future[None] | None = None
         self._token: Any = None
         self._own_services: set[str] = set()
@@ -388,7 +391,7 @@ class Node:
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
         """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
-        self._tasks.add(task)
+        self.tasks.add(task)
         task.add_done_callback(self._task_done)
 
     # its life
@@ -436,6 +439,7 @@ class Node:
         self._context = context
         self.id = context.next_id()
         self._ended = context.loop.create_future()
+        context.waits.nodes.append(self)
         try:
             node = Entity(context.domain, context.session.zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
             self._token = context.session.announce(node.token)
@@ -503,7 +507,7 @@ class Node:
                 ending[runner.cancel()] = runner.name
         for runner in self._binding.stop():
             ending[runner.cancel()] = runner.name
-        for task in self._tasks - {asyncio.current_task()}:
+        for task in self.tasks - {asyncio.current_task()}:
             task.cancel()
             ending[task] = task.get_name()
         try:
@@ -526,6 +530,8 @@ class Node:
                     self._token.close()
             if self._ended is not None and not self._ended.done():
                 self._ended.cancel()
+            if self in context.waits.nodes:  # two may stop a node
+                context.waits.nodes.remove(self)
             self._context = None
 
     async def _limited(self, what: str, work: Callable[[], Coroutine[Any, Any, None]]) -> None:
@@ -554,7 +560,8 @@ class Node:
     def report_error(self, label: str, error: BaseException) -> None:
         """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
         if isinstance(error, GraphflowError):
-            self.log.error("%s: %s%s", label, error, _place(error))
+            # A deadlock's own text says where.
+            self.log.error("%s: %s%s", label, error, "" if isinstance(error, DeadlockError) else _place(error))
         else:
             trace = (type(error), error, users_part(error))
             self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
@@ -573,9 +580,15 @@ class Node:
         invoke: Callable[[Any], Any],
         finished: Finished,
         refused: Callable[[Any], None] | None = None,
+        kind: str = "",
     ) -> Runner:
         """A runner for one of the node's handlers; without a group it queues behind itself only."""
-        return Runner(self.context.loop, f"{self.full_name}.{label}", group, items, invoke, finished, refused)
+        name = f"{self.full_name}.{label}"
+        made = Runner(self.context.loop, name, group, items, invoke, finished, refused, kind=kind)
+        made.stalled = self.context.detector.arm
+        self.runners = [r for r in self.runners if not r.closed or r.active]
+        self.runners.append(made)
+        return made
 
     def forget(self, openable: _Openable) -> None:
         """Take an endpoint that was closed off the list."""
@@ -670,7 +683,7 @@ class Node:
             timer.clock_changed()
 
     def _task_done(self, task: asyncio.Task[Any]) -> None:
-        self._tasks.discard(task)
+        self.tasks.discard(task)
         if task.cancelled() or task.exception() is None:
             return
         if self._ended is not None and not self._ended.done():
@@ -688,9 +701,9 @@ class Node:
 
 
 _TAKEN = frozenset(dir(Node)) | {
-    *("id", "names", "log", "parameters", "failure", "failure_taken", "groups"),
+    *("id", "names", "log", "parameters", "failure", "failure_taken", "groups", "runners", "tasks"),
     *("_binding", "_context", "_ended", "_entered", "_failures", "_late", "_openables", "_parameter_events"),
-    *("_own_services", "_rosout", "_sim_clock", "_tasks", "_token"),
+    *("_own_services", "_rosout", "_sim_clock", "_token"),
 }
 """Attributes that no declaration may hide."""
 

@@ -225,6 +225,10 @@ class Run(Activity):
         runner._ended(self.group, item, result, error)
 
 
+def _nothing() -> None:
+    """Nobody wants to know."""
+
+
 Finished = Callable[[Any, Any, BaseException | None], None]
 
 
@@ -238,6 +242,7 @@ class Runner:
         invoke: Called with an item; returns a result, or a coroutine that will.
         finished: Called with (item, result, error) after each run.
         refused: Called with an item that is dropped because the group is full.
+        kind: For people, as in `service`.
     """
 
     __slots__ = (
@@ -251,12 +256,17 @@ class Runner:
         "_scheduled",
         "_waking",
         "active",
+        "dropped",
         "errors",
         "group",
+        "handler",
         "items",
+        "kind",
         "name",
+        "number",
         "one_at_a_time",
         "runs",
+        "stalled",
     )
 
     def __init__(
@@ -268,8 +278,19 @@ class Runner:
         invoke: Callable[[Any], Any],
         finished: Finished,
         refused: Callable[[Any], None] | None = None,
+        *,
+        kind: str = "",
     ) -> None:
         self.name = name
+        self.kind = kind
+        """What it runs for: timer, subscription, service, action."""
+        self.handler = name.rpartition(".")[2]
+        """The method."""
+        self.number = _next_number()
+        self.dropped: Callable[[], int] = int
+        """Items lost because the queue was full."""
+        self.stalled: Callable[[], None] = _nothing
+        """Called when there is work and no slot for it."""
         self.items = items
         self.runs = 0
         """Runs begun since the start."""
@@ -295,6 +316,11 @@ class Runner:
         return f"<Runner {self.name}>"
 
     @property
+    def label(self) -> str:
+        """Handler and kind, for people: `service add`."""
+        return f"{self.kind} {self.handler}".strip()
+
+    @property
     def closed(self) -> bool:
         """Whether `cancel` has been called."""
         return self._closed
@@ -309,15 +335,16 @@ class Runner:
             for _ in range(BURST):
                 if not items or self._closed:
                     return
-                if group is None:
-                    if active:
-                        return
-                elif self.one_at_a_time and active:
+                if (group is None or self.one_at_a_time) and active:
+                    self.stalled()
                     return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
-                elif (group.limit is not None and len(active) >= group.limit) or not group.admit(self):
+                if group is not None and (
+                    (group.limit is not None and len(active) >= group.limit) or not group.admit(self)
+                ):
                     if group.when_full != "wait":
                         self._overflow(group)
+                    self.stalled()
                     return
                 self.runs += 1
                 context = self._context.copy()

@@ -5,12 +5,14 @@ from __future__ import annotations
 from asyncio import CancelledError, Future
 from collections.abc import Callable
 from contextlib import nullcontext
+from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import (
     CallError,
     CallTimeout,
     ClosedError,
+    DeadlockError,
     DecodeError,
     EncodeError,
     RemoteError,
@@ -82,9 +84,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def _open(self, key: str) -> None:
         session = self.node.context.session
         self._inbox = Inbox(session.bell, None, self._arrived)
-        self.runner = self.node.runner(
-            self._label, self._group, self._inbox.items, self._invoke, self._finished, self._refuse
-        )
+        queue = (self._inbox.items, self._invoke, self._finished, self._refuse)
+        self.runner = self.node.runner(self._label, self._group, *queue, kind="service")
         self._declared.append(session.open_server(key, self._inbox))
         self._lines = ServerLines(self.node.context, self._announced(), self._asked)
         self._service_events.open()
@@ -102,15 +103,30 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         assert self._inbox is not None
         assert self.runner is not None
         self.runner.wake()
+        if self._inbox.items and self.node.context.detector.fails_hopeless:
+            self._fail_hopeless()
         while len(self._inbox.items) > REQUEST_QUEUE:
             self._refuse(self._inbox.items.pop(), f"has {REQUEST_QUEUE} requests waiting")
+
+    def _fail_hopeless(self) -> None:
+        """End calls that wait, directly or through others, for runs that wait for them."""
+        assert self._inbox is not None
+        assert self.runner is not None
+        waits = self.node.context.waits
+        for request in list(self._inbox.items):
+            asked = request.attachment or b""
+            holders = waits.hopeless(self.runner, asked) if len(asked) > attachment.SIZE else []
+            if holders:
+                self._inbox.items.remove(request)
+                text = self.node.context.detector.why_hopeless(self.name, self.runner, holders)
+                request.reply_error(RemoteError(DeadlockError.__name__, text).to_payload())
 
     def _refuse(self, request: Any, why: str = "runs in a group that is full and drops requests") -> None:
         self.refused += 1
         request.reply_error(RemoteError(ServerBusy.__name__, f"{self.name} {why}").to_payload())
 
     def _invoke(self, request: Any) -> Any:
-        asked = attachment.unpack(request.attachment or b"")
+        asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
         message = self._decode(request.payload)
         self._service_events.tell(ServiceEvent.REQUEST_RECEIVED, asked.gid, asked.sequence, request=message)
         return self._callback(message)
@@ -135,7 +151,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 self.node.handler_failed(self._label, error)
             request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             return
-        asked = attachment.unpack(request.attachment)
+        asked = attachment.unpack(request.attachment[: attachment.SIZE])
         now = self.node.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
@@ -239,12 +255,12 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         offers = {e.name for e in self.node.context.cache.endpoints(Kind.SERVICE)}
         return f"nobody offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
 
-    async def call(self, request: Request, *, timeout: float | None = 10.0) -> Response:
+    async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
         """Ask, and wait for the response.
 
         Args:
             request: An instance of the service's `Request`.
-            timeout: Seconds until the call gives up; None waits for ever.
+            timeout: Seconds until the call gives up; None waits for ever; left out, as long as the graph says (10 s).
 
         Raises:
             ServiceUnavailable: There is no server, and none came within `DISCOVERY_GRACE`.
@@ -257,6 +273,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         if request.__class__ is not self._request:
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
         payload = self._encode(request)
+        if timeout is ...:
+            timeout = self.node.context.call_timeout
         started = self.node.clock.monotonic_ns()
         if not self._reaches_server():
             await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
@@ -265,7 +283,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._service_events.tell(ServiceEvent.REQUEST_SENT, gid, sequence, request=request)
         beside = attachment.pack(sequence, self.node.context.clock.time_ns(), gid)
         answer = await self._ask(
-            sequence, payload, beside, None if timeout is None else started + to_ns(timeout), timeout
+            sequence, payload, beside, started, None if timeout is None else started + to_ns(timeout), timeout
         )
         message: Response = self._decode(answer.payload)
         self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
@@ -276,7 +294,13 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return self._caller is not None and self._caller.has_server
 
     async def _ask(
-        self, sequence: int, payload: bytes, beside: bytes, deadline_ns: int | None, timeout: float | None
+        self,
+        sequence: int,
+        payload: bytes,
+        beside: bytes,
+        started_ns: int,
+        deadline_ns: int | None,
+        timeout: float | None,
     ) -> Answer:
         future: Future[Answer] = self.node.context.loop.create_future()
 
@@ -294,11 +318,16 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if not future.done():
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
+        context = self.node.context
+        context.waits.calls[future] = (self._announced().gid, sequence, self.name, started_ns, deadline_ns)
+        context.detector.arm()
         self._pending.add(future)
         if self._line is not None and self._line.is_open and len(self.matched) == 1:
-            give_up = self._line.call(sequence, payload, beside, answered)
+            give_up = self._line.call(sequence, payload, beside + context.waits.chain(), answered)
         else:
             assert self._caller is not None
+            if self._is_own():  # whoever else answers may not know what stands behind the attachment
+                beside += context.waits.chain()
             give_up = self._caller.call(payload, beside, answered)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:
@@ -308,8 +337,14 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             raise
         finally:
             self._pending.discard(future)
+            del context.waits.calls[future]
             if alarm is not None:
                 alarm.cancel()
+
+    def _is_own(self) -> bool:
+        """Whether its only server is in this process."""
+        servers = self.matched.values()
+        return len(servers) == 1 and all(server.zid == self.node.context.session.zid for server in servers)
 
     def close(self) -> None:
         """Withdraw it. Calls that are waiting end with ClosedError."""
@@ -329,6 +364,8 @@ def _error_of(payload: bytes, service: str) -> CallError:
     error = RemoteError.from_payload(payload, service)
     if error.type == _STOPPING.type:
         return ServerLost(f"the server of {service} stopped before it answered")
+    if error.type == DeadlockError.__name__:
+        return DeadlockError(error.message)
     return ServerBusy(error.message) if error.type == ServerBusy.__name__ else error
 
 

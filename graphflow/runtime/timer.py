@@ -81,9 +81,8 @@ class Timer:
 
     def open(self) -> None:
         """Start. Done by the node."""
-        self.runner = self.node.runner(
-            self._label, self._group, self._due, self._callback, self._finished, self._refused
-        )
+        queue = (self._due, self._callback, self._finished, self._refused)
+        self.runner = self.node.runner(self._label, self._group, *queue, kind="timer")
         self.reset()
 
     def reset(self) -> None:

@@ -218,9 +218,9 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._inbox = Inbox(context.session.bell, bound, self._arrived)
         else:
             self._inbox = Inbox(context.session.bell, bound, _nothing)
-            self.runner = self.node.runner(
-                self._label, self._group, self._inbox.items, self._invoke, self._finished, self._refused
-            )
+            queue = (self._inbox.items, self._invoke, self._finished, self._refused)
+            self.runner = self.node.runner(self._label, self._group, *queue, kind="subscription")
+            self.runner.dropped = lambda: self.dropped
             self._inbox.ready = self.runner.wake
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)

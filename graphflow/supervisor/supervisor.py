@@ -269,6 +269,8 @@ class Supervisor:
             "root": self.plan.root,
             "domain": self._context.domain,
             "mode": self._mode,
+            "deadlock": self.plan.deadlock,
+            "call_timeout": self.plan.call_timeout,
         }
         self._tell(event="starting", process=process.name)
         self._starter.spawn(process.name, job, process.log, env)

@@ -119,7 +119,7 @@ def main(job: dict[str, Any], report: Report) -> None:
     """Run a worker to its end; does not return.
 
     Args:
-        job: `nodes` (as of Plan.to_json), `root`, `process`, `domain`, `mode`.
+        job: `nodes` (as of Plan.to_json), `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`.
     """
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
@@ -154,7 +154,8 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Report) -> int:
 
     context = None
     try:
-        context = await Context.open(job["domain"], mode=job["mode"], checked=True)
+        rules = {"deadlock": job["deadlock"], "call_timeout": job["call_timeout"]}
+        context = await Context.open(job["domain"], mode=job["mode"], checked=True, **rules)
         await serve(nodes, context, stop, is_ready)
     except Exception as error:
         at_start = len(ready) < len(nodes)

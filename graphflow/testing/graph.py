@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
+from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import GoalClient
@@ -50,6 +51,8 @@ class Graph:
         self.clock = ManualClock()
         self.network = Network()
         self.nodes: list[Node] = []
+        self.deadlock: DeadlockPolicy = "raise"
+        """For nodes started from now on."""
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
         self._tester: Node | None = None
@@ -57,7 +60,8 @@ class Graph:
     async def start(self, *nodes: Node) -> None:
         """Start nodes, each as if in a process of its own, and let them settle."""
         for node in nodes:
-            context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
+            session = self.network.session(asyncio.get_running_loop())
+            context = Context(session, clock=self.clock, deadlock=self.deadlock)
             self._contexts.append(context)
             await node.start(context)
             self.nodes.append(node)

@@ -125,6 +125,16 @@ class Session(Protocol):
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Closable:
         """Call `changed(token, alive)` on the loop for every token that matches, also those already there."""
 
+    def open_report(self, key: str, report: Callable[[], bytes]) -> Closable:
+        """Answer whoever asks on `key` with what `report` returns. It is called on a thread of its own, where there
+        are threads, so that it answers while the loop is blocked.
+        """
+
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
+        """Ask all reports whose key matches; `told` is called on the loop, once, with those that came in `limit`
+        seconds.
+        """
+
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
         """Payload and attachment of something that `open_receiver` put into an inbox."""
 

@@ -40,6 +40,7 @@ class Network:
         self.receivers: dict[str, list[_Receiver]] = {}
         self.servers: dict[str, list[Inbox]] = {}
         self.callers: dict[str, list[_Caller]] = {}
+        self.reports: dict[str, Callable[[], bytes]] = {}
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
@@ -224,6 +225,18 @@ class MemorySession:
         caller = _Caller(self._network, self._loop, key, changed)
         self._keep(_Declared(caller.close))
         return caller
+
+    def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
+        self._network.reports[key] = report
+
+        def withdraw() -> None:
+            del self._network.reports[key]
+
+        return self._keep(_Declared(withdraw))
+
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
+        reports = [report for known, report in self._network.reports.items() if _any_of(known) == key]
+        self._loop.call_soon(lambda: told([report() for report in reports]))
 
     def announce(self, token: str) -> _Declared:
         self._network.tokens[token] = None

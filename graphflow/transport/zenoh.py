@@ -253,6 +253,34 @@ class ZenohSession:
         subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
         return _Declared(subscriber)
 
+    def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
+        def asked(query: zenoh.Query) -> None:
+            with query:
+                query.reply(key, report())
+
+        return _Declared(self.raw.declare_queryable(key, asked))  # on Zenoh's callback thread: the loop may be blocked
+
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
+        found: list[bytes] = []
+
+        def deliver() -> None:
+            while inbox.items:
+                reply = inbox.items.popleft()
+                if reply is None:
+                    told(found)
+                elif reply.ok is not None:
+                    found.append(reply.ok.payload.to_bytes())
+
+        inbox = Inbox(self.bell, None, deliver)
+        self.raw.get(
+            key,
+            Callback(inbox.put, drop=lambda: inbox.put(None), indirect=False),
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=limit,
+            congestion_control=zenoh.CongestionControl.DROP,
+        )
+
     def watch_transports(self, changed: Callable[[str, bool], None]) -> _Declared:
         """Call `changed(zid, alive)` on the loop whenever a connection to another session begins or ends."""
 

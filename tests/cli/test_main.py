@@ -13,7 +13,22 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS = ("init", "up", "down", "ps", "logs", "plan", "check", "run", "node", "topic", "service", "param", "interface")
+VERBS = (
+    "init",
+    "up",
+    "down",
+    "ps",
+    "logs",
+    "plan",
+    "check",
+    "run",
+    "node",
+    "topic",
+    "service",
+    "action",
+    "param",
+    "interface",
+)
 
 
 @pytest.fixture(autouse=True)

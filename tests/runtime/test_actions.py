@@ -23,12 +23,12 @@ from graphflow import (
     task,
 )
 from graphflow.errors import EncodeError
+from graphflow.interface import GoalPolicy
 from graphflow.msgs.action_msgs.msg import GoalStatusArray
 from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
 from graphflow.runtime.action_client import ClientGoal
-from graphflow.runtime.actions import GoalPolicy
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 from tests.runtime.cast import Log

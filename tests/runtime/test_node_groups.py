@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 
 from graphflow import (
+    CallError,
     CallTimeout,
+    DeadlockError,
     DeclarationError,
     Group,
     Node,
@@ -19,7 +21,7 @@ from graphflow import (
     subscription,
     timer,
 )
-from graphflow.interface import GroupChange, WhenFull
+from graphflow.interface import DeadlockPolicy, GroupChange, WhenFull
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.srv import ListParameters
 from graphflow.msgs.std_msgs.msg import String
@@ -108,34 +110,45 @@ async def test_the_default_group_of_a_class(graph: Graph) -> None:
     assert log == ["first", "second"]
 
 
-async def test_a_call_to_oneself_in_one_group_waits_for_ever(graph: Graph) -> None:
-    """A slot is held across every await, so a handler that calls its own group gets no answer in time."""
+class Narcissus(Node):
+    """Calls itself."""
 
-    class Narcissus(Node):
-        default_group = Group(1)
+    default_group = Group(1)
 
-        def __init__(self) -> None:
-            super().__init__()
-            self.client = self.create_client(AddTwoInts, "add")
-            self.outcome = Log()
+    def __init__(self) -> None:
+        super().__init__()
+        self.client = self.create_client(AddTwoInts, "add")
+        self.outcome = Log()
 
-        @service(AddTwoInts, "add")
-        async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-            return AddTwoInts.Response(sum=request.a + request.b)
+    @service(AddTwoInts, "add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
 
-        @subscription(String, "x")
-        async def ask(self, _: String) -> None:
-            try:
-                self.outcome(await self.client.call(AddTwoInts.Request(), timeout=1.0))
-            except CallTimeout:
-                self.outcome("late")
+    @subscription(String, "x")
+    async def ask(self, _: String) -> None:
+        try:
+            self.outcome(await self.client.call(AddTwoInts.Request(), timeout=1.0))
+        except CallError as error:
+            self.outcome(type(error))
 
+
+@pytest.mark.parametrize(
+    ("policy", "outcome", "elapsed"),
+    [("raise", DeadlockError, 0.0), ("report", CallTimeout, 1.0), ("off", CallTimeout, 1.0)],
+)
+async def test_a_call_to_oneself_in_one_group(
+    graph: Graph, policy: DeadlockPolicy, outcome: type[CallError], elapsed: float
+) -> None:
+    """A slot is held across every await, so the call cannot be answered: it fails at once, or waits for its deadline."""
+    graph.deadlock = policy
     node = Narcissus()
     await graph.start(node)
     graph.publisher(String, "/x").publish(String())
-    await graph.clock.advance(1.0)
+    await graph.settle()
+    assert bool(node.outcome) is (elapsed == 0.0)
+    await graph.clock.advance(elapsed)
 
-    assert node.outcome == ["late"]
+    assert node.outcome == [outcome]
 
 
 class Worker(Node):

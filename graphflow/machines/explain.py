@@ -1,0 +1,160 @@
+"""A deadlock in words: who holds what and waits for what, where, and which change of one line ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePath
+
+from graphflow.errors import Place
+from graphflow.machines.waits import Activity, Call, Deadlock, Edge, Group, Picture, Queue, SetBy, Slot
+
+
+def explanation(deadlock: Deadlock, picture: Picture) -> str:
+    """The whole report."""
+    return "\n".join(
+        [_headline(deadlock), *_ring(deadlock, picture), *_victims(deadlock, picture), *_fixes(deadlock, picture)]
+    )
+
+
+def hopeless(service: str, queue: Queue, holders: list[Activity], picture: Picture) -> str:
+    """Why a call of `service` can never be answered: all slots are held by activities that wait for it."""
+    group = picture.groups[queue.group]
+    held = " and ".join(f"{title(a)}{_where(a)}" for a in holders)
+    edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
+    head = f"{service} can never answer: {queue.label} of {queue.node} waits for {_slot(group)}, held by {held}"
+    head = f"{head}, which waits for this very call"
+    fixes = list(_fix(holders[0], edge, picture)) if holders else []
+    return "\n".join([head, "Any one of these ends it:", *fixes] if fixes else [head])
+
+
+def _headline(deadlock: Deadlock) -> str:
+    count, more = len(deadlock.ring), len(deadlock.victims)
+    who = "one callback waits for itself" if count == 1 else f"{count} callbacks wait for each other in a ring"
+    word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
+    condition = " (unless something else that they wait for fails)" if deadlock.is_partial else ""
+    behind = f"; {more} more wait for them" if more else ""
+    return f"{word}: {who}{condition}{behind}"
+
+
+def _ring(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
+    for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
+        activity = picture.activities[name]
+        yield f"  {title(activity)}{_holding(activity, picture)} waits for {wanted(edge)}{_where(activity)}"
+        back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
+        yield f"    -> {_reason(edge, picture)}{back}"
+
+
+def title(activity: Activity) -> str:
+    """What an activity is called: `timer tick of /arm`."""
+    return f"{activity.label} of {activity.node}"
+
+
+def _holding(activity: Activity, picture: Picture) -> str:
+    group = picture.groups.get(activity.group)
+    if group is None:
+        return ""
+    return f" holds group '{group.name}' and" if group.name else ""
+
+
+def wanted(edge: Edge) -> str:
+    """What it waits for."""
+    if edge.loop and not isinstance(edge.via, Call):
+        return "its event loop"
+    match edge.via:
+        case Call(id=call, name=name):
+            return f"the {'result of action' if call.startswith('goal:') else 'answer of service'} {name}"
+        case Slot():
+            return "its slot, to come back to its group"
+        case SetBy(what=what):
+            return what
+        case _:
+            return "another task"
+
+
+def _where(activity: Activity) -> str:
+    words = []
+    if activity.place.file:
+        place = Place(PurePath(activity.place.file).name, activity.place.line)
+        words.append(f"{place} in {activity.function}")
+    words.append(f"since {activity.age:.2f} s")
+    if activity.left is not None:
+        words.append(f"times out in {max(0.0, activity.left):.1f} s")
+    return f"   ({', '.join(words)})"
+
+
+def _reason(edge: Edge, picture: Picture) -> str:
+    other = picture.activities[edge.to]
+    if edge.loop:
+        return f"the event loop of its process is blocked by {title(other)}"
+    if not edge.group:
+        return f"which {title(other)} is to give"
+    queue = picture.queues.get(edge.queue)
+    who = "that" if queue is None else f"{queue.label} of {queue.node}"
+    verb = "sets it, and needs" if isinstance(edge.via, SetBy) else "waits for"
+    more = ""
+    if queue is not None and isinstance(edge.via, SetBy):
+        more = f"; {queue.waiting} queued, {queue.dropped} dropped meanwhile"
+    return f"{who} {verb} {_slot(picture.groups[edge.group])}, which {title(other)} holds{more}"
+
+
+def _slot(group: Group) -> str:
+    if not group.name:
+        return "its turn"
+    if group.limit == 1:
+        return f"group '{group.name}' of {group.node}"
+    return f"one of the {group.limit} slots of group '{group.name}' of {group.node}"
+
+
+def _victims(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
+    for name in deadlock.victims:
+        activity = picture.activities[name]
+        yield f"  behind them: {title(activity)}{_where(activity)}"
+
+
+def _fixes(deadlock: Deadlock, picture: Picture) -> list[str]:
+    found: list[str] = []
+    for name, edge in zip(deadlock.ring, deadlock.edges, strict=True):
+        for fix in _fix(picture.activities[name], edge, picture):
+            if fix not in found:
+                found.append(fix)
+    # The same advice for every member of a ring is one advice: to follow it once is enough.
+    kinds: dict[str, str] = {}
+    for fix in found:
+        kinds.setdefault(fix.split()[0], fix)
+    return ["Any one of these ends it:", *kinds.values()] if kinds else []
+
+
+def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
+    file = Place(PurePath(activity.place.file).name, activity.place.line)
+    if edge.loop:
+        other = picture.activities[edge.to]
+        at = Place(PurePath(other.place.file).name, other.place.line)
+        yield f"  await the call in {at}, or let {_method(other.label)} run in a thread (thread=True)"
+        return
+    queue, group = picture.queues.get(edge.queue), picture.groups.get(edge.group)
+    if queue is None or group is None:
+        return
+    handler = _method(queue.label)
+    own = f"{handler}_group"
+    if group.name:
+        yield (
+            f"  give {handler} a group of its own, in the graph file\n"
+            f"      {queue.node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
+            f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
+        )
+        if group.limit is not None and not isinstance(edge.via, SetBy):
+            holders = sum(1 for a in picture.activities.values() if a.group == group.id)
+            yield (
+                f"  allow more runs, if its handlers share no state\n"
+                f"      {queue.node}: {{concurrency: {{{group.name}: {{limit: {holders + 1}}}}}}}\n"
+                f"    or in the class: {group.name} = Group({holders + 1})"
+            )
+    elif not isinstance(edge.via, SetBy):
+        yield f"  let several runs of {handler} be under way: {own} = Group(None), and group={own} where it is declared"
+    held = picture.groups.get(activity.group)
+    if held is not None and held.name:
+        yield f"  release the slot while waiting, in {file}: async with self.{held.name}.released(): ..."
+
+
+def _method(label: str) -> str:
+    return label.split()[-1]

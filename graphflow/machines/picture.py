@@ -1,0 +1,163 @@
+"""Pictures of waits as JSON, for the way between processes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import astuple
+from typing import TypeAlias
+
+from graphflow.errors import Place
+from graphflow.machines.waits import (
+    FREE,
+    Activity,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Group,
+    Join,
+    Picture,
+    Queue,
+    SetBy,
+    Slot,
+)
+
+Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
+VERSION = 1
+DEEPEST = 50
+"""Conditions inside each other, at most: what comes from the network must not exhaust the stack."""
+
+
+def to_json(picture: Picture) -> dict[str, Json]:
+    """A picture as plain data that `from_json` reads back."""
+    return {
+        "v": VERSION,
+        "activities": [_activity(a) for a in picture.activities.values()],
+        "groups": [list(astuple(g)) for g in picture.groups.values()],
+        "queues": [
+            [q.id, q.label, q.node, q.group, list(q.calls), q.waiting, q.dropped] for q in picture.queues.values()
+        ],
+        "blocked": dict(picture.blocked),
+    }
+
+
+def _activity(a: Activity) -> Json:
+    head: list[Json] = [a.id, a.label, a.node, a.group, _condition(a.wait), a.serves, list(a.place), a.function]
+    return [*head, a.age, a.left, a.process]
+
+
+def _condition(condition: Condition) -> Json:
+    match condition:
+        case Call(id=call, name=name):
+            return ["call", call, name]
+        case Slot(group=group, ticket=ticket):
+            return ["slot", group, ticket]
+        case Join(activity=activity):
+            return ["join", activity]
+        case SetBy(what=what, queues=queues, activities=activities):
+            return ["set", what, list(queues), list(activities)]
+        case All(of=conditions):
+            return ["all", [_condition(c) for c in conditions]]
+        case AnyOf(of=conditions):
+            return ["any", [_condition(c) for c in conditions]]
+        case _:
+            return None
+
+
+def from_json(data: Mapping[str, object]) -> Picture:
+    """Read a picture.
+
+    Raises:
+        ValueError, KeyError, TypeError: It is none.
+    """
+    if data["v"] != VERSION:
+        raise ValueError(f"a picture of version {data['v']!r}")
+    activities = [_read_activity(row) for row in _rows(data["activities"])]
+    groups = [Group(_text(i), _text(name), _text(n), _limit(most)) for i, name, n, most in _rows(data["groups"])]
+    queues = [_read_queue(row) for row in _rows(data["queues"])]
+    blocked = data["blocked"]
+    if not isinstance(blocked, dict):
+        raise TypeError("blocked is no mapping")
+    return Picture(
+        {a.id: a for a in activities},
+        {g.id: g for g in groups},
+        {q.id: q for q in queues},
+        {_text(k): _text(v) for k, v in blocked.items()},
+    )
+
+
+def _read_queue(row: list[object]) -> Queue:
+    id_, label, node, group, calls, waiting, dropped = row
+    known = tuple(_text(call) for call in _list(calls))
+    return Queue(_text(id_), _text(label), _text(node), _text(group), known, _int(waiting), _int(dropped))
+
+
+def _read_activity(row: list[object]) -> Activity:
+    id_, label, node, group, wait, serves, place, function, age, left, process = row
+    file, line, column = _list(place)
+    return Activity(
+        _text(id_),
+        _text(label),
+        _text(node),
+        _text(group),
+        _read_condition(wait, 0),
+        _text(serves),
+        Place(_text(file), _int(line), _int(column)),
+        _text(function),
+        _number(age),
+        None if left is None else _number(left),
+        _text(process),
+    )
+
+
+def _read_condition(data: object, depth: int) -> Condition:
+    if data is None:
+        return FREE
+    if depth > DEEPEST:
+        raise ValueError("conditions are nested too deeply")
+    kind, *rest = _list(data)
+    if kind == "call":
+        return Call(_text(rest[0]), _text(rest[1]))
+    if kind == "slot":
+        return Slot(_text(rest[0]), _int(rest[1]))
+    if kind == "join":
+        return Join(_text(rest[0]))
+    if kind == "set":
+        return SetBy(_text(rest[0]), tuple(map(_text, _list(rest[1]))), tuple(map(_text, _list(rest[2]))))
+    if kind in ("all", "any"):
+        inner = tuple(_read_condition(c, depth + 1) for c in _list(rest[0]))
+        return All(inner) if kind == "all" else AnyOf(inner)
+    raise ValueError(f"a condition of kind {kind!r}")
+
+
+def _rows(data: object) -> list[list[object]]:
+    return [_list(row) for row in _list(data)]
+
+
+def _list(data: object) -> list[object]:
+    if not isinstance(data, list):
+        raise TypeError(f"{data!r} is no list")
+    return data
+
+
+def _text(data: object) -> str:
+    if not isinstance(data, str):
+        raise TypeError(f"{data!r} is no text")
+    return data
+
+
+def _int(data: object) -> int:
+    if not isinstance(data, int):
+        raise TypeError(f"{data!r} is no whole number")
+    return data
+
+
+def _number(data: object) -> float:
+    if not isinstance(data, (int, float)):
+        raise TypeError(f"{data!r} is no number")
+    return float(data)
+
+
+def _limit(data: object) -> int | None:
+    return None if data is None else _int(data)

@@ -1,0 +1,210 @@
+"""Looks for deadlocks when somebody has waited: first in this process, then, if waits lead out of it, in all.
+
+Nothing is done while nothing waits. A call, or work that finds no slot, arms a look a quarter of a second later; what
+still waits then is looked at, and again at growing distances. Deadlocks within a process are seen in one picture of
+it. For others all processes are asked twice, as `machines.waits` explains. Every process that has a part in a
+deadlock finds it; the one that comes first by id reports it, and says when it is over.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import threading
+from asyncio import Future
+from typing import TYPE_CHECKING
+
+from graphflow.errors import DeadlockError
+from graphflow.interface import DeadlockPolicy
+from graphflow.machines.explain import explanation, hopeless, title
+from graphflow.machines.picture import from_json, to_json
+from graphflow.machines.waits import FREE, Activity, Call, Condition, Deadlock, Picture, deadlocked, explained, joined
+from graphflow.runtime.scheduler import Run, Runner
+from graphflow.times import to_ns
+
+if TYPE_CHECKING:
+    from graphflow.runtime.clock import Handle
+    from graphflow.runtime.context import Context
+
+logger = logging.getLogger("graphflow")
+
+PROBE_AFTER = 0.25
+"""Seconds that something waits before it is looked at."""
+PROBE_LONGEST = 8.0
+"""Seconds between two looks at the same waits, at most."""
+PULL_LIMIT = 0.5
+"""Seconds that other processes get to answer."""
+
+Key = frozenset[tuple[str, Condition]]
+
+
+class Detector:
+    """The search for deadlocks in which one process has a part. One per `Context`."""
+
+    def __init__(self, context: Context, policy: DeadlockPolicy) -> None:
+        self._context = context
+        self.policy = policy
+        self.is_armed = policy == "off"
+        """Whether a look is due; always, and in vain, when nobody wants to know."""
+        self.pulls = 0
+        """How often other processes were asked."""
+        self.reports: dict[Key, tuple[str, str]] = {}
+        """The deadlocks there are now: explained, and who has a part in them."""
+        self._period = PROBE_AFTER
+        self._handle: Handle | None = None
+        self._last: set[tuple[str, Condition]] = set()
+        self._lock = threading.Lock()
+        zid, domain = context.session.zid, context.domain
+        self._report = context.session.open_report(f"@graphflow/{domain}/waits/{zid}", self._answer)
+
+    def _answer(self) -> bytes:
+        """What another process is told: on a thread of Zenoh's."""
+        picture = self._context.waits.picture()
+        return json.dumps({**to_json(picture), "reports": [text for text, _ in self.reports.values()]}).encode()
+
+    def arm(self) -> None:
+        """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
+        if not self.is_armed:
+            self.is_armed = True
+            self._period = PROBE_AFTER
+            self._schedule(PROBE_AFTER)
+
+    def _schedule(self, seconds: float) -> None:
+        clock = self._context.clock
+        self._handle = clock.call_at(clock.monotonic_ns() + to_ns(seconds), self._probe)
+
+    def _probe(self) -> None:
+        """Look at what waits."""
+        picture = self._context.waits.picture()
+        self._say_cleared(picture)
+        waiting = {(a.id, a.wait) for a in picture.activities.values() if a.wait is not FREE}
+        if not waiting and not any(q.waiting for q in picture.queues.values()):
+            self.is_armed = self.policy == "off"
+            self._last.clear()
+            return
+        young = [a.age for a in picture.activities.values() if a.wait is not FREE and not _is_old(a)]
+        for deadlock in explained(picture, deadlocked(picture)):
+            # What only the source code tells must have lasted: a setter may be about to run.
+            if not deadlock.is_likely or all(_is_old(picture.activities[i]) for i in deadlock.ring):
+                self._tell(deadlock, picture)
+        if any(self._leaves(a, picture) for a in picture.activities.values() if _is_old(a)):
+            self._pull()
+        is_new = bool(waiting - self._last)
+        self._last = waiting
+        longest = 2 * PROBE_AFTER if self.reports else PROBE_LONGEST
+        self._period = PROBE_AFTER if is_new else min(2 * self._period, longest)
+        soonest = PROBE_AFTER - max(young) if young else self._period
+        self._schedule(min(max(soonest, 0.01), self._period))
+
+    def _leaves(self, activity: Activity, picture: Picture) -> bool:
+        """Whether an activity waits for another process."""
+        here = {a.serves for a in picture.activities.values()} | {c for q in picture.queues.values() for c in q.calls}
+        return any(call not in here for call in _calls(activity.wait))
+
+    # other processes
+
+    def _pull(self) -> None:
+        def first(replies: list[bytes]) -> None:
+            before = self._whole(replies)
+            if any(self._context.session.zid == before.activities[i].process for i in deadlocked(before)):
+                self._ask(lambda again: self._conclude(before, self._whole(again)))
+
+        self._ask(first)
+
+    def _ask(self, told: object) -> None:
+        self.pulls += 1
+        key = f"@graphflow/{self._context.domain}/waits/*"
+        self._context.session.ask_reports(key, PULL_LIMIT, told)  # type: ignore[arg-type]
+
+    def _whole(self, replies: list[bytes]) -> Picture:
+        pictures = []
+        for reply in replies:
+            try:
+                pictures.append(from_json(json.loads(reply)))
+            except (ValueError, KeyError, TypeError) as error:
+                logger.debug("a picture of waits that cannot be read: %s", error)
+        return joined([*pictures, self._context.waits.picture()])
+
+    def _conclude(self, before: Picture, now: Picture) -> None:
+        dead = deadlocked(now, before)
+        for deadlock in explained(now, dead):
+            self._tell(deadlock, now)
+
+    # what is said
+
+    @property
+    def fails_hopeless(self) -> bool:
+        """Whether a call that cannot succeed is ended at once."""
+        return self.policy in ("raise", "break")
+
+    def why_hopeless(self, service: str, runner: Runner, holders: list[Run]) -> str:
+        """Why a call can never be answered: its server's group is full of runs that wait for it."""
+        picture = self._context.waits.picture()
+        zid = self._context.session.zid
+        found = [
+            picture.activities[f"{zid}:{run.number}"] for run in holders if f"{zid}:{run.number}" in picture.activities
+        ]
+        return hopeless(service, picture.queues[f"{zid}:q{runner.number}"], found, picture)
+
+    def _tell(self, deadlock: Deadlock, picture: Picture) -> None:
+        members = [picture.activities[i] for i in deadlock.ring]
+        key = frozenset((a.id, a.wait) for a in members)
+        mine = self._context.session.zid
+        able = sorted({a.process for a in members if a.process not in picture.blocked}) or [mine]
+        if key in self.reports or able[0] != mine:
+            return
+        text = explanation(deadlock, picture)
+        self.reports[key] = text, " and ".join(title(a) for a in members)
+        logger.error("%s", text)
+        if self.policy == "break":
+            self._break(members, text)
+
+    def _break(self, members: list[Activity], text: str) -> None:
+        """End the youngest call of this process that has a part in it."""
+        waits = self._context.waits
+        calls = {call for a in members if a.process == self._context.session.zid for call in _calls(a.wait)}
+        found: list[tuple[int, Future[object]]] = [
+            (entry[3], future) for future, entry in waits.calls.items() if waits.id_of(entry) in calls
+        ]
+        if found:
+            _, future = max(found, key=lambda pair: pair[0])
+            if not future.done():
+                future.set_exception(DeadlockError(text))
+
+    def _say_cleared(self, picture: Picture) -> None:
+        mine = {(a.id, a.wait) for a in picture.activities.values()}
+        zid = self._context.session.zid
+        for key in list(self.reports):
+            if any(pair not in mine for pair in key if pair[0].startswith(f"{zid}:")):
+                _, who = self.reports.pop(key)
+                logger.warning("the deadlock of %s has cleared", who)
+
+    def probe_blocked(self) -> None:
+        """The event loop is blocked: look from the thread that has noticed it."""
+        if self.policy == "off" or not self._lock.acquire(blocking=False):
+            return
+        try:
+            picture = self._context.waits.picture()
+            for deadlock in explained(picture, deadlocked(picture)):
+                self._tell(deadlock, picture)
+                self._context.loop.call_soon_threadsafe(self.arm)  # to see it cleared
+        finally:
+            self._lock.release()
+
+    def close(self) -> None:
+        """Look no more."""
+        if self._handle is not None:
+            self._handle.cancel()
+        self.is_armed = True
+        self._report.close()
+
+
+def _is_old(activity: Activity) -> bool:
+    """Whether it has waited long enough to be looked at."""
+    return activity.age >= 0.999 * PROBE_AFTER
+
+
+def _calls(wait: Condition) -> list[str]:
+    if isinstance(wait, Call):
+        return [wait.id]
+    return [call for inner in getattr(wait, "of", ()) for call in _calls(inner)]

@@ -1,0 +1,45 @@
+"""Who waits for a call: the runs of handlers that await it, directly or through each other, nearest last.
+
+Stands behind the attachment of a request between graphflow processes. Layout: the letter `c`, the number of hops, then
+for each hop the first 8 bytes of its process's Zenoh id and the number of the run there, a uint64; little-endian.
+
+A server whose group is full of such runs knows that the call can never be answered.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple
+
+_HEAD = b"c"
+_HOP = struct.Struct("<8sQ")
+LONGEST = 16
+"""Hops that a chain carries; the call of a longer one carries none."""
+
+
+class Hop(NamedTuple):
+    """One run that waits."""
+
+    process: bytes
+    """The first 8 bytes of its Zenoh id."""
+    run: int
+
+
+def process_of(zid: str) -> bytes:
+    """How a process is called in a chain, by its Zenoh id in hex."""
+    return bytes.fromhex(zid.rjust(16, "0")[:16])
+
+
+def extended(chain: bytes, process: bytes, run: int) -> bytes:
+    """A chain with one more hop; empty when it has become too long, or is none."""
+    count = chain[1] if chain else 0
+    if count >= LONGEST:
+        return b""
+    return b"%c%c%b%b" % (_HEAD, count + 1, chain[2:], _HOP.pack(process, run))
+
+
+def hops(chain: bytes) -> frozenset[Hop]:
+    """The runs that wait; none when the bytes are no chain."""
+    if chain[:1] != _HEAD or len(chain) != 2 + chain[1] * _HOP.size or chain[1] > LONGEST:
+        return frozenset()
+    return frozenset(Hop(*hop) for hop in _HOP.iter_unpack(chain[2:]))
