@@ -31,6 +31,9 @@ _VERBS = {
     "service": ("service", "List and call services."),
     "action": ("action", "List actions, and send goals to them."),
     "param": ("param", "List, get, set, describe, dump and load parameters."),
+    "waits": ("waits", "Tell who holds what and who waits for whom."),
+    "groups": ("waits", "Show a node's concurrency groups, or move handlers between them."),
+    "doctor": ("waits", "Look for what is wrong with the running graph."),
     "interface": ("interface", "Show message, service and action types."),
 }
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""

@@ -18,6 +18,7 @@ from graphflow.errors import (
 from graphflow.machines.cache import GraphCache
 from graphflow.names import did_you_mean
 from graphflow.system import host_name
+from graphflow.transport.base import Answer
 from graphflow.transport.client import Client
 from graphflow.wire import attachment
 from graphflow.wire.keyexpr import DataKey
@@ -121,6 +122,22 @@ class View:
         if reply.is_error:
             raise RemoteError.from_payload(reply.payload, name)
         return registry.codec(service.response.name).decode(reply.payload)
+
+    def reports(self, key: str, timeout: float) -> list[bytes]:
+        """What all processes of graphflow say on a key of its own."""
+        return self._client.reports(key, timeout)
+
+    def ask(self, key: str, request: bytes, timeout: float) -> Answer:
+        """Ask one process of graphflow on a key of its own.
+
+        Raises:
+            TimeoutError: It did not answer in time.
+            ServerLost: It is gone.
+        """
+        answer = self._client.call(key, request, attachment.pack(1, 0, GID), timeout)
+        if answer is None:
+            raise ServerLost("the process has gone")
+        return answer
 
     def owner(self, name: str) -> str:
         """Whose the node `name` is: the process it lives in, as far as its tokens tell."""

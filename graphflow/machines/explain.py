@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import PurePath
 
 from graphflow.errors import Place
-from graphflow.machines.waits import Activity, Call, Deadlock, Edge, Group, Picture, Queue, SetBy, Slot
+from graphflow.machines.waits import Activity, Call, Deadlock, Edge, Free, Group, Picture, Queue, SetBy, Slot
 
 
 def explanation(deadlock: Deadlock, picture: Picture) -> str:
@@ -39,7 +40,10 @@ def _headline(deadlock: Deadlock) -> str:
 def _ring(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
         activity = picture.activities[name]
-        yield f"  {title(activity)}{_holding(activity, picture)} waits for {wanted(edge)}{_where(activity)}"
+        holding = _holding(activity, picture)
+        if edge.loop and edge.to == name:
+            holding = f"{holding} blocks the event loop and" if not holding else f"{holding} blocks the event loop,"
+        yield f"  {title(activity)}{holding} waits for {wanted(edge)}{_where(activity)}"
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
         yield f"    -> {_reason(edge, picture)}{back}"
 
@@ -58,8 +62,6 @@ def _holding(activity: Activity, picture: Picture) -> str:
 
 def wanted(edge: Edge) -> str:
     """What it waits for."""
-    if edge.loop and not isinstance(edge.via, Call):
-        return "its event loop"
     match edge.via:
         case Call(id=call, name=name):
             return f"the {'result of action' if call.startswith('goal:') else 'answer of service'} {name}"
@@ -67,6 +69,8 @@ def wanted(edge: Edge) -> str:
             return "its slot, to come back to its group"
         case SetBy(what=what):
             return what
+        case Free():
+            return "its event loop"
         case _:
             return "another task"
 
@@ -85,7 +89,7 @@ def _where(activity: Activity) -> str:
 def _reason(edge: Edge, picture: Picture) -> str:
     other = picture.activities[edge.to]
     if edge.loop:
-        return f"the event loop of its process is blocked by {title(other)}"
+        return f"nothing can arrive while the event loop is blocked by {title(other)}"
     if not edge.group:
         return f"which {title(other)} is to give"
     queue = picture.queues.get(edge.queue)
@@ -129,19 +133,29 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
     if edge.loop:
         other = picture.activities[edge.to]
         at = Place(PurePath(other.place.file).name, other.place.line)
-        yield f"  await the call in {at}, or let {_method(other.label)} run in a thread (thread=True)"
+        wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
+        yield f"  {wait} in {at}"
+        yield (
+            f"  let {_method(other.label)} block a thread, in the graph file\n"
+            f"      {other.node}: {{concurrency: {{blocking: {{handlers: [{_method(other.label)}], thread: true}}}}}}\n"
+            f"    or in the class: thread=True where {_method(other.label)} is declared"
+        )
         return
     queue, group = picture.queues.get(edge.queue), picture.groups.get(edge.group)
     if queue is None or group is None:
         return
     handler = _method(queue.label)
+    if queue.label.startswith("reply "):
+        yield f"  let replies pass: declare the client of {handler} without group="
+        queue, handler = replace(queue, node=activity.node), _method(activity.label)
     own = f"{handler}_group"
-    if group.name:
+    if group.name and handler != _method(activity.label):
         yield (
             f"  give {handler} a group of its own, in the graph file\n"
             f"      {queue.node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
             f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
         )
+    if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
             holders = sum(1 for a in picture.activities.values() if a.group == group.id)
             yield (

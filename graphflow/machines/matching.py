@@ -8,6 +8,7 @@ Source: rmw_zenoh graph_cache (matching by data key); OMG DDS 1.4, 2.2.3 (reques
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from graphflow.qos import incompatible
@@ -39,15 +40,16 @@ class Verdict(NamedTuple):
     """What is wrong and what to do, in a sentence; empty when nothing is."""
 
 
-def verdict(own: Entity, other: Entity, profile: str = PROFILES[0]) -> Verdict | None:
+def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str = "here") -> Verdict | None:
     """How `own` and `other` stand to each other; None when they have nothing to do with each other.
 
     Args:
         profile: The wire profile of this process.
+        where: How the complaint says whose `own` is.
     """
     if other.name != own.name or other.kind is not _COUNTERPARTS.get(own.kind):
         return None
-    who, what = f"the {_WORDS[other.kind]} of {other.node_name}", f"the {_WORDS[own.kind]} here"
+    who, what = f"the {_WORDS[other.kind]} of {other.node_name}", f"the {_WORDS[own.kind]} {where}"
     if other.type != own.type:
         remedy = advice(other, profile) or "give both one type, or one of them another name"
         return Verdict(
@@ -74,6 +76,23 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0]) -> Verdict |
         f"{own.name}: the publisher of {offered.node_name} offers less than the subscription of "
         f"{requested.node_name} asks for: {', '.join(policies)}. Over Zenoh messages pass; over DDS none would",
     )
+
+
+def complaints(entities: Iterable[Entity], profile: str = PROFILES[0]) -> list[str]:
+    """What is wrong between any two endpoints of a graph, each pair once."""
+    by_name: dict[str, list[Entity]] = {}
+    for entity in entities:
+        if entity.kind in _COUNTERPARTS:
+            by_name.setdefault(entity.name, []).append(entity)
+    found: dict[str, None] = {}
+    for same in by_name.values():
+        for own in same:
+            for other in same:
+                if own.kind in (Kind.SUBSCRIPTION, Kind.CLIENT):
+                    judged = verdict(own, other, profile, f"of {own.node_name}")
+                    if judged is not None and judged.complaint:
+                        found[judged.complaint] = None
+    return list(found)
 
 
 def _short(hash_: str) -> str:

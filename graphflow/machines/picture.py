@@ -36,7 +36,8 @@ def to_json(picture: Picture) -> dict[str, Json]:
         "activities": [_activity(a) for a in picture.activities.values()],
         "groups": [list(astuple(g)) for g in picture.groups.values()],
         "queues": [
-            [q.id, q.label, q.node, q.group, list(q.calls), q.waiting, q.dropped] for q in picture.queues.values()
+            [q.id, q.label, q.node, q.group, list(q.calls), q.waiting, q.dropped, q.process]
+            for q in picture.queues.values()
         ],
         "blocked": dict(picture.blocked),
     }
@@ -88,9 +89,10 @@ def from_json(data: Mapping[str, object]) -> Picture:
 
 
 def _read_queue(row: list[object]) -> Queue:
-    id_, label, node, group, calls, waiting, dropped = row
+    id_, label, node, group, calls, waiting, dropped, process = row
     known = tuple(_text(call) for call in _list(calls))
-    return Queue(_text(id_), _text(label), _text(node), _text(group), known, _int(waiting), _int(dropped))
+    counts = _int(waiting), _int(dropped)
+    return Queue(_text(id_), _text(label), _text(node), _text(group), known, *counts, _text(process))
 
 
 def _read_activity(row: list[object]) -> Activity:

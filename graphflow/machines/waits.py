@@ -127,6 +127,7 @@ class Queue:
     waiting: int = 0
     """Items that wait, of whatever kind."""
     dropped: int = 0
+    process: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +216,8 @@ class _Index:
         return len(holders) < known.limit or any(holder in live for holder in holders)
 
     def _may_run(self, queue: Queue, live: set[str]) -> bool:
-        return self._has_slot(queue.group, live)
+        blocker = self.picture.blocked.get(queue.process)
+        return self._has_slot(queue.group, live) and (blocker is None or blocker in live)
 
     def loop_of(self, activity: Activity) -> str | None:
         """The activity that blocks this one's event loop, if another does."""
@@ -224,8 +226,8 @@ class _Index:
 
     def edges(self, activity: Activity, dead: set[str]) -> Iterator[Edge]:
         """Which dead activities this one waits for."""
-        blocker = self.loop_of(activity)
-        if blocker in dead:
+        blocker = self.picture.blocked.get(activity.process)
+        if blocker in dead and (blocker != activity.id or activity.wait is not FREE):
             yield Edge(blocker, activity.wait, loop=True)
         yield from self._edges(activity.wait, dead)
 
@@ -236,6 +238,9 @@ class _Index:
                     yield Edge(self.serving[call], condition)
                 elif call in self.queued:
                     queue = self.queued[call]
+                    blocker = self.picture.blocked.get(queue.process)
+                    if blocker in dead:
+                        yield Edge(blocker, condition, queue.id, loop=True)
                     yield from self._slot_edges(queue.group, condition, dead, queue.id)
             case Slot(group=group):
                 yield from self._slot_edges(group, condition, dead)
@@ -288,7 +293,9 @@ def _is_same(now: Activity, then: Activity | None) -> bool:
 
 
 def _may_go_on(index: _Index, activity: Activity, live: set[str]) -> bool:
-    blocker = index.loop_of(activity)
+    blocker = index.picture.blocked.get(activity.process)
+    if blocker == activity.id:
+        return activity.wait is FREE  # what it waits for would have to come through the loop that it blocks
     if blocker is not None and blocker in index.picture.activities and blocker not in live:
         return False
     return index.is_met(activity.wait, live)

@@ -414,6 +414,8 @@ class GoalServer(Generic[Goal, Result, Feedback]):
 class _GoalService(ServiceServer[Any, Any]):
     """One of an action's services; its callback is also told who asks."""
 
+    is_inner = True
+
     def __init__(self, server: GoalServer[Any, Any, Any], type_: Any, part: str, callback: Any) -> None:
         name = f"{server.name}/_action/{part}"
         lane = HandlerGroup(None, part)

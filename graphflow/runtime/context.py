@@ -17,6 +17,7 @@ from graphflow.machines.cache import Change, GraphCache
 from graphflow.runtime.clock import Clock, WallClock
 from graphflow.runtime.detector import Detector
 from graphflow.runtime.direct import Switchboard
+from graphflow.runtime.inspection import Inspection
 from graphflow.runtime.waits import Waits
 from graphflow.runtime.watchdog import Watchdog
 from graphflow.system import host_name, user_id
@@ -68,6 +69,7 @@ class Context:
         """What the handlers of this process wait for."""
         self.detector = Detector(self, deadlock)
         self.watchdog = Watchdog(self, self.detector.probe_blocked)
+        self._inspection = Inspection(self)
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._link: Link | None = None
@@ -164,8 +166,13 @@ class Context:
             if not self.loop.is_closed():
                 self.loop.call_soon_threadsafe(_settle, future, result, error)
 
-        threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True).start()
-        return await future
+        thread = threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True)
+        self.waits.threads[future] = thread
+        thread.start()
+        try:
+            return await future
+        finally:
+            del self.waits.threads[future]
 
     def on_change(self, listener: Callable[[Change], None]) -> Callable[[], None]:
         """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
@@ -223,6 +230,7 @@ class Context:
         """Leave the network. Nodes are to be stopped before."""
         self.watchdog.close()
         self.detector.close()
+        self._inspection.close()
         if self._link is not None:
             await asyncio.to_thread(self._link.close)
         if self._takeover is not None:

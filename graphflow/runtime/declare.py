@@ -221,6 +221,8 @@ class Client(Held, Generic[Request, Response]):
 
     Args:
         introspection: What is published of each call on `name`/_service_event.
+        group: Answers wait for a slot of it, as in ROS 2, where that is a way into a deadlock; without one they need
+            none.
     """
 
     def __init__(
@@ -229,11 +231,13 @@ class Client(Held, Generic[Request, Response]):
         name: str,
         *,
         introspection: Introspection = "off",
+        group: Group | None = None,
     ) -> None:
         self.place = _here()
+        _check_group(group, "Client", self.place)
         _check_type(type, Service, "Client", self.place)
         _check_name(name, "Client", self.place)
-        self.type, self.name, self.introspection = type, name, introspection
+        self.type, self.name, self.introspection, self._group = type, name, introspection, group
 
     @overload
     def __get__(self, node: None, owner: type) -> Self: ...
@@ -243,7 +247,7 @@ class Client(Held, Generic[Request, Response]):
         return self if node is None else node.held(self.attribute)
 
     def bind(self, node: Node) -> ServiceClient[Request, Response]:
-        return node.create_client(self.type, self.name, introspection=self.introspection)
+        return node.create_client(self.type, self.name, introspection=self.introspection, group=self._group)
 
 
 class ActionClient(Held, Generic[Goal, Result, Feedback]):

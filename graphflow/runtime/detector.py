@@ -12,13 +12,15 @@ import json
 import logging
 import threading
 from asyncio import Future
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from graphflow.errors import DeadlockError
 from graphflow.interface import DeadlockPolicy
 from graphflow.machines.explain import explanation, hopeless, title
-from graphflow.machines.picture import from_json, to_json
+from graphflow.machines.picture import from_json
 from graphflow.machines.waits import FREE, Activity, Call, Condition, Deadlock, Picture, deadlocked, explained, joined
+from graphflow.runtime.inspection import WAITS, key
 from graphflow.runtime.scheduler import Run, Runner
 from graphflow.times import to_ns
 
@@ -54,13 +56,6 @@ class Detector:
         self._handle: Handle | None = None
         self._last: set[tuple[str, Condition]] = set()
         self._lock = threading.Lock()
-        zid, domain = context.session.zid, context.domain
-        self._report = context.session.open_report(f"@graphflow/{domain}/waits/{zid}", self._answer)
-
-    def _answer(self) -> bytes:
-        """What another process is told: on a thread of Zenoh's."""
-        picture = self._context.waits.picture()
-        return json.dumps({**to_json(picture), "reports": [text for text, _ in self.reports.values()]}).encode()
 
     def arm(self) -> None:
         """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
@@ -111,10 +106,9 @@ class Detector:
 
         self._ask(first)
 
-    def _ask(self, told: object) -> None:
+    def _ask(self, told: Callable[[list[bytes]], None]) -> None:
         self.pulls += 1
-        key = f"@graphflow/{self._context.domain}/waits/*"
-        self._context.session.ask_reports(key, PULL_LIMIT, told)  # type: ignore[arg-type]
+        self._context.session.ask_reports(key(self._context.domain, WAITS), PULL_LIMIT, told)
 
     def _whole(self, replies: list[bytes]) -> Picture:
         pictures = []
@@ -148,13 +142,13 @@ class Detector:
 
     def _tell(self, deadlock: Deadlock, picture: Picture) -> None:
         members = [picture.activities[i] for i in deadlock.ring]
-        key = frozenset((a.id, a.wait) for a in members)
+        ring = frozenset((a.id, a.wait) for a in members)
         mine = self._context.session.zid
         able = sorted({a.process for a in members if a.process not in picture.blocked}) or [mine]
-        if key in self.reports or able[0] != mine:
+        if ring in self.reports or able[0] != mine:
             return
         text = explanation(deadlock, picture)
-        self.reports[key] = text, " and ".join(title(a) for a in members)
+        self.reports[ring] = text, " and ".join(title(a) for a in members)
         logger.error("%s", text)
         if self.policy == "break":
             self._break(members, text)
@@ -174,9 +168,9 @@ class Detector:
     def _say_cleared(self, picture: Picture) -> None:
         mine = {(a.id, a.wait) for a in picture.activities.values()}
         zid = self._context.session.zid
-        for key in list(self.reports):
-            if any(pair not in mine for pair in key if pair[0].startswith(f"{zid}:")):
-                _, who = self.reports.pop(key)
+        for ring in list(self.reports):
+            if any(pair not in mine for pair in ring if pair[0].startswith(f"{zid}:")):
+                _, who = self.reports.pop(ring)
                 logger.warning("the deadlock of %s has cleared", who)
 
     def probe_blocked(self) -> None:
@@ -196,7 +190,6 @@ class Detector:
         if self._handle is not None:
             self._handle.cancel()
         self.is_armed = True
-        self._report.close()
 
 
 def _is_old(activity: Activity) -> bool:

@@ -187,6 +187,18 @@ class Groups:
             self._of[group] = self.by_name[name] = _made(group, name)
         return self._of[group]
 
+    def named(self, name: str) -> HandlerGroup | None:
+        """The group of that name, made if there is none; None for the word that means none.
+
+        Raises:
+            DeclarationError: No group can be called that.
+        """
+        if name == NO_GROUP:
+            return None
+        if not name.isidentifier():
+            raise DeclarationError(f"{name!r} is no name for a group; use letters, digits and _")
+        return self.by_name.setdefault(name, HandlerGroup(name=name))
+
     def refuse_strays(self) -> None:
         """Raises DeclarationError when a graph file has placed a handler that the node has not made."""
         for handler, group in self._chosen.items():

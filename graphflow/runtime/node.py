@@ -288,9 +288,15 @@ class Node:
         *,
         qos: Qos | int = SERVICES,
         introspection: Introspection = "off",
+        group: declare.Group | None = None,
     ) -> ServiceClient[Request, Response]:
-        """A client of the service `name`, remapped; `introspection` as for `create_service`."""
-        made = ServiceClient(self, type_, self.names.resolve(name, "service"), Qos.of(qos))
+        """A client of the service `name`, remapped; `introspection` as for `create_service`.
+
+        Args:
+            group: Answers wait for a slot of it, as in ROS 2; without one they need none.
+        """
+        slots = None if group is None else self.groups.at_work(group)
+        made = ServiceClient(self, type_, self.names.resolve(name, "service"), Qos.of(qos), slots)
         made.configure_introspection(introspection)
         return self._add(made)
 
@@ -650,7 +656,8 @@ class Node:
         """One of the services that every node has; they are there before `on_start` runs."""
         type_: Any = registry.interface_class(type_name)
         self._own_services.add(f"~/{name}")
-        self._add(ServiceServer(self, type_, self.names.resolve(f"~/{name}", "service"), qos, callback, name))
+        made = self._add(ServiceServer(self, type_, self.names.resolve(f"~/{name}", "service"), qos, callback, name))
+        made.is_inner = True
 
     def _parameters_changed(self, changes: Mapping[str, Change]) -> None:
         if self._context is None:

@@ -260,6 +260,7 @@ class Runner:
         "errors",
         "group",
         "handler",
+        "is_inner",
         "items",
         "kind",
         "name",
@@ -286,6 +287,8 @@ class Runner:
         """What it runs for: timer, subscription, service, action."""
         self.handler = name.rpartition(".")[2]
         """The method."""
+        self.is_inner = False
+        """Whether it belongs to graphflow, as every node's parameter services do."""
         self.number = _next_number()
         self.dropped: Callable[[], int] = int
         """Items lost because the queue was full."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
 from asyncio import CancelledError, Future
+from collections import deque
 from collections.abc import Callable
 from contextlib import nullcontext
 from types import EllipsisType
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from graphflow.errors import (
     CallError,
@@ -15,6 +18,7 @@ from graphflow.errors import (
     DeadlockError,
     DecodeError,
     EncodeError,
+    LoopBlockedError,
     RemoteError,
     ServerBusy,
     ServerLost,
@@ -29,6 +33,7 @@ from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
+from graphflow.runtime.waits import call_id
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller, Inbox
 from graphflow.wire import attachment
@@ -50,6 +55,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     """A service at work."""
 
     kind = Kind.SERVICE
+    is_inner = False
+    """Whether it is one that every node has, or a part of an action."""
 
     def __init__(
         self,
@@ -86,6 +93,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._inbox = Inbox(session.bell, None, self._arrived)
         queue = (self._inbox.items, self._invoke, self._finished, self._refuse)
         self.runner = self.node.runner(self._label, self._group, *queue, kind="service")
+        self.runner.is_inner = self.is_inner
         self._declared.append(session.open_server(key, self._inbox))
         self._lines = ServerLines(self.node.context, self._announced(), self._asked)
         self._service_events.open()
@@ -174,14 +182,36 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         super().close()
 
 
+class _Reply(NamedTuple):
+    """An answer that waits for a slot."""
+
+    call: str
+    deliver: Callable[[], None]
+
+
 class ServiceClient(Endpoint, Generic[Request, Response]):
-    """A client at work."""
+    """A client at work.
+
+    Args:
+        group: Whose slots answers take, as in ROS 2; None delivers them at once.
+    """
 
     kind = Kind.CLIENT
 
-    def __init__(self, node: Node, type_: type[Service[Request, Response]], name: str, qos: Qos) -> None:
+    def __init__(
+        self,
+        node: Node,
+        type_: type[Service[Request, Response]],
+        name: str,
+        qos: Qos,
+        group: HandlerGroup | None = None,
+    ) -> None:
         super().__init__(node, type_.NAME, name, qos)
         self.type = type_
+        self._group = group
+        self._replies: deque[_Reply] = deque()
+        self.runner: Runner | None = None
+        """Delivers answers that wait for a slot of the client's group."""
         service = registry.service_schema(type_.NAME)
         self._request: type[Any] = registry.interface_class(service.request.name)
         self._encode = registry.codec(service.request.name).encode
@@ -197,6 +227,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
     def _open(self, key: str) -> None:
         self._caller = self.node.context.session.open_caller(key, self._look_ready)
         self._declared.append(self._caller)
+        if self._group is not None:
+            queue = (self._replies, _deliver, _delivered)
+            self.runner = self.node.runner(self.name.rpartition("/")[2], self._group, *queue, kind="reply")
         self._service_events.open()
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
@@ -322,13 +355,17 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         context.waits.calls[future] = (self._announced().gid, sequence, self.name, started_ns, deadline_ns)
         context.detector.arm()
         self._pending.add(future)
+        if self.runner is not None:
+            arrived = self._queued(answered, call_id(self._announced().gid, sequence))
+        else:
+            arrived = answered
         if self._line is not None and self._line.is_open and len(self.matched) == 1:
-            give_up = self._line.call(sequence, payload, beside + context.waits.chain(), answered)
+            give_up = self._line.call(sequence, payload, beside + context.waits.chain(), arrived)
         else:
             assert self._caller is not None
             if self._is_own():  # whoever else answers may not know what stands behind the attachment
                 beside += context.waits.chain()
-            give_up = self._caller.call(payload, beside, answered)
+            give_up = self._caller.call(payload, beside, arrived)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:
             return await future
@@ -340,6 +377,60 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             del context.waits.calls[future]
             if alarm is not None:
                 alarm.cancel()
+
+    def _queued(self, answered: Callable[[Answer | None], None], call: str) -> Callable[[Answer | None], None]:
+        """Have answers wait for a slot of the client's group."""
+        runner = self.runner
+        assert runner is not None
+
+        def queue(answer: Answer | None) -> None:
+            if answer is not None:
+                self._replies.append(_Reply(call, lambda: answered(answer)))
+                runner.wake()
+            elif not any(reply.call == call for reply in self._replies):
+                answered(None)
+
+        return queue
+
+    def call_sync(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
+        """Ask from a thread, and block it until the response is there. For `def` handlers with `thread=True`.
+
+        Arguments and errors as `call`.
+
+        Raises:
+            LoopBlockedError: This is the event loop's thread, where nothing could ever be received. With the deadlock
+                policy `report`, which is for teaching, it blocks all the same.
+        """
+        context = self.node.context
+        if (thread := threading.get_ident()) != context.waits.thread:
+            asking = self._ask_for(thread, request, timeout)
+            return asyncio.run_coroutine_threadsafe(asking, context.loop).result()
+        if context.detector.policy != "report":
+            raise LoopBlockedError(
+                f"{self.name}: call_sync would block the event loop, which has to receive the answer; "
+                "await client.call(...) in an `async def`, or run the handler in a thread (thread=True)"
+            )
+        return self._block(request, context.call_timeout if timeout is ... else timeout)
+
+    async def _ask_for(self, thread: int, request: Request, timeout: float | EllipsisType | None) -> Response:
+        asking, task = self.node.context.waits.asking, asyncio.current_task()
+        assert task is not None
+        asking[thread] = task
+        try:
+            return await self.call(request, timeout=timeout)
+        finally:
+            del asking[thread]
+
+    def _block(self, request: Request, timeout: float | None) -> Response:
+        """Send a request and wait for its answer where it cannot arrive."""
+        waits, asking = self.node.context.waits, self.call(request, timeout=timeout)
+        waits.blocking = asking.send(None)
+        try:
+            threading.Event().wait(timeout)
+        finally:
+            waits.blocking = None
+            asking.close()
+        raise CallTimeout(f"{self.name} could not answer within {timeout:g} s: the event loop was blocked")
 
     def _is_own(self) -> bool:
         """Whether its only server is in this process."""
@@ -357,6 +448,14 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             self._line.close()
             self._line = None
         super().close()
+
+
+def _deliver(reply: _Reply) -> None:
+    reply.deliver()
+
+
+def _delivered(*_: Any) -> None:
+    """The future of the call has what there is to be told."""
 
 
 def _error_of(payload: bytes, service: str) -> CallError:

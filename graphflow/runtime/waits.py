@@ -51,6 +51,10 @@ class Waits:
         """Goals that are waited for, by the future of their end."""
         self.served: dict[Future[Any], str] = {}
         """Ids of goals of this process that get_result waits for."""
+        self.threads: dict[Future[Any], threading.Thread] = {}
+        """Threads that are waited for."""
+        self.asking: dict[int, asyncio.Task[Any]] = {}
+        """Calls that threads wait for, by the thread's number."""
         self.blocking: Future[Any] | None = None
         """What a call that blocks the event loop waits for."""
         self.nodes: list[Node] = []
@@ -136,7 +140,7 @@ class _Camera:
             waiting = len(runner.items) + len(arrived.get(id(runner), []))
             queue = self.queue_id(runner)
             self._queues[queue] = picture_of.Queue(
-                queue, runner.label, node.full_name, group, tuple(calls), waiting, runner.dropped()
+                queue, runner.label, node.full_name, group, tuple(calls), waiting, runner.dropped(), self._zid
             )
             for run in list(runner.active):
                 self._add_run(node, runner, run)
@@ -181,6 +185,8 @@ class _Camera:
             except DecodeError:
                 return ""
             return call_id(gid, sequence)
+        if runner.kind == "reply":
+            return str(item.call)
         return goal_id(item.goal_id) if runner.kind == "action" else ""
 
     def _arrived(self) -> dict[int, list[str]]:
@@ -215,7 +221,7 @@ class _Camera:
         self._add(self.task_id(task), f"task {name}", node, task, "", "")
 
     def _add(self, id_: str, label: str, node: Node, task: Any, group: str, serves: str) -> None:
-        frames = list(_frames(task.get_coro()))
+        frames = self._frames_of(task)
         wait = self._condition(task, set(), node)
         self._seen.add((id_, wait))
         frame = _users(frames)
@@ -252,7 +258,7 @@ class _Camera:
         waiter = getattr(task, "_fut_waiter", None)
         if waiter is None:
             return FREE
-        frames = list(_frames(task.get_coro()))
+        frames = self._frames_of(task)
         for frame in reversed(frames):
             together = _joint_wait(frame)
             if together is not None:
@@ -264,8 +270,19 @@ class _Camera:
             return self._closed_world(frames, node, task)
         return condition
 
+    def _frames_of(self, task: Any) -> list[FrameType]:
+        """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
+        frames = list(_frames(task.get_coro()))
+        thread = self._waits.threads.get(getattr(task, "_fut_waiter", None))  # type: ignore[arg-type]
+        if thread is not None and thread.ident is not None:
+            frames += _stack(thread.ident)
+        return frames
+
     def _of_future(self, future: Any, seen: set[int], node: Node | None) -> Condition:
         waits = self._waits
+        if future in waits.threads:
+            asking = waits.asking.get(waits.threads[future].ident or 0)
+            return FREE if asking is None else self._condition(asking, seen, node)
         if future in waits.calls:
             gid, sequence, name, _, _ = waits.calls[future]
             return Call(call_id(gid, sequence), name)
@@ -313,14 +330,9 @@ class _Camera:
         """The activity that blocks the event loop; None when it is not blocked, or this is its thread."""
         if threading.get_ident() == self._waits.thread or not self._context.watchdog.is_blocked:
             return None
-        frame = sys._current_frames().get(self._waits.thread)
+        stack = _stack(self._waits.thread)
         held: tuple[Runner, Any, Any] | None = None
-        innermost: FrameType | None = frame
-        stack: list[FrameType] = []
-        while frame is not None:
-            stack.append(frame)
-            frame = frame.f_back
-        for frame in stack:
+        for frame in reversed(stack):
             if frame.f_code is Runner._begin.__code__:
                 held = (frame.f_locals["self"], frame.f_locals.get("run"), frame.f_locals["item"])
                 break
@@ -328,17 +340,20 @@ class _Camera:
                 run = frame.f_locals["self"]
                 held = (run.runner, run, run.item)
                 break
-        if held is None or innermost is None:
+        if held is None:
             return None
         runner, run, item = held
         node = next((n for n, r in self._runners if r is runner), None)
         if node is None:
             return None
         id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
-        user = _users(reversed(stack))
+        user = _users(stack)
         place = Place("") if user is None else Place(user.f_code.co_filename, user.f_lineno)
         function = "" if user is None else user.f_code.co_name
-        wait = FREE if self._waits.blocking is None else self._of_future(self._waits.blocking, set(), node)
+        if self._waits.blocking is None:
+            wait = self._closed_world(stack, node, run)
+        else:
+            wait = self._of_future(self._waits.blocking, set(), node)
         self._seen.add((id_, wait))
         age = self._context.watchdog.blocked_for
         self._activities[id_] = picture_of.Activity(
@@ -378,6 +393,16 @@ def _frames(coroutine: Any) -> Iterator[FrameType]:
             or getattr(coroutine, "gi_yieldfrom", None)
             or getattr(coroutine, "ag_await", None)
         )
+
+
+def _stack(thread: int) -> list[FrameType]:
+    """The frames of a running thread, the outermost first."""
+    frames: list[FrameType] = []
+    frame = sys._current_frames().get(thread)
+    while frame is not None:
+        frames.append(frame)
+        frame = frame.f_back
+    return frames[::-1]
 
 
 def _users(frames: Iterable[FrameType]) -> FrameType | None:

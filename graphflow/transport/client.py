@@ -40,6 +40,13 @@ class Client:
         replies = self._session.liveliness().get(key, timeout=TOKENS_LIMIT)
         return [str(r.ok.key_expr) for r in replies if r.ok is not None]
 
+    def reports(self, key: str, timeout: float) -> list[bytes]:
+        """What everybody answers who matches, within `timeout` seconds."""
+        replies = self._session.get(
+            key, target=zenoh.QueryTarget.ALL, consolidation=zenoh.ConsolidationMode.NONE, timeout=timeout
+        )
+        return [r.ok.payload.to_bytes() for r in replies if r.ok is not None]
+
     def call(self, key: str, payload: bytes, attachment: bytes, timeout: float) -> Answer | None:
         """Ask the servers on a key; the first answer, or None when none came and none will.
 

@@ -139,7 +139,7 @@ class Narcissus(Node):
 async def test_a_call_to_oneself_in_one_group(
     graph: Graph, policy: DeadlockPolicy, outcome: type[CallError], elapsed: float
 ) -> None:
-    """A slot is held across every await, so the call cannot be answered: it fails at once, or waits for its deadline."""
+    """A slot is held across every await, so the call cannot be answered: it fails at once, or at its deadline."""
     graph.deadlock = policy
     node = Narcissus()
     await graph.start(node)

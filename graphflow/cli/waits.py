@@ -1,0 +1,158 @@
+"""`graphflow waits`, `groups` and `doctor`: who holds what, who waits for whom, and what is wrong with the graph."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.domain import domain_id
+from graphflow.errors import CallTimeout, RemoteError
+from graphflow.introspect import waits as found
+from graphflow.introspect.view import View
+from graphflow.machines.matching import complaints
+
+ANSWER_LIMIT = 1.0
+"""Seconds that the processes of a graph get to answer."""
+
+
+def _read(view: View) -> found.Waits:
+    return found.read(view.reports(f"@graphflow/{view.domain}/waits/*", ANSWER_LIMIT))
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def waits(as_json: bool) -> None:
+    """Tell who holds a group's slot, who waits for what, since when, and where."""
+    with View(domain_id()) as view:
+        read = _read(view)
+    rows, queued = found.rows(read), found.queued(read)
+    if as_json:
+        output.as_json({"activities": rows, "queued": queued, "deadlocks": read.reports})
+        return
+    if not rows and not queued:
+        output.data("nobody waits")
+    for row in rows:
+        holds = f", holds {row['holds']!r}" if row["holds"] else ""
+        waiting = f" waits for {row['waits_for']} since {row['since']:.1f} s" if row["waits_for"] else " runs"
+        left = f", times out in {row['left']:.1f} s" if row["left"] is not None else ""
+        output.data(f"{'!' if row['stuck'] else ' '} {row['activity']}{holds}:{waiting}{left}")
+        if row["place"]:
+            output.data(f"      {row['place']}")
+    for queue in queued:
+        group = f"group {queue['group']!r}" if queue["group"] else "its turn"
+        by = f", held by {' and '.join(queue['held_by'])}" if queue["held_by"] else ""
+        dropped = f", {queue['dropped']} dropped" if queue["dropped"] else ""
+        output.data(f"  {queue['handler']} is queued for {group}{by}: {queue['waiting']} waiting{dropped}")
+    for report in read.reports:
+        output.data(f"\n{report}")
+
+
+class _Groups(click.Group):
+    """`groups NODE` beside `groups move ...`."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in self.commands and not args[0].startswith("-"):
+            args = ["show", *args]
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=_Groups, invoke_without_command=False)
+def groups() -> None:
+    """Show a node's concurrency groups, or move a handler into another.
+
+    \b
+    graphflow groups NODE
+    graphflow groups move NODE HANDLER GROUP
+    """  # noqa: D301 - click wants the character
+
+
+@groups.command(hidden=True)
+@click.argument("node")
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def show(node: str, as_json: bool) -> None:
+    """List a node's groups and the handlers in each."""
+    with View(domain_id()) as view:
+        full = view.node(node)
+        read = _read(view)
+    _show(full, _groups_of(read, full), as_json=as_json)
+
+
+def _groups_of(read: found.Waits, node: str) -> list[dict[str, Any]]:
+    if node not in read.nodes:
+        raise exits.UsageFault(f"{node} is not graphflow's, so that nothing is known of its groups")
+    return read.nodes[node]
+
+
+def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
+    if as_json:
+        output.as_json({"node": node, "groups": known})
+        return
+    output.data(node)
+    for group in known:
+        if group["name"]:
+            limit = "no limit" if group["limit"] is None else f"limit {group['limit']}"
+            more = "" if group["when_full"] == "wait" else f", {group['when_full']}"
+            output.data(f"  {group['name']}  ({limit}{more}{', in threads' if group['thread'] else ''})")
+        elif group["handlers"]:
+            output.data("  in no group  (each queues behind itself only)")
+        for handler in group["handlers"]:
+            numbers = f"{handler['runs']} runs"
+            for word in ("running", "waiting", "errors"):
+                numbers += f", {handler[word]} {word}" if handler[word] else ""
+            output.data(f"    {handler['handler']}  {handler['kind']}  {numbers}")
+
+
+@groups.command()
+@click.argument("node")
+@click.argument("handler")
+@click.argument("group")
+@click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds.")
+def move(node: str, handler: str, group: str, timeout: float) -> None:
+    """Move a handler of a running node into another group, made if there is none; `none` for no group.
+
+    Prints the lines of a graph file that make it so for good.
+    """
+    with View(domain_id()) as view:
+        full = view.node(node)
+        zid = view.cache.owners(full)[0].zid
+        wanted = {"node": full, "handler": handler, "group": group}
+        try:
+            answer = view.ask(f"@graphflow/{view.domain}/groups/{zid}", json.dumps(wanted).encode(), timeout)
+        except TimeoutError:
+            text = f"{full} did not answer within {timeout:g} s; its event loop may be blocked: see graphflow waits"
+            raise CallTimeout(text) from None
+    if answer.is_error:
+        raise exits.UsageFault(RemoteError.from_payload(answer.payload, "").message)
+    known = json.loads(answer.payload)["groups"]
+    _show(full, known, as_json=False)
+    together = [h["handler"] for g in known if g["name"] == group for h in g["handlers"]] or [handler]
+    output.data("\nFor good, in the graph file under nodes: or override:")
+    output.data(f"  {full}: {{concurrency: {{{group}: [{', '.join(together)}]}}}}")
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="For programs.")
+def doctor(as_json: bool) -> int:
+    """Look for what is wrong with the running graph: deadlocks, blocked loops, endpoints that do not fit.
+
+    Exit code 1 when something is.
+    """
+    with View(domain_id()) as view:
+        read = _read(view)
+        misfits = list(complaints(view.cache))
+    late = [f"{who}: the event loop was late {n} times, by {most:.1f} s at most" for who, n, most in read.late]
+    unheard = sorted(set(view.cache.nodes(hidden=False)) - set(read.nodes)) if read.nodes else []
+    if as_json:
+        output.as_json({"deadlocks": read.reports, "misfits": misfits, "late": late, "silent": unheard})
+    else:
+        output.lines([*(f"{report}\n" for report in read.reports), *misfits, *late])
+        if unheard:
+            output.data(f"said nothing of their handlers: {', '.join(unheard)} (ROS 2's, or stopped)")
+        if not (read.reports or misfits or late):
+            output.data(f"{len(read.nodes)} nodes, nothing wrong")
+    return exits.FAILED if read.reports or misfits else exits.OK

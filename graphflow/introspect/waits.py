@@ -1,0 +1,120 @@
+"""Who holds what and who waits, in all processes of a domain, as `graphflow waits`, `groups` and `doctor` show it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+from graphflow.machines.explain import title
+from graphflow.machines.picture import from_json
+from graphflow.machines.waits import (
+    FREE,
+    Activity,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Join,
+    Picture,
+    SetBy,
+    Slot,
+    deadlocked,
+    explained,
+    joined,
+)
+
+
+@dataclass
+class Waits:
+    """The answers of all processes."""
+
+    picture: Picture
+    reports: list[str]
+    """Deadlocks there are now, explained."""
+    nodes: dict[str, list[dict[str, Any]]]
+    """Groups by node."""
+    unreadable: int = 0
+    processes: list[str] = field(default_factory=list)
+    late: list[tuple[str, int, float]] = field(default_factory=list)
+    """Nodes whose event loop was late: how often, and how many seconds at most."""
+
+
+def read(replies: list[bytes]) -> Waits:
+    """Put the answers together; one that cannot be read is counted."""
+    pictures, found = [], Waits(Picture(), [], {})
+    for reply in replies:
+        try:
+            data = json.loads(reply)
+            pictures.append(from_json(data))
+            found.reports += [str(text) for text in data["reports"]]
+            found.nodes |= dict(data["nodes"])
+            if data["late"]:
+                found.late.append((", ".join(sorted(data["nodes"])), int(data["late"]), float(data["longest"])))
+        except (ValueError, KeyError, TypeError):
+            found.unreadable += 1
+    found.picture = joined(pictures)
+    return found
+
+
+def stuck(waits: Waits) -> set[str]:
+    """Activities that seem to be in a deadlock. One picture only: who is asked to decide takes a second one."""
+    dead = deadlocked(waits.picture)
+    return {i for d in explained(waits.picture, dead) for i in (*d.ring, *d.victims)}
+
+
+def rows(waits: Waits) -> list[dict[str, Any]]:
+    """Every activity that holds a slot or waits for something, the longest waiting first."""
+    picture, dead = waits.picture, stuck(waits)
+    found = []
+    for a in sorted(picture.activities.values(), key=lambda a: -a.age):
+        group = picture.groups.get(a.group)
+        if a.wait is FREE and (group is None or not group.name):
+            continue
+        found.append(
+            {
+                "activity": title(a),
+                "holds": group.name if group is not None else "",
+                "waits_for": words(a.wait, picture),
+                "since": round(a.age, 3),
+                "left": None if a.left is None else round(a.left, 3),
+                "place": f"{a.place} in {a.function}" if a.place.file else "",
+                "stuck": a.id in dead,
+            }
+        )
+    return found
+
+
+def queued(waits: Waits) -> list[dict[str, Any]]:
+    """Handlers with work that waits for a slot."""
+    found = []
+    for queue in waits.picture.queues.values():
+        if queue.waiting:
+            group = waits.picture.groups[queue.group]
+            holders = [title(a) for a in waits.picture.activities.values() if a.group == queue.group]
+            name = f"{queue.label} of {queue.node}"
+            numbers = {"waiting": queue.waiting, "dropped": queue.dropped}
+            found.append({"handler": name, "group": group.name, "held_by": holders, **numbers})
+    return found
+
+
+def words(condition: Condition, picture: Picture) -> str:
+    """A condition for people."""
+    match condition:
+        case Call(id=call, name=name):
+            server = next((a for a in picture.activities.values() if a.serves == call), None)
+            what = f"the {'goal' if call.startswith('goal:') else 'answer'} of {name}" if name else "the end of a goal"
+            return f"{what} ({title(server)} is at it)" if server is not None else what
+        case Slot(group=group):
+            return f"a slot of group {picture.groups[group].name!r}" if group in picture.groups else "a slot"
+        case Join(activity=activity):
+            other: Activity | None = picture.activities.get(activity)
+            return title(other) if other is not None else "another task"
+        case SetBy(what=what):
+            return what
+        case All(of=conditions):
+            return " and ".join(words(c, picture) for c in conditions)
+        case AnyOf(of=conditions):
+            return " or ".join(words(c, picture) for c in conditions)
+        case _:
+            return ""

@@ -1,0 +1,104 @@
+"""What a process tells of its handlers and groups, and lets be changed in them, on keys that ROS 2 knows nothing of.
+
+@graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
+@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import GraphflowError, InvalidName, RemoteError
+from graphflow.machines.picture import to_json
+from graphflow.names import did_you_mean
+from graphflow.transport.base import Inbox
+from graphflow.wire import attachment
+
+if TYPE_CHECKING:
+    from graphflow.runtime.context import Context
+    from graphflow.runtime.node import Node
+    from graphflow.runtime.scheduler import Runner
+
+WAITS, GROUPS = "waits", "groups"
+_KINDS = ("timer", "subscription", "service", "action")
+
+
+def key(domain: int, what: str, zid: str = "*") -> str:
+    """Where the processes of a domain answer."""
+    return f"@graphflow/{domain}/{what}/{zid}"
+
+
+class Inspection:
+    """The answers of one process. One per `Context`."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        session, domain = context.session, context.domain
+        self._report = session.open_report(key(domain, WAITS, session.zid), self._waits)
+        self._inbox = Inbox(session.bell, None, self._asked)
+        self._server = session.open_server(key(domain, GROUPS, session.zid), self._inbox)
+
+    def _waits(self) -> bytes:
+        """On any thread."""
+        context = self._context
+        nodes = {node.full_name: groups_of(node) for node in list(context.waits.nodes)}
+        told = {
+            **to_json(context.waits.picture()),
+            "reports": [text for text, _ in list(context.detector.reports.values())],
+            "nodes": nodes,
+            "late": context.watchdog.late,
+            "longest": context.watchdog.longest,
+        }
+        return json.dumps(told).encode()
+
+    def _asked(self) -> None:
+        while self._inbox.items:
+            request = self._inbox.items.popleft()
+            try:
+                wanted = json.loads(request.payload)
+                answer = self._move(str(wanted["node"]), str(wanted["handler"]), str(wanted["group"]))
+            except (ValueError, KeyError, TypeError, GraphflowError) as error:
+                request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
+            else:
+                request.reply(json.dumps(answer).encode(), attachment.pack(0, 0, bytes(16)))
+
+    def _move(self, node_name: str, handler: str, group: str) -> dict[str, Any]:
+        node = next((n for n in self._context.waits.nodes if n.full_name == node_name), None)
+        if node is None:
+            raise InvalidName(f"there is no node {node_name} in this process")
+        mine = [r for r in _handlers(node) if r.handler == handler]
+        if not mine:
+            known = sorted({r.handler for r in _handlers(node)})
+            near = did_you_mean(handler, known)
+            raise InvalidName(f"{node_name} has no handler {handler!r}{near or '; it has ' + ', '.join(known)}")
+        target = node.groups.named(group)
+        for runner in mine:
+            runner.move(target)
+        return {"groups": groups_of(node)}
+
+    def close(self) -> None:
+        """Answer no more."""
+        self._report.close()
+        self._server.close()
+
+
+def groups_of(node: Node) -> list[dict[str, Any]]:
+    """A node's groups with their handlers, those in no group last, as plain data."""
+    runners = _handlers(node)
+    found = []
+    for name, group in list(node.groups.by_name.items()):
+        about = {"name": name, "limit": group.limit, "when_full": group.when_full, "thread": group.is_threaded}
+        found.append({**about, "handlers": [_handler(r) for r in runners if r.group is group]})
+    rest = [_handler(r) for r in runners if r.group not in node.groups.by_name.values()]
+    return [*found, {"name": "", "limit": 1, "when_full": "wait", "thread": False, "handlers": rest}]
+
+
+def _handlers(node: Node) -> list[Runner]:
+    """What runs the handlers that the node's class has declared or made."""
+    return [r for r in list(node.runners) if r.kind in _KINDS and not r.is_inner and not r.closed]
+
+
+def _handler(runner: Runner) -> dict[str, Any]:
+    numbers = {"running": len(runner.active), "waiting": len(runner.items), "runs": runner.runs}
+    return {"handler": runner.handler, "kind": runner.kind, **numbers, "errors": runner.errors}

@@ -1,0 +1,57 @@
+"""Exercise 4, as one writes it first: a follower that notifies its arrival, and a scheduler that answers with the next.
+
+The scheduler's handler of `notify_arrival` sets the next goal and enables the follower *before* it answers. What that
+does to a follower that clears `enabled` *after* its call depends on its groups: without any it is a race (the enabling
+is undone, the turtle stops at the second point), in one group a deadlock across two nodes. Whoever clears `enabled`
+before the call, as `CarefulFollower` does, and lets the services run meanwhile, has neither.
+"""
+
+from __future__ import annotations
+
+import graphflow
+from graphflow import Client, service
+from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.msgs.turtle_interfaces.srv import SetGoal
+from nodes.position_controller import Point, PositionController
+
+
+class Follower(PositionController):
+    """Drives to its goal while it is enabled."""
+
+    notify_arrival = Client(Empty, "notify_arrival")
+    enabled = False
+    next_goal: Point | None = None
+
+    @service(SetGoal, "set_goal")
+    async def set_goal(self, request: SetGoal.Request) -> SetGoal.Response:
+        self.next_goal = Point(request.position.x, request.position.y)
+        return SetGoal.Response()
+
+    @service(Empty, "enable")
+    async def enable(self, request: Empty.Request) -> Empty.Response:
+        self.enabled = True
+        if self.next_goal is not None:
+            self.go_to(self.next_goal)
+        return Empty.Response()
+
+    async def arrived(self) -> None:
+        if self.enabled:
+            self.log.info("arrived at (%g, %g)", *self.goal or ())
+            await self.notify_arrival.call(Empty.Request())
+            self.enabled = False
+            self.goal = None
+
+
+class CarefulFollower(Follower):
+    """Is done with the old goal before it tells anybody."""
+
+    async def arrived(self) -> None:
+        if self.enabled:
+            self.log.info("arrived at (%g, %g)", *self.goal or ())
+            self.enabled = False
+            self.goal = None
+            await self.notify_arrival.call(Empty.Request())
+
+
+if __name__ == "__main__":
+    graphflow.run(Follower)

@@ -1,0 +1,26 @@
+"""A handler that waits for an answer without `await`: the event loop stands still, and with it whoever could answer."""
+
+from __future__ import annotations
+
+import graphflow
+from graphflow import Client, Node, service, timer
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+
+
+class Blocker(Node):
+    """Calls as in a script, from line to line."""
+
+    adder = Client(AddTwoInts, "~/add")
+
+    @timer(1.0)
+    def tick(self) -> None:
+        response = self.adder.call_sync(AddTwoInts.Request(a=1, b=2))
+        self.log.info("1 + 2 = %d", response.sum)
+
+    @service(AddTwoInts, "~/add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+if __name__ == "__main__":
+    graphflow.run(Blocker)

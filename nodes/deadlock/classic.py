@@ -1,0 +1,35 @@
+"""ROS 2's classic: the service is another node's, but its answer needs a slot of the group that waits for it.
+
+In ROS 2 a client belongs to a group as everything does, so this happens to whoever changes nothing. In graphflow,
+answers need no slot unless a client is put into a group, as here.
+"""
+
+from __future__ import annotations
+
+import graphflow
+from graphflow import Client, Group, Node, service, timer
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+
+
+class Adder(Node):
+    """Adds two numbers."""
+
+    @service(AddTwoInts, "add_two_ints")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+class Asker(Node):
+    """Holds the group's only slot while the answer waits for it."""
+
+    everything = Group(1)
+    adder = Client(AddTwoInts, "add_two_ints", group=everything)
+
+    @timer(1.0, group=everything)
+    async def tick(self) -> None:
+        response = await self.adder.call(AddTwoInts.Request(a=1, b=2))
+        self.log.info("1 + 2 = %d", response.sum)
+
+
+if __name__ == "__main__":
+    graphflow.run(Asker)

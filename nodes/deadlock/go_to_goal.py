@@ -1,0 +1,71 @@
+"""Go-to-goal as the course writes it first: the goal's body looks, until it is there, at a pose that nobody can set.
+
+`BlockingDriver` waits by sleeping in a `def`, `AsyncDriver` by sleeping in an `async def`. What then stands still
+depends on the groups that the graph file puts their handlers into.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import graphflow
+from graphflow import ActionClient, Node, Publisher, action, subscription, task
+from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+from graphflow.msgs.turtle_interfaces.action import GoToGoal
+from graphflow.msgs.turtlesim.msg import Pose
+
+GOAL = (8.0, 5.544445)
+
+
+class Driver(Node):
+    """Drives straight on until the goal is near, and sends itself there at the start."""
+
+    node_name = "driver"
+    cmd_vel = Publisher(Twist, "cmd_vel")
+    goals = ActionClient(GoToGoal, "go_to_goal")
+    x = y = 0.0
+
+    @subscription(Pose, "pose", 1)
+    def located(self, pose: Pose) -> None:
+        self.x, self.y = pose.x, pose.y
+
+    def distance(self) -> float:
+        return math.hypot(GOAL[0] - self.x, GOAL[1] - self.y)
+
+    def drive(self, speed: float) -> None:
+        self.cmd_vel.publish(Twist(linear=Vector3(x=speed)))
+
+    @task
+    async def ask(self) -> None:
+        async with self.goals.send(GoToGoal.Goal(position={"x": GOAL[0], "y": GOAL[1]})) as goal:
+            await goal.result()
+            self.log.info("there")
+
+
+class BlockingDriver(Driver):
+    """Sleeps without letting go of anything."""
+
+    @action(GoToGoal, "go_to_goal")
+    def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:
+        while self.distance() > 0.1:
+            self.drive(1.0)
+            time.sleep(0.05)
+        self.drive(0.0)
+        return GoToGoal.Result()
+
+
+class AsyncDriver(Driver):
+    """Lets go of the loop while it sleeps, but not of its group."""
+
+    @action(GoToGoal, "go_to_goal")
+    async def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:
+        while self.distance() > 0.1:
+            self.drive(1.0)
+            await self.clock.sleep(0.05)
+        self.drive(0.0)
+        return GoToGoal.Result()
+
+
+if __name__ == "__main__":
+    graphflow.run(AsyncDriver)
