@@ -31,8 +31,8 @@ _VERBS = {
     "service": ("service", "List and call services."),
     "action": ("action", "List actions, and send goals to them."),
     "param": ("param", "List, get, set, describe, dump and load parameters."),
-    "waits": ("waits", "Tell who holds what and who waits for whom."),
-    "groups": ("waits", "Show a node's concurrency groups, or move handlers between them."),
+    "waits": ("waits", "Tell who holds a slot, who waits for what, and where."),
+    "groups": ("waits", "Show a node's concurrency groups, or move a handler into another."),
     "doctor": ("waits", "Look for what is wrong with the running graph."),
     "interface": ("interface", "Show message, service and action types."),
 }

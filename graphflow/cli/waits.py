@@ -25,7 +25,7 @@ def _read(view: View) -> found.Waits:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 def waits(as_json: bool) -> None:
-    """Tell who holds a group's slot, who waits for what, since when, and where."""
+    """Tell who holds a slot, who waits for what, and where."""
     with View(domain_id()) as view:
         read = _read(view)
     rows, queued = found.rows(read), found.queued(read)
