@@ -24,7 +24,7 @@ def find_graph(text: str) -> Path:
     from graphflow.graph.project import bundled_graphs
 
     bundled = bundled_graphs()
-    if path.name == text and text.removesuffix(".yaml") in bundled:
+    if text.removesuffix(".yaml") in bundled:
         found = bundled[text.removesuffix(".yaml")]
         output.talk(f"{text}: the one that comes with graphflow, {found}")
         return found

@@ -26,6 +26,7 @@ _VERBS = {
     "plan": ("files", "Show exactly what a graph file would run."),
     "check": ("files", "Report every mistake in a graph file."),
     "run": ("run", "Run one node."),
+    "demo": ("demo", "Walk through an example, step by step."),
     "node": ("node", "List and describe nodes."),
     "topic": ("topic", "List, describe, show and publish topics."),
     "service": ("service", "List and call services."),

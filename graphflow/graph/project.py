@@ -39,8 +39,9 @@ def demos_root() -> Path:
 
 
 def bundled_graphs() -> dict[str, Path]:
-    """The graphs that come with graphflow, by name."""
-    return {f.stem: f for f in sorted((demos_root() / "graphs").glob("*.yaml"))}
+    """The graphs that come with graphflow, by name: `turtlesim`, `deadlock/crossing_broken`."""
+    folder = demos_root() / "graphs"
+    return {f.relative_to(folder).with_suffix("").as_posix(): f for f in sorted(folder.rglob("*.yaml"))}
 
 
 def shown(path: Path) -> str:

@@ -13,7 +13,22 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS = ("init", "up", "down", "ps", "logs", "plan", "check", "run", "node", "topic", "service", "action", "param")
+VERBS = (
+    "init",
+    "up",
+    "down",
+    "ps",
+    "logs",
+    "plan",
+    "check",
+    "run",
+    "demo",
+    "node",
+    "topic",
+    "service",
+    "action",
+    "param",
+)
 VERBS += ("waits", "groups", "doctor", "interface")
 
 

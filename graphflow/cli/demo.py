@@ -1,0 +1,135 @@
+"""`graphflow demo`: walks through graphs that come with graphflow, step by step."""
+
+from __future__ import annotations
+
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, NamedTuple
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.names import did_you_mean
+
+
+class Step(NamedTuple):
+    """One pair of graphs, `NAME_broken` and `NAME_fixed`."""
+
+    name: str
+    seconds: float
+    """How long the fixed one is shown, and the broken one when nothing is found."""
+
+
+DEADLOCKS = (
+    Step("self_call", 3.5),
+    Step("classic", 3.5),
+    Step("blocked_loop", 3.5),
+    Step("crossing", 3.5),
+    Step("event", 4.0),
+    Step("recursion", 2.0),
+    Step("goal_on_loop", 6.0),
+    Step("goal_in_threads", 6.0),
+    Step("goal_async", 6.0),
+    Step("arrival_race", 9.0),
+    Step("arrival", 9.0),
+)
+_AFTER_REPORT = 1.0
+"""Seconds that a broken graph is shown on after its report has begun."""
+_END_LIMIT = 20.0
+
+
+@click.group()
+def demo() -> None:
+    """Walk through an example, step by step."""
+
+
+@demo.command()
+@click.argument("steps", nargs=-1, metavar="[STEP]...")
+@click.option("-l", "--list", "only_list", is_flag=True, help="Only the names of the steps.")
+@click.option("-y", "--yes", is_flag=True, help="Go on without being asked.")
+def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
+    """Show eleven deadlocks and races, each explained while it is there, and then fixed by a change of its graph file.
+
+    Each runs in a domain of its own and on a port of its own. STEPs choose some by name.
+    """
+    known = {step.name: step for step in DEADLOCKS}
+    if only_list:
+        output.lines(f"{step.name:16} {_title(_file(step.name, 'broken'))}" for step in DEADLOCKS)
+        return exits.OK
+    for name in steps:
+        if name not in known:
+            raise exits.UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list has all'}")
+    from graphflow.transport.config import ENDPOINT_VARIABLE
+    from graphflow.transport.rendezvous import free_endpoint
+
+    os.environ[ENDPOINT_VARIABLE] = free_endpoint()
+    os.environ["GRAPHFLOW_DOMAIN"] = str(1000 + os.getpid())
+    asks = sys.stdin.isatty() and not yes
+    for i, step in enumerate(known[name] for name in steps or known):
+        if i and asks:
+            click.prompt("\nEnter for the next step, Ctrl-C to stop", default="", show_default=False)
+        _show(step, asks=asks)
+    return exits.OK
+
+
+def _file(name: str, kind: str) -> Path:
+    from graphflow.graph.project import demos_root
+
+    return demos_root() / "graphs" / "deadlock" / f"{name}_{kind}.yaml"
+
+
+def _title(file: Path) -> str:
+    return file.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
+
+
+def _show(step: Step, *, asks: bool) -> None:
+    for kind in ("broken", "fixed"):
+        file = _file(step.name, kind)
+        if kind == "fixed" and asks:
+            click.prompt("\nEnter to see it fixed", default="", show_default=False)
+        output.data(f"\n=== {step.name}, {kind}: {_title(file)}")
+        output.data(f"--- {file}")
+        output.lines(f"    {line}" for line in file.read_text(encoding="utf-8").splitlines()[1:])
+        output.data("--- graphflow up")
+        for line in _run(file, step.seconds):
+            output.data(f"    {line}")
+
+
+def _run(file: Path, seconds: float) -> Iterator[str]:
+    """The lines of a graph's nodes, until its time is over."""
+    command = [sys.executable, "-m", "graphflow.cli.main", "up", str(file)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    assert process.stdout is not None
+    lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+    threading.Thread(target=_collect, args=(process.stdout, lines), daemon=True).start()
+    end = time.monotonic() + seconds
+    try:
+        while (left := end - time.monotonic()) > 0:
+            try:
+                line = lines.get(timeout=left)
+            except queue.Empty:
+                break
+            if line is None:
+                break
+            if "DEADLOCK: " in line:
+                end = min(end, time.monotonic() + _AFTER_REPORT)
+            yield line
+    finally:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(_END_LIMIT)
+        except subprocess.TimeoutExpired:
+            process.kill()
+
+
+def _collect(stream: IO[str], lines: queue.SimpleQueue[str | None]) -> None:
+    for line in stream:
+        lines.put(line.rstrip("\n"))
+    lines.put(None)
