@@ -33,7 +33,7 @@ def _headline(deadlock: Deadlock) -> str:
     who = "one callback waits for itself" if count == 1 else f"{count} callbacks wait for each other in a ring"
     word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
     condition = " (unless something else that they wait for fails)" if deadlock.is_partial else ""
-    behind = f"; {more} more wait for them" if more else ""
+    behind = f"; {more} more wait{'s' if more == 1 else ''} for {'it' if count == 1 else 'them'}" if more else ""
     return f"{word}: {who}{condition}{behind}"
 
 

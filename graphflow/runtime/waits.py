@@ -142,7 +142,7 @@ class _Camera:
             self._queues[queue] = picture_of.Queue(
                 queue, runner.label, node.full_name, group, tuple(calls), waiting, runner.dropped(), self._zid
             )
-            for run in list(runner.active):
+            for run in sorted(runner.active, key=lambda run: run.number):
                 self._add_run(node, runner, run)
         for node in self._nodes:
             for task in list(node.tasks):

@@ -1,0 +1,153 @@
+"""The deadlocks of `graphs/deadlock/`, between real processes: each is explained, and its fix ends it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import pytest
+
+from tests.conftest import PROJECT, Machine
+
+pytestmark = pytest.mark.real
+
+FOLDER = PROJECT / "graphs" / "deadlock"
+
+
+class Pair(NamedTuple):
+    """What a broken graph is told, and what the fixed one says when it works."""
+
+    headline: str
+    details: tuple[str, ...]
+    works: str
+
+
+PAIRS = {
+    "self_call": Pair(
+        "DEADLOCK: one callback waits for itself",
+        (
+            "timer tick of /narcissus holds group 'default_group' and waits for the answer of service /narcissus/add",
+            "(self_call.py:18 in tick, since 0.",
+            "/narcissus: {concurrency: {add_group: [add]}}",
+        ),
+        "1 + 2 = 3",
+    ),
+    "classic": Pair(
+        "DEADLOCK: one callback waits for itself",
+        (
+            "reply add_two_ints of /asker waits for group 'everything' of /asker, which timer tick of /asker holds",
+            "let replies pass: declare the client of add_two_ints without group=",
+        ),
+        "1 + 2 = 3",
+    ),
+    "blocked_loop": Pair(
+        "DEADLOCK: one callback waits for itself",
+        (
+            "timer tick of /blocker blocks the event loop and waits for the answer of service /blocker/add",
+            "(blocked_loop.py:17 in tick, since 0.",
+            "/blocker: {concurrency: {blocking: {handlers: [tick], thread: true}}}",
+        ),
+        "1 + 2 = 3",
+    ),
+    "crossing": Pair(
+        "DEADLOCK: 2 callbacks wait for each other in a ring",
+        (
+            "service how_are_you of /left waits for group 'default_group' of /left, which timer greet of /left holds",
+            "service how_are_you of /right waits for group 'default_group' of /right, which timer greet of /right",
+        ),
+        "[left]: the other one says: well",
+    ),
+    "event": Pair(
+        "LIKELY DEADLOCK: one callback waits for itself; 2 more wait for it",
+        (
+            "action execute of /patient holds group 'everything' and waits for self.time_has_come   (event.py:26 in",
+            "timer tick of /patient sets it, and needs group 'everything' of /patient",
+        ),
+        "after 4 ticks",
+    ),
+    "recursion": Pair(
+        "DEADLOCK: 2 callbacks wait for each other in a ring; 1 more waits for them",
+        ("waits for one of the 2 slots of group 'answers'", "/factorial: {concurrency: {answers: {limit: 3}}}"),
+        "3! = 6",
+    ),
+    "goal_on_loop": Pair(
+        "LIKELY DEADLOCK: one callback waits for itself",
+        (
+            "action execute of /turtle1/driver blocks the event loop and waits for self.x and self.y",
+            "await, as in `await self.clock.sleep(0.05)`, in go_to_goal.py:53",
+        ),
+        "[turtle1.driver]: there",
+    ),
+    "goal_in_threads": Pair(
+        "LIKELY DEADLOCK: one callback waits for itself",
+        (
+            "action execute of /turtle1/driver holds group 'everything' and waits for self.x and self.y",
+            "subscription located of /turtle1/driver sets it, and needs group 'everything' of /turtle1/driver",
+        ),
+        "[turtle1.driver]: there",
+    ),
+    "goal_async": Pair(
+        "LIKELY DEADLOCK: one callback waits for itself",
+        ("(go_to_goal.py:65 in execute", "/turtle1/driver: {concurrency: {located_group: [located]}}"),
+        "[turtle1.driver]: there",
+    ),
+    "arrival": Pair(
+        "DEADLOCK: 2 callbacks wait for each other in a ring",
+        (
+            "timer control of /turtle1/follower holds group 'all' and waits for the answer of service /turtle1/notify",
+            "service set_goal of /turtle1/follower waits for group 'all' of /turtle1/follower",
+        ),
+        "next: (8, 1)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_broken_graph_is_explained(machine: Machine, name: str) -> None:
+    """Who holds what and waits for what, in which line, and what would end it."""
+    pair = PAIRS[name]
+    up = machine.start("up", str(FOLDER / f"{name}_broken.yaml"))
+    up.wait_for(pair.headline)
+    for detail in pair.details:
+        up.wait_for(detail)
+    assert up.end() == 0
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_fixed_graph_works(machine: Machine, name: str) -> None:
+    """And nothing is reported."""
+    up = machine.start("up", str(FOLDER / f"{name}_fixed.yaml"))
+    up.wait_for(PAIRS[name].works)
+    assert "DEADLOCK" not in up.text
+    assert up.end() == 0
+
+
+def test_every_pair_is_here() -> None:
+    """A fix is an `include` and an `override`, and nothing else; every file has its counterpart."""
+    names = {f.stem.removesuffix("_broken").removesuffix("_fixed") for f in FOLDER.glob("*.yaml")}
+    assert names == {*PAIRS, "arrival_race"}
+    for name in names:
+        fixed = (FOLDER / f"{name}_fixed.yaml").read_text()
+        keys = [line.partition(":")[0] for line in fixed.splitlines() if line[:1] not in ("#", " ", "")]
+        assert keys == ["include", "override"]
+        assert f"include: {name}_broken.yaml" in fixed
+
+
+def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
+    """`waits` and `doctor` show it; `groups move` ends it in the running graph and prints the lines for good."""
+    up = machine.start("up", str(FOLDER / "arrival_broken.yaml"))
+    up.wait_for("DEADLOCK: 2 callbacks")
+    shown = machine.run("waits")
+    assert "! timer control of /turtle1/follower, holds 'all': waits for the answer of /turtle1/notify_arrival" in shown
+    assert "service set_goal of /turtle1/follower is queued for group 'all', held by timer control" in shown
+    assert "DEADLOCK: 2 callbacks wait for each other in a ring" in machine.run("doctor", code=1)
+    assert "all  (limit 1)\n    set_goal  service  1 runs, 1 waiting" in machine.run("groups", "/turtle1/follower")
+
+    machine.run("groups", "move", "/turtle1/follower", "set_goal", "goals")
+    told = machine.run("groups", "move", "/turtle1/follower", "enable", "goals")
+    assert "  /turtle1/follower: {concurrency: {goals: [set_goal, enable]}}" in told
+    up.wait_for("the deadlock of")
+    up.wait_for("has cleared")
+    machine.until(lambda: machine.run("waits") == "nobody waits\n", "the waits are over")
+    assert "nothing wrong" in machine.run("doctor")
+    assert "did you mean 'enable'?" in machine.run("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
+    assert up.end() == 0
