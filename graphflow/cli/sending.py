@@ -20,9 +20,8 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
 
     async def work(node: Node) -> int:
         client = node.create_action_client(type_, name)
-        if not client.server_is_ready():
-            output.data("Waiting for an action server to become available...")
-            await client.wait_ready(timeout)
+        output.data("Waiting for an action server to become available...")
+        await client.wait_ready(timeout)
         output.data(f"Sending goal:\n{_shown(goal)}")
         try:
             return await _follow(client.send(goal, timeout=timeout), show_feedback)
