@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from asyncio import CancelledError
 from textwrap import indent
 from typing import Any
@@ -13,6 +14,9 @@ from graphflow.introspect.echo import block, plain
 from graphflow.msgs.base import Message
 from graphflow.runtime.action_client import ClientGoal
 from graphflow.runtime.node import Node
+
+STRAGGLERS = 0.1
+"""Seconds in which feedback may still come when the goal has ended."""
 
 
 def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float) -> int:
@@ -40,8 +44,10 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
             output.data(f"Goal accepted with ID: {sent.goal_id.hex()}\n")
             try:
                 if show_feedback:
-                    async for feedback in sent.feedback():
-                        output.data(f"Feedback:\n{_shown(feedback)}")
+                    await _show_feedback(sent)
+                    # The result goes another way through the network than feedback, and may overtake the last of it.
+                    await asyncio.sleep(STRAGGLERS)
+                    await _show_feedback(sent)
                 return await _result(sent)
             except CancelledError:
                 output.data("Canceling goal...")
@@ -50,6 +56,11 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
         if sent is not None:
             output.data("Goal canceled." if sent.status.name == "CANCELED" else f"Goal is {sent.status.name}.")
         raise
+
+
+async def _show_feedback(sent: ClientGoal[Any, Any, Any]) -> None:
+    async for feedback in sent.feedback():
+        output.data(f"Feedback:\n{_shown(feedback)}")
 
 
 async def _result(sent: ClientGoal[Any, Any, Any]) -> int:

@@ -30,6 +30,7 @@ from graphflow.names import did_you_mean
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime.services import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.topics import TopicSubscription
+from graphflow.times import to_ns
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 CANCEL_TIMEOUT = 2.0
 """Seconds that leaving a goal's block waits for the goal's end."""
 LOST_GRACE = 1.0
-"""Seconds in which a server that was lost may be found to live on."""
+"""Seconds in which a server that was lost may be found to live on, and feedback may come after the result."""
 FEEDBACK_KEPT = 100
 """Feedback messages that wait for a slow reader; the oldest go."""
 
@@ -302,6 +303,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
 
     async def _follow(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
         """Wait for a goal's end."""
+        clock = self.node.context.clock
         request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
         try:
             while True:
@@ -318,7 +320,10 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             if not isinstance(error, (CallError, ClosedError)):
                 raise
         finally:
-            self._goals.pop(goal.goal_id, None)
+            clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
+
+    def _forget(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        self._goals.pop(goal.goal_id, None)
 
     def _end(self, goal: ClientGoal[Goal, Result, Feedback], status: GoalStatus, result: Any) -> None:
         error: GoalError | None = None
