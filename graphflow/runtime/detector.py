@@ -46,6 +46,8 @@ class Detector:
     def __init__(self, context: Context, policy: DeadlockPolicy) -> None:
         self._context = context
         self.policy = policy
+        self.is_on = policy != "off"
+        """Whether anybody wants to know; when not, calls keep no account of what they wait for."""
         self.is_armed = policy == "off"
         """Whether a look is due; always, and in vain, when nobody wants to know."""
         self.pulls = 0

@@ -352,19 +352,21 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
                 future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
 
         context = self.node.context
-        context.waits.calls[future] = (self._announced().gid, sequence, self.name, started_ns, deadline_ns)
-        context.detector.arm()
+        chain = b""
+        if context.detector.is_on:
+            chain = context.waits.begin(future, (self._announced().gid, sequence, self.name, started_ns, deadline_ns))
+            context.detector.arm()
         self._pending.add(future)
         if self.runner is not None:
             arrived = self._queued(answered, call_id(self._announced().gid, sequence))
         else:
             arrived = answered
         if self._line is not None and self._line.is_open and len(self.matched) == 1:
-            give_up = self._line.call(sequence, payload, beside + context.waits.chain(), arrived)
+            give_up = self._line.call(sequence, payload, beside + chain, arrived)
         else:
             assert self._caller is not None
             if self._is_own():  # whoever else answers may not know what stands behind the attachment
-                beside += context.waits.chain()
+                beside += chain
             give_up = self._caller.call(payload, beside, arrived)
         alarm = None if deadline_ns is None else self.node.clock.call_at(deadline_ns, expired)
         try:
@@ -374,7 +376,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             raise
         finally:
             self._pending.discard(future)
-            del context.waits.calls[future]
+            context.waits.calls.pop(future, None)
             if alarm is not None:
                 alarm.cancel()
 

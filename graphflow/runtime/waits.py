@@ -61,8 +61,9 @@ class Waits:
         self.process = chain.process_of(context.session.zid)
         self._since: dict[tuple[str, Condition], int] = {}
 
-    def chain(self) -> bytes:
-        """The runs that wait for a call that is made just now; none unless a handler makes it in its own body."""
+    def begin(self, future: Future[Any], call: OutCall) -> bytes:
+        """A call begins to wait; returns its chain: none unless a handler makes it in its own body."""
+        self.calls[future] = call
         run = asyncio.current_task()
         if not isinstance(run, Run):
             return b""

@@ -13,7 +13,7 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS = (
+VERBS: tuple[str, ...] = (
     "init",
     "up",
     "down",
