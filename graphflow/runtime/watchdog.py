@@ -69,6 +69,8 @@ class Watchdog:
 
     def _is_busy(self) -> bool:
         """Whether the loop is doing something just now."""
+        if not self._context.loop.is_running():  # whoever runs it has stopped, and may go on later
+            return False
         frame = sys._current_frames().get(self._loop_thread)
         return frame is not None and frame.f_code.co_name not in _IDLE
 
