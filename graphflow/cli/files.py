@@ -54,7 +54,10 @@ def plan(graph: str, args: tuple[str, ...], as_json: bool) -> None:
 @click.argument("graph", metavar="GRAPH.yaml")
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 def check(graph: str, args: tuple[str, ...]) -> int:
-    """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started."""
+    """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
+
+    Deadlocks that the source tells of are reported with it: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE.
+    """
     path = find_graph(graph)
     from graphflow.errors import GraphFileError
     from graphflow.graph.check import check as check_plan
@@ -75,8 +78,13 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     if problems:
         output.talk(_count(problems, "problem"))
         return exits.USAGE
+    from graphflow.graph.static import findings
+
+    ways = findings(resolved, found)
+    for way in ways:
+        output.talk(str(way))
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, no problems")
-    return exits.OK
+    return exits.FAILED if any(way.grade == "CERTAIN" for way in ways) else exits.OK
 
 
 def _count(things: Sized, word: str) -> str:

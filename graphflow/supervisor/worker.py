@@ -124,6 +124,8 @@ def main(job: dict[str, Any], report: Report) -> None:
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable()
+    if hasattr(signal, "SIGUSR2"):
+        faulthandler.register(signal.SIGUSR2)  # `kill -USR2` has the log show where a process hangs, also in C
     setup_console()
     code = 0
     try:

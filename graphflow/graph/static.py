@@ -1,0 +1,303 @@
+"""Deadlocks that the source tells of before anything runs: who awaits whose service while it holds what.
+
+Followed are calls of declared clients, `await self.adder.call(...)`, and goals of declared action clients, in handlers
+and in the methods that they call. Two ways into a deadlock are looked for:
+
+1. One chain of calls comes back to a group whose slots it holds itself. That is CERTAIN if every call on the way is
+   made whatever happens, else it holds IF THIS BRANCH RUNS.
+2. Chains that run at the same time wait for each other's groups: a ring of groups of which each is held while the next
+   is waited for. That is POSSIBLE; it takes the right moment.
+
+What cannot be followed (a client that is made at run time, a name that nobody offers) is listed, never left out in
+silence.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from graphflow.errors import Place
+from graphflow.graph.check import Interfaces, resolver
+from graphflow.graph.plan import Plan, PlannedNode
+from graphflow.interface import NO_GROUP, Handler, Interface
+
+Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
+LONGEST = 40
+"""Calls in a chain that are followed."""
+_BRANCHES = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.Try, ast.IfExp, ast.Match, ast.BoolOp, ast.ExceptHandler)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One way into a deadlock, or something that could not be followed."""
+
+    grade: Grade
+    place: Place
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.grade}: {self.text}"
+
+
+@dataclass(frozen=True)
+class _Slot:
+    """A group of a node, or a handler's own queue."""
+
+    node: str
+    name: str
+    limit: int | None = field(compare=False, default=1)
+    is_own: bool = field(compare=False, default=False)
+
+    def __str__(self) -> str:
+        own = f"{self.name} of {self.node}, which runs once at a time"
+        return own if self.is_own else f"group {self.name!r} of {self.node}"
+
+
+@dataclass(frozen=True)
+class _Call:
+    """A service or action that a handler waits for."""
+
+    name: str
+    place: Place
+    is_certain: bool
+
+
+@dataclass(frozen=True)
+class _Actor:
+    """A handler of a node."""
+
+    node: str
+    handler: str
+    kind: str
+    slot: _Slot
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.handler} of {self.node}"
+
+
+def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
+    """What the source of a plan's classes tells; each way into a deadlock once."""
+    world = _World()
+    for node in plan.nodes:
+        interface = interfaces[node.class_path]
+        if isinstance(interface, Interface):
+            world.add(node, interface)
+    chains = list(world.chains())
+    told = {slot for _, slots in chains for slot in slots}
+    rings = [finding for finding, slots in world.rings() if not slots & told]
+    found = [finding for finding, _ in chains] + rings + world.unresolved()
+    return sorted(dict.fromkeys(found), key=lambda f: (f.grade == "unresolved", f.place))
+
+
+class _World:
+    """The handlers of a graph and the calls between them."""
+
+    def __init__(self) -> None:
+        self._calls: dict[_Actor, list[_Call]] = {}
+        self._servers: dict[str, _Actor] = {}
+        self._unresolved: list[Finding] = []
+
+    def add(self, node: PlannedNode, interface: Interface) -> None:
+        names, source = resolver(node), _Source(interface)
+        clients = {e.attribute: names.resolve(e.name, "service") for e in interface.endpoints if "client" in e.kind}
+        for handler in interface.handlers:
+            if handler.kind == "task":
+                continue
+            actor = _Actor(node.name, handler.name, handler.kind, _slot(node, interface, handler))
+            found = list(source.calls(handler.name))
+            self._calls[actor] = [_Call(clients[c.name], c.place, c.is_certain) for c in found if c.name in clients]
+            for call in found:
+                if call.name not in clients:
+                    text = f"{actor} calls self.{call.name}, which is made at run time"
+                    self._unresolved.append(Finding("unresolved", call.place, text))
+            for endpoint in interface.endpoints:
+                if endpoint.kind in ("service", "action") and endpoint.attribute == handler.name:
+                    self._servers[names.resolve(endpoint.name, "service")] = actor
+
+    def unresolved(self) -> list[Finding]:
+        missing = [
+            Finding("unresolved", call.place, f"{actor} calls {call.name}, which no node of this graph declares")
+            for actor, calls in self._calls.items()
+            for call in calls
+            if call.name not in self._servers
+        ]
+        return [*self._unresolved, *missing]
+
+    def chains(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
+        """Chains of calls that come back to a group which they fill themselves."""
+        seen: set[tuple[_Slot, Place]] = set()
+        for actor in self._calls:
+            for finding, slot, last in self._follow(actor, [], Counter([actor.slot])):
+                if (slot, last) not in seen:
+                    seen.add((slot, last))
+                    yield finding, frozenset([slot])
+
+    def _follow(self, actor: _Actor, path: list[_Call], held: Counter[_Slot]) -> Iterator[tuple[Finding, _Slot, Place]]:
+        if len(path) >= LONGEST:
+            return
+        for call in self._calls[actor]:
+            server = self._servers.get(call.name)
+            if server is None:
+                continue
+            slot, way = server.slot, [*path, call]
+            if slot.limit is not None and held[slot] >= slot.limit:
+                grade: Grade = "CERTAIN" if all(c.is_certain for c in way) else "IF THIS BRANCH RUNS"
+                text = (
+                    f"{actor} awaits {call.name}, whose handler {server.handler} needs {slot}, "
+                    f"and that is taken by the chain of calls itself: {self._told(way)}"
+                )
+                yield Finding(grade, call.place, f"{text}. {_remedy(server, actor)}"), slot, call.place
+            else:
+                held[slot] += 1
+                yield from self._follow(server, way, held)
+                held[slot] -= 1
+
+    def _told(self, way: list[_Call]) -> str:
+        return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in way)
+
+    def rings(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
+        """Groups of which each is held while the next is waited for."""
+        edges: dict[_Slot, dict[_Slot, tuple[_Actor, _Call]]] = {}
+        for actor, calls in self._calls.items():
+            for call in calls:
+                server = self._servers.get(call.name)
+                if server is not None and server.slot.limit is not None and actor.slot.limit is not None:
+                    edges.setdefault(actor.slot, {}).setdefault(server.slot, (actor, call))
+        done: set[frozenset[_Slot]] = set()
+        for start in edges:
+            ring = _ring(start, edges)
+            if ring is None or frozenset(ring) in done or len(ring) < 2:
+                continue
+            done.add(frozenset(ring))
+            steps = [edges[a][b] for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
+            told = "; ".join(
+                f"{actor} holds {actor.slot} and awaits {call.name} ({Path(call.place.file).name}:{call.place.line})"
+                for actor, call in steps
+            )
+            actor, call = steps[0]
+            remedy = _remedy(self._servers[call.name], actor)
+            yield Finding("POSSIBLE", call.place, f"{told}. {remedy}"), frozenset(ring)
+
+
+def _ring(start: _Slot, edges: Mapping[_Slot, Mapping[_Slot, object]]) -> list[_Slot] | None:
+    """A shortest ring of groups through `start`."""
+    before: dict[_Slot, _Slot] = {}
+    todo = [start]
+    while todo:
+        here = todo.pop(0)
+        for following in edges.get(here, {}):
+            if following == start:
+                way = [here]
+                while way[-1] != start:
+                    way.append(before[way[-1]])
+                return way[::-1]
+            if following not in before:
+                before[following] = here
+                todo.append(following)
+    return None
+
+
+def _remedy(server: _Actor, actor: _Actor) -> str:
+    if server == actor and not server.slot.is_own:
+        deeper = f"{{concurrency: {{{server.slot.name}: {{limit: N}}}}}}"
+        return f"Allow as many runs as the recursion is deep: {server.node}: {deeper}"
+    if server.slot.is_own:
+        return f"Let several runs of {server.handler} be under way: give it a group with limit: none"
+    own = f"{server.handler}_group"
+    return f"Give {server.handler} a group of its own: {server.node}: {{concurrency: {{{own}: [{server.handler}]}}}}"
+
+
+def _slot(node: PlannedNode, interface: Interface, handler: Handler) -> _Slot:
+    """Whose slot a handler's runs take: as the graph file says, else as the class does."""
+    name = handler.group
+    for group, planned in node.concurrency.items():
+        if handler.name in planned.change.handlers:
+            name = "" if group == NO_GROUP else group
+    if not name:
+        return _Slot(node.name, handler.name, 1, is_own=True)
+    limit = interface.groups[name].limit if name in interface.groups else 1
+    change = node.concurrency[name].change if name in node.concurrency else None
+    return _Slot(node.name, name, change.limit if change is not None and change.sets_limit else limit)
+
+
+class _Source:
+    """The methods of a class, read and not run."""
+
+    def __init__(self, interface: Interface) -> None:
+        files = dict.fromkeys([interface.place.file, *(h.place.file for h in interface.handlers)])
+        classes: dict[str, tuple[str, ast.ClassDef]] = {}
+        for file in files:
+            for node in ast.walk(_module(file)):
+                if isinstance(node, ast.ClassDef):
+                    classes.setdefault(node.name, (file, node))
+        self._methods: dict[str, tuple[str, ast.FunctionDef | ast.AsyncFunctionDef]] = {}
+        todo = [interface.class_path.rpartition(":")[2].rpartition(".")[2]]
+        seen: set[str] = set()
+        while todo:
+            name = todo.pop(0)
+            if name in seen or name not in classes:
+                continue
+            seen.add(name)
+            file, definition = classes[name]
+            for item in definition.body:
+                if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                    self._methods.setdefault(item.name, (file, item))
+            todo += [base.id for base in definition.bases if isinstance(base, ast.Name)]
+
+    def calls(self, method: str, *, certain: bool = True, seen: frozenset[str] = frozenset()) -> Iterator[_Call]:
+        """What a method awaits by `self.<attribute>.call(...)`, itself or in methods that it calls."""
+        if method not in self._methods or method in seen:
+            return
+        file, function = self._methods[method]
+        leaves = _first_way_out(function)
+        for node, reached in _walk(function, True):
+            always = reached and (leaves is None or getattr(node, "lineno", 0) < leaves)
+            if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+                continue
+            held = node.func.value
+            if node.func.attr in ("call", "call_sync", "send", "send_goal") and _is_own(held):
+                assert isinstance(held, ast.Attribute)
+                yield _Call(held.attr, Place(file, node.lineno), certain and always)
+            elif _is_own(node.func):
+                yield from self.calls(node.func.attr, certain=certain and always, seen=seen | {method})
+
+
+def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
+    """A function's nodes, and whether they are reached whenever it runs; not what stands in functions inside it."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            continue
+        # A task that is made and not awaited is no wait of the handler's.
+        if isinstance(child, ast.Call) and _word(child.func) in ("create_task", "ensure_future", "spawn"):
+            continue
+        reached = always and not isinstance(child, _BRANCHES)
+        yield child, reached
+        yield from _walk(child, reached)
+
+
+def _first_way_out(function: ast.AST) -> int | None:
+    """The line of the first `return` or `raise` that only some runs take: what follows is not reached by all."""
+    lines = [n.lineno for n, reached in _walk(function, True) if isinstance(n, (ast.Return, ast.Raise)) and not reached]
+    return min(lines, default=None)
+
+
+def _word(function: ast.AST) -> str:
+    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+def _is_own(node: ast.AST) -> bool:
+    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
+
+
+@cache
+def _module(file: str) -> ast.Module:
+    try:
+        return ast.parse(Path(file).read_text(encoding="utf-8"))
+    except (OSError, SyntaxError, UnicodeDecodeError):
+        return ast.Module([], [])

@@ -1,0 +1,129 @@
+"""Deadlocks that the source tells of before anything runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph.resolve import load
+from graphflow.graph.static import findings
+from graphflow.supervisor.classes import add_root, import_class
+from tests.conftest import PROJECT
+
+FOLDER = PROJECT / "graphs" / "deadlock"
+
+
+def found(file: Path) -> list[str]:
+    plan = load(file)
+    add_root(plan.root)
+    interfaces = {node.class_path: import_class(node.class_path).interface() for node in plan.nodes}
+    return [str(finding) for finding in findings(plan, interfaces)]
+
+
+@pytest.mark.parametrize(
+    ("name", "grades"),
+    [
+        ("self_call_broken", ["CERTAIN"]),
+        ("self_call_fixed", []),
+        ("crossing_broken", ["POSSIBLE"]),
+        ("crossing_fixed", []),
+        ("recursion_broken", ["IF THIS BRANCH RUNS"]),
+        ("arrival_race_broken", []),
+        ("arrival_broken", ["IF THIS BRANCH RUNS", "IF THIS BRANCH RUNS"]),
+        ("arrival_fixed", []),
+    ],
+)
+def test_the_deadlock_graphs(name: str, grades: list[str]) -> None:
+    """What is broken by calls is found in the source with its grade, and what is fixed is not."""
+    told = found(FOLDER / f"{name}.yaml")
+
+    assert [next(g for g in ("CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE") if f": {g}: " in t) for t in told] == grades
+
+
+def test_what_is_told_says_where_and_what_to_do() -> None:
+    """The line of the await, the chain of calls, and the line of a graph file that ends it."""
+    [certain] = found(FOLDER / "self_call_broken.yaml")
+    assert "nodes/deadlock/self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add" in certain
+    assert certain.endswith("Give add a group of its own: /narcissus: {concurrency: {add_group: [add]}}")
+    [possible] = found(FOLDER / "crossing_broken.yaml")
+    assert "timer greet of /left holds group 'default_group' of /left and awaits /right/how_are_you" in possible
+    [recursion] = found(FOLDER / "recursion_broken.yaml")
+    assert recursion.endswith("deep: /factorial: {concurrency: {answers: {limit: N}}}")
+
+
+NODES = """
+from graphflow import Client, Group, Node, service, timer
+from graphflow.msgs.std_srvs.srv import Trigger
+
+
+class Base(Node):
+    all = Group(1)
+    mine = Client(Trigger, "mine")
+
+    async def ask(self):
+        await self.mine.call(Trigger.Request())
+
+
+class One(Base):
+    @timer(1.0, group=Base.all)
+    async def tick(self):
+        await self.deeper()
+
+    async def deeper(self):
+        if self.name == "x":
+            return
+        await self.ask()
+
+    @service(Trigger, "mine", group=Base.all)
+    async def answer(self, request):
+        return Trigger.Response()
+
+
+class Beside(Base):
+    @timer(1.0, group=Base.all)
+    async def tick(self):
+        self.spawn(self.ask)
+
+    @service(Trigger, "mine", group=Base.all)
+    async def answer(self, request):
+        return Trigger.Response()
+
+
+class Computed(Node):
+    def __init__(self, name=None, **options):
+        super().__init__(name, **options)
+        self.late = self.create_client(Trigger, self.name + "/x")
+
+    @timer(1.0)
+    async def tick(self):
+        await self.late.call(Trigger.Request())
+
+
+class Alone(Base):
+    @timer(1.0)
+    async def tick(self):
+        await self.ask()
+"""
+
+
+@pytest.mark.parametrize(
+    ("cls", "told"),
+    [
+        ("One", "static_cases.py:11: IF THIS BRANCH RUNS: timer tick of /n awaits /mine"),
+        ("Beside", None),
+        ("Computed", "static_cases.py:46: unresolved: timer tick of /n calls self.late, which is made at run time"),
+        ("Alone", "static_cases.py:11: unresolved: timer tick of /n calls /mine, which no node of this graph declares"),
+    ],
+)
+def test_what_can_be_followed(tmp_path: Path, cls: str, told: str | None) -> None:
+    """Helpers, parents and early returns are; what is begun and not awaited is no wait; the rest is listed."""
+    (tmp_path / "static_cases.py").write_text(NODES)
+    (tmp_path / "g.yaml").write_text(f"nodes: {{/n: {{class: static_cases:{cls}}}}}")
+
+    texts = found(tmp_path / "g.yaml")
+
+    if told is None:
+        assert texts == []
+    else:
+        assert any(told in text for text in texts)
