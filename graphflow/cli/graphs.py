@@ -27,6 +27,7 @@ _graph = click.option("--graph", "name", metavar="NAME", help="Which running gra
 @click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
 @click.option("-s", "--show-args", is_flag=True, help="Show the arguments of the file, and start nothing.")
 @click.option("--private", is_flag=True, help="On a port and in a domain of its own.")
+@click.option("--races", is_flag=True, help="Report updates of nodes' attributes that are lost between handlers.")
 @click.option("--domain", type=click.IntRange(0), help="Domain id, before the file's own.")
 @click.option("--wire", type=click.Choice(PROFILES), help="Whose message definitions to use.")
 @reach_options
@@ -36,6 +37,7 @@ def up(
     detach: bool,
     show_args: bool,
     private: bool,
+    races: bool,
     domain: int | None,
     wire: str | None,
     connect: tuple[str, ...],
@@ -44,6 +46,8 @@ def up(
     """Start a graph from its file and show its logs. Ctrl-C stops it."""
     if wire is not None:
         os.environ[VARIABLE] = wire
+    if races:
+        os.environ["GRAPHFLOW_RACES"] = "1"
     reach(connect, net)
     path = find_graph(graph)
     if show_args:

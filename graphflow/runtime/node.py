@@ -19,7 +19,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolver, did_you_mean
 from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
-from graphflow.runtime import declare, declared
+from graphflow.runtime import declare, declared, races
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.actions import GoalServer
 from graphflow.runtime.binding import Binding
@@ -147,7 +147,7 @@ class Node:
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declared.class_line()
-        declared.check_attributes(cls, _TAKEN)
+        declared.check_attributes(cls, TAKEN)
         declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:
@@ -446,6 +446,8 @@ class Node:
         self.id = context.next_id()
         self._ended = context.loop.create_future()
         context.waits.nodes.append(self)
+        if races.is_wanted():
+            races.watch(self)
         try:
             node = Entity(context.domain, context.session.zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
             self._token = context.session.announce(node.token)
@@ -707,7 +709,7 @@ class Node:
             self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
 
 
-_TAKEN = frozenset(dir(Node)) | {
+TAKEN = frozenset(dir(Node)) | {
     *("id", "names", "log", "parameters", "failure", "failure_taken", "groups", "runners", "tasks"),
     *("_binding", "_context", "_ended", "_entered", "_failures", "_late", "_openables", "_parameter_events"),
     *("_own_services", "_rosout", "_sim_clock", "_token"),
