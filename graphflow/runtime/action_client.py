@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import (
     CallError,
+    CallTimeout,
     ClosedError,
     EncodeError,
     GoalAborted,
@@ -39,6 +40,8 @@ CANCEL_TIMEOUT = 2.0
 """Seconds that leaving a goal's block waits for the goal's end."""
 LOST_GRACE = 1.0
 """Seconds in which a server that was lost may be found to live on, and feedback may come after the result."""
+RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
+"""Seconds until a result is asked for again: at first, and at most."""
 FEEDBACK_KEPT = 100
 """Feedback messages that wait for a slow reader; the oldest go."""
 
@@ -53,6 +56,7 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         """As far as it is known here; `LOST` when the server has gone."""
         self.latest: Feedback | None = None
         """The last feedback."""
+        self.is_asked_again = False
         self.dropped = 0
         """Feedback messages that nobody read in time."""
         loop = client.node.context.loop
@@ -305,11 +309,14 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         """Wait for a goal's end."""
         clock = self.node.context.clock
         request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+        patience = RESULT_PATIENCE
         try:
             while True:
                 try:
-                    answer = await self._get.call(request, timeout=None)
+                    answer = await self._get.call(request, timeout=patience)
                     break
+                except CallTimeout:  # it takes long, or the network has lost the request or the answer
+                    patience = min(2 * patience, RESULT_LONGEST)
                 except ServerLost:
                     # The connection may have been lost and not the server, which then still knows the goal.
                     await self._get.wait_ready(LOST_GRACE)
@@ -343,8 +350,21 @@ class GoalClient(Generic[Goal, Result, Feedback]):
     def _told(self, message: Any) -> None:
         for entry in message.status_list:
             goal = self._goals.get(bytes(entry.goal_info.goal_id.uuid))
-            if goal is not None and not GoalStatus(entry.status).is_terminal:
-                goal.status = GoalStatus(entry.status)  # the end comes with the result
+            if goal is None or goal.done:
+                continue
+            if not GoalStatus(entry.status).is_terminal:
+                goal.status = GoalStatus(entry.status)
+            elif not goal.is_asked_again:  # the end comes with the result, which may have been lost
+                goal.is_asked_again = True
+                self._in_background(self._ask_again(goal))
+
+    async def _ask_again(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+        """Ask for the result of a goal that has ended, if it does not come by itself."""
+        await self.node.clock.sleep(LOST_GRACE)
+        if not goal.done:
+            with suppress(CallError, ClosedError):  # whoever follows the goal asks on
+                answer = await self._get.call(self._get._request(goal_id={"uuid": list(goal.goal_id)}))
+                self._end(goal, GoalStatus(answer.status), answer.result)
 
     def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = self.node.context.loop.create_task(work, name=f"{self.node.full_name}: {self.name}")

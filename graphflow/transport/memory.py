@@ -11,7 +11,9 @@ import itertools
 from asyncio import AbstractEventLoop
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from functools import partial
+from typing import NamedTuple, Protocol
+from weakref import WeakSet
 
 from graphflow.qos import Durability, Qos
 from graphflow.transport.base import Answer, Bell, Inbox, Payload
@@ -32,15 +34,32 @@ class _Receiver(NamedTuple):
     ignore_local: bool
 
 
-class Network:
-    """The medium that memory sessions share."""
+class Carrier(Protocol):
+    """Takes what is sent from one session to another, and delivers it when it likes, if at all."""
 
-    def __init__(self) -> None:
+    def carry(self, deliver: Callable[[], object], link: str, *, is_lossy: bool) -> None:
+        """Args:
+        link: Who sends, to whom, on what: what is on one link arrives in order.
+        is_lossy: Whether it may be lost, as publications may.
+        """
+
+
+class Network:
+    """The medium that memory sessions share.
+
+    Args:
+        carrier: What delivers; without one, everything arrives at once.
+    """
+
+    def __init__(self, carrier: Carrier | None = None) -> None:
+        self.carrier = carrier
         self.senders: dict[str, list[_Sender]] = {}
         self.receivers: dict[str, list[_Receiver]] = {}
         self.servers: dict[str, list[Inbox]] = {}
         self.callers: dict[str, list[_Caller]] = {}
         self.reports: dict[str, Callable[[], bytes]] = {}
+        self.requests: dict[int, WeakSet[_Request]] = {}
+        """Requests that servers have, by the server's inbox."""
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
@@ -51,6 +70,13 @@ class Network:
     def senders_to(self, key: str) -> list[_Sender]:
         """Whose messages a receiver on a key hears."""
         return [s for k, senders in self.senders.items() if key in (k, _any_of(k)) for s in senders]
+
+    def deliver(self, deliver: Callable[[], object], link: str, *, is_lossy: bool = False) -> None:
+        """Have something arrive."""
+        if self.carrier is None:
+            deliver()
+        else:
+            self.carrier.carry(deliver, link, is_lossy=is_lossy)
 
     def session(self, loop: AbstractEventLoop) -> MemorySession:
         """A new participant."""
@@ -92,7 +118,9 @@ class _Sender:
         self.history.append(sample)
         for receiver in self._network.receivers_of(self._key):
             if not (receiver.ignore_local and receiver.zid == self.zid):
-                receiver.inbox.put(sample)
+                put, inbox = receiver.inbox.put, receiver.inbox
+                link = f"{self.zid}>{receiver.zid} {self._key} {id(inbox)}"
+                self._network.deliver(partial(put, sample), link, is_lossy=True)
 
     def close(self) -> None:
         self._changed = None
@@ -111,7 +139,11 @@ class _Request:
     def reply_error(self, payload: bytes) -> None:
         self._finish(Answer(payload, None, is_error=True))
 
-    def _finish(self, answer: Answer) -> None:
+    def abandon(self) -> None:
+        """Its server has died."""
+        self._finish(None)
+
+    def _finish(self, answer: Answer | None) -> None:
         call, self._call = self._call, None
         if call is not None:
             call.server_done(answer)
@@ -122,15 +154,18 @@ class _Request:
 
 
 class _Call:
-    def __init__(self, loop: AbstractEventLoop, servers: int, answered: Callable[[Answer | None], None]) -> None:
-        self._loop, self._open, self._answered = loop, servers, answered
+    def __init__(
+        self, network: Network, loop: AbstractEventLoop, servers: int, answered: Callable[[Answer | None], None]
+    ) -> None:
+        self._network, self._loop, self._open, self._answered = network, loop, servers, answered
         self._given_up = False
 
     def server_done(self, answer: Answer | None) -> None:
         self._open -= 1
         for event in ([answer] if answer is not None else []) + ([None] if self._open <= 0 else []):
             if not self._loop.is_closed():
-                self._loop.call_soon(self._deliver, event)
+                arrive = partial(self._loop.call_soon, self._deliver, event)
+                self._network.deliver(arrive, f"answer {id(self)}")
 
     def _deliver(self, event: Answer | None) -> None:
         if not self._given_up:
@@ -154,11 +189,13 @@ class _Caller:
         self, payload: Payload, attachment: bytes, answered: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
         servers = self._network.servers.get(self._key, [])
-        call = _Call(self._loop, len(servers), answered)
+        call = _Call(self._network, self._loop, len(servers), answered)
         if not servers:
             call.server_done(None)
         for inbox in servers:
-            inbox.put(_Request(bytes(payload), attachment, call))
+            request = _Request(bytes(payload), attachment, call)
+            self._network.requests.setdefault(id(inbox), WeakSet()).add(request)
+            self._network.deliver(partial(inbox.put, request), f"ask {id(self)} {id(inbox)}")
         return call.give_up
 
     @property
@@ -178,6 +215,7 @@ class MemorySession:
         self.bell = Bell(loop, threads=False)
         self._network, self._loop = network, loop
         self._declared: list[_Declared] = []
+        self._served: list[Inbox] = []
 
     def open_sender(self, key: str, qos: Qos, changed: Callable[[], None] | None = None) -> _Sender:
         sender = _Sender(self._network, key, qos, self.zid, changed)
@@ -209,6 +247,7 @@ class MemorySession:
     def open_server(self, key: str, inbox: Inbox) -> _Declared:
         servers = self._network.servers.setdefault(key, [])
         servers.append(inbox)
+        self._served.append(inbox)
         self._tell_callers(key)
 
         def withdraw() -> None:
@@ -261,6 +300,15 @@ class MemorySession:
 
     def key_of(self, arrival: _Sample) -> str:
         return arrival.key
+
+    def die(self) -> None:
+        """Be gone from one moment to the next, as a process that is killed: nothing it was asked is answered."""
+        for declared in reversed(self._declared):
+            declared.close()
+        self._declared.clear()
+        for inbox in self._served:
+            for request in list(self._network.requests.pop(id(inbox), ())):
+                request.abandon()
 
     async def close(self) -> None:
         for declared in reversed(self._declared):

@@ -1,0 +1,166 @@
+"""A whole graph in one process under virtual time, with a network that delays and loses as a seed says.
+
+    async def story(world: World) -> None:
+        await world.start(Talker(), listener := Listener())
+        await asyncio.sleep(3600)          # an hour passes at once
+        world.kill(talker)
+
+    simulate(story, seed=7, delay=(0.0, 0.02), loss=0.1)
+
+The same seed gives the same run. Time passes only when nothing is left to do, and then jumps to what is due next; so a
+simulation in which nothing will ever happen again ends with an error instead of waiting.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import selectors
+from collections.abc import Callable, Coroutine
+from contextlib import suppress
+from random import Random
+from typing import Any
+
+from graphflow.interface import DeadlockPolicy
+from graphflow.runtime.clock import Clock, Handle
+from graphflow.runtime.context import Context
+from graphflow.runtime.node import Node
+from graphflow.transport.memory import MemorySession, Network
+
+START_NS = 1_700_000_000_000_000_000
+"""The time of day at which every simulation begins."""
+
+
+_MOMENT = 1e-9
+"""Seconds between two things on one link: what is due at the very same time comes in any order."""
+
+
+class Standstill(RuntimeError):
+    """Nothing will ever happen again, and the story has not ended."""
+
+
+class _Selector(selectors.SelectSelector):
+    """Waits for nothing: the time that it was to wait has passed."""
+
+    now = 0.0
+
+    def select(self, timeout: float | None = None) -> Any:
+        if timeout is None:
+            raise Standstill("nothing is due, and nothing can arrive")
+        self.now += max(0.0, timeout)
+        return super().select(0)
+
+
+class SimulatedLoop(asyncio.SelectorEventLoop):
+    """asyncio's loop under virtual time, in seconds from 0."""
+
+    def __init__(self) -> None:
+        self._virtual = _Selector()
+        super().__init__(self._virtual)
+
+    def time(self) -> float:
+        return self._virtual.now
+
+
+class LoopClock(Clock):
+    """The time of a simulated loop."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+
+    def time_ns(self) -> int:
+        return START_NS + self.monotonic_ns()
+
+    def monotonic_ns(self) -> int:
+        return round(self._loop.time() * 1e9)
+
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Handle:
+        return self._loop.call_at(when_ns / 1e9, callback)
+
+
+class Seeded:
+    """A carrier whose delays and losses come from a seed.
+
+    Args:
+        delay: Seconds that something takes on its way, from, to.
+        loss: The share of publications that never arrive.
+        reorders: Whether what is on one link may overtake.
+    """
+
+    def __init__(self, random: Random, delay: tuple[float, float], loss: float, *, reorders: bool = False) -> None:
+        self._random, self._delay, self._loss, self._reorders = random, delay, loss, reorders
+        self._arrives: dict[str, float] = {}
+        self.lost = 0
+        """Publications that never arrived."""
+
+    def carry(self, deliver: Callable[[], object], link: str, *, is_lossy: bool) -> None:
+        loop = asyncio.get_running_loop()
+        if is_lossy and self._random.random() < self._loss:
+            self.lost += 1
+            return
+        when = loop.time() + self._random.uniform(*self._delay)
+        if not self._reorders:
+            when = self._arrives[link] = max(when, self._arrives.get(link, 0.0) + _MOMENT)
+        loop.call_at(when, deliver)
+
+
+class World:
+    """The nodes of a simulation, each as if in a process of its own."""
+
+    def __init__(self, network: Network, random: Random, deadlock: DeadlockPolicy) -> None:
+        self.network, self.random = network, random
+        self._deadlock: DeadlockPolicy = deadlock
+        self._sessions: dict[Node, tuple[MemorySession, Context]] = {}
+
+    async def start(self, *nodes: Node) -> None:
+        """Start nodes."""
+        loop = asyncio.get_running_loop()
+        for node in nodes:
+            session = self.network.session(loop)
+            context = Context(session, clock=LoopClock(loop), deadlock=self._deadlock)
+            self._sessions[node] = session, context
+            await node.start(context)
+
+    async def kill(self, node: Node) -> None:
+        """End a node as `kill -9` does: from one moment to the next nothing more of it reaches anybody."""
+        session, context = self._sessions.pop(node)
+        session.die()
+        await node.stop()
+        await context.close()
+
+    async def close(self) -> None:
+        for node, (_, context) in reversed(self._sessions.items()):
+            await node.stop()
+            await context.close()
+
+
+def simulate(
+    story: Callable[[World], Coroutine[Any, Any, Any]],
+    seed: int = 0,
+    *,
+    delay: tuple[float, float] = (0.0, 0.0),
+    loss: float = 0.0,
+    reorders: bool = False,
+    deadlock: DeadlockPolicy = "raise",
+) -> Any:
+    """Run a story to its end; returns what it returns.
+
+    Args:
+        seed: Of every delay, loss and choice: `world.random` is made of it too.
+        delay, loss, reorders: Of the network, as `Seeded`.
+
+    Raises:
+        Standstill: Nothing will ever happen again.
+    """
+    random = Random(seed)  # noqa: S311 - to be the same every time is what it is for
+    network = Network(Seeded(random, delay, loss, reorders=reorders))
+
+    async def run() -> Any:
+        world = World(network, random, deadlock)
+        try:
+            return await story(world)
+        finally:
+            with suppress(Standstill):
+                await world.close()
+
+    with asyncio.Runner(loop_factory=SimulatedLoop) as runner:
+        return runner.run(run())
