@@ -129,6 +129,8 @@ class Endpoint(ABC):
 
     def _counterpart(self, change: Change) -> None:
         """Something of the same name came or went."""
+        if not self.node.is_running:  # it has stopped, and leaves the network with its context
+            return
         other = change.entity
         judged = verdict(self._announced(), other, self.node.context.profile)
         if judged is None:
