@@ -54,7 +54,9 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
                 raise
     except CancelledError:
         if sent is not None:
-            output.data("Goal canceled." if sent.status.name == "CANCELED" else f"Goal is {sent.status.name}.")
+            is_canceled = sent.status.name == "CANCELED"
+            output.data("Goal canceled." if is_canceled else f"Goal is {sent.status.name}.")
+            return exits.OK if is_canceled else exits.FAILED
         raise
 
 

@@ -32,7 +32,7 @@ async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
             return task.result()
         task.cancel()
         await asyncio.wait([task])
-        return 0
+        return 0 if task.cancelled() else task.result()
     finally:
         await node.stop()
         await context.close()

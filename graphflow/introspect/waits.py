@@ -51,7 +51,7 @@ def read(replies: list[bytes]) -> Waits:
             found.nodes |= dict(data["nodes"])
             if data["late"]:
                 found.late.append((", ".join(sorted(data["nodes"])), int(data["late"]), float(data["longest"])))
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, RecursionError):
             found.unreadable += 1
     found.picture = joined(pictures)
     return found
@@ -90,11 +90,11 @@ def queued(waits: Waits) -> list[dict[str, Any]]:
     found = []
     for queue in waits.picture.queues.values():
         if queue.waiting:
-            group = waits.picture.groups[queue.group]
+            group = waits.picture.groups.get(queue.group)
             holders = [title(a) for a in waits.picture.activities.values() if a.group == queue.group]
             name = f"{queue.label} of {queue.node}"
             numbers = {"waiting": queue.waiting, "dropped": queue.dropped}
-            found.append({"handler": name, "group": group.name, "held_by": holders, **numbers})
+            found.append({"handler": name, "group": group.name if group else "", "held_by": holders, **numbers})
     return found
 
 

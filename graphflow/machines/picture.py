@@ -45,7 +45,7 @@ def to_json(picture: Picture) -> dict[str, Json]:
 
 def _activity(a: Activity) -> Json:
     head: list[Json] = [a.id, a.label, a.node, a.group, _condition(a.wait), a.serves, list(a.place), a.function]
-    return [*head, a.age, a.left, a.process]
+    return [*head, a.age, a.left, a.process, a.is_inner]
 
 
 def _condition(condition: Condition) -> Json:
@@ -96,7 +96,7 @@ def _read_queue(row: list[object]) -> Queue:
 
 
 def _read_activity(row: list[object]) -> Activity:
-    id_, label, node, group, wait, serves, place, function, age, left, process = row
+    id_, label, node, group, wait, serves, place, function, age, left, process, is_inner = row
     file, line, column = _list(place)
     return Activity(
         _text(id_),
@@ -110,6 +110,7 @@ def _read_activity(row: list[object]) -> Activity:
         _number(age),
         None if left is None else _number(left),
         _text(process),
+        bool(is_inner),
     )
 
 

@@ -100,6 +100,8 @@ class Activity:
     left: float | None = None
     """Seconds until its call times out; None if never."""
     process: str = ""
+    is_inner: bool = False
+    """Whether it is graphflow's, and nothing that users have written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -331,8 +333,9 @@ def explained(picture: Picture, dead: set[str]) -> list[Deadlock]:
             continue
         covered.update(i for i, _ in ring)
         members = {i for i, _ in ring}
-        victims = tuple(sorted(i for i in dead - members if _reaches(i, members, edges)))
-        covered.update(victims)
+        behind = sorted(i for i in dead - members if _reaches(i, members, edges))
+        covered.update(behind)
+        victims = tuple(i for i in behind if not picture.activities[i].is_inner)
         likely = any(isinstance(edge.via, SetBy) for _, edge in ring)
         partial = any(_is_partial(index, picture.activities[i].wait, dead) for i in members)
         found.append(Deadlock(tuple(i for i, _ in ring), tuple(e for _, e in ring), victims, likely, partial))

@@ -62,10 +62,12 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         loop = client.node.context.loop
         self.ended: Future[Result] = loop.create_future()
         self._client = client
-        self._waiting: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
-        self._news: Future[None] | None = None
+        self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
+        """For each iteration of the feedback: what it has not read, and what it waits for."""
+        self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
+        """What came while nobody iterated."""
         self.action = client.name
-        client.node.context.waits.goals[self.ended] = self
+        self.began_ns = client.node.context.clock.monotonic_ns()
 
     def __repr__(self) -> str:
         return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
@@ -76,19 +78,26 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         return self.status.is_terminal
 
     async def feedback(self) -> AsyncIterator[Feedback]:
-        """Every feedback from now on, until the goal ends."""
-        while True:
-            while self._waiting:
-                yield self._waiting.popleft()
-            if self.done:
-                return
-            waits = self._client.node.context.waits
-            self._news = news = self._client.node.context.loop.create_future()
-            waits.goals[news] = self
-            try:
-                await news
-            finally:
-                del waits.goals[news]
+        """Every feedback, until the goal ends; the first iteration begins with what has come before it."""
+        waits, loop = self._client.node.context.waits, self._client.node.context.loop
+        queue: deque[Feedback] = deque(self._unread, FEEDBACK_KEPT)
+        self._unread.clear()
+        reader: tuple[deque[Feedback], list[Future[None]]] = (queue, [])
+        self._readers.append(reader)
+        try:
+            while True:
+                while queue:
+                    yield queue.popleft()
+                if self.done:
+                    return
+                reader[1][:] = [news := loop.create_future()]
+                waits.goals[news] = self
+                try:
+                    await news
+                finally:
+                    del waits.goals[news]
+        finally:
+            self._readers.remove(reader)
 
     async def result(self, *, timeout: float | None = None) -> Result:
         """Wait for the result of a goal that succeeds.
@@ -117,8 +126,9 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
     def heard(self, feedback: Feedback) -> None:
         """Feedback has come. Done by the client."""
         self.latest = feedback
-        self.dropped += len(self._waiting) == FEEDBACK_KEPT
-        self._waiting.append(feedback)
+        for queue in [queue for queue, _ in self._readers] or [self._unread]:
+            self.dropped += len(queue) == FEEDBACK_KEPT
+            queue.append(feedback)
         self._wake()
 
     def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
@@ -136,8 +146,10 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         self._wake()
 
     def _wake(self) -> None:
-        if self._news is not None and not self._news.done():
-            self._news.set_result(None)
+        for _, waiting in self._readers:
+            for news in waiting:
+                if not news.done():
+                    news.set_result(None)
 
 
 class GoalClient(Generic[Goal, Result, Feedback]):
@@ -252,7 +264,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             if not self.server_is_ready():
                 await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
             answer = await self._send.call(request, timeout=timeout)
-        except CancelledError:
+        except (CancelledError, CallTimeout):
             # The server may have it by now.
             del self._goals[sent.goal_id]
             self._in_background(self._withdraw(sent))
@@ -265,6 +277,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             raise GoalRejected(f"{self.name} has rejected the goal")
         if sent.status is GoalStatus.UNKNOWN:
             sent.status = GoalStatus.ACCEPTED
+        self.node.context.waits.goals[sent.ended] = sent
         self._in_background(self._follow(sent))
         return sent
 
@@ -293,7 +306,10 @@ class GoalClient(Generic[Goal, Result, Feedback]):
     async def _cancel_and_wait(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
         try:
             async with self.node.clock.timeout(CANCEL_TIMEOUT):
-                await self._cancel.call(self._cancel_request(goal), timeout=None)
+                answer = await self._cancel.call(self._cancel_request(goal), timeout=None)
+                if answer.return_code == CancelCode.REJECTED:
+                    self.node.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
+                    return
                 with suppress(GoalError):  # its end is all that is waited for
                     await asyncio.shield(goal.ended)
         except TimeoutError:

@@ -124,6 +124,8 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         self._accept, self._cancellable = accept, cancellable
         self._on_client_loss, self._cleanup_timeout = on_client_loss, cleanup_timeout
         self._waiting: deque[Any] = deque()
+        self._deciding: dict[bytes, bool] = {}
+        """Goals whose accept hook runs, and whether they are still wanted."""
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
         send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
@@ -192,9 +194,14 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         known = self.book.goals.get(goal_id)
         if known is not None:  # asked twice, by a client that has not heard the answer
             return self._send_response(accepted=True, stamp=_stamp(known.accepted_ns))
-        if self._is_full() or not await self._is_accepted(request.goal):
+        if self._is_full():
             return self._send_response(accepted=False)
-        if goal_id in self.book.goals or self._is_full():  # meanwhile
+        self._deciding[goal_id] = True
+        try:
+            is_accepted = await self._is_accepted(request.goal) and self._deciding[goal_id]
+        finally:
+            self._deciding.pop(goal_id, None)
+        if goal_id in self.book.goals or self._is_full() or not is_accepted:  # meanwhile, perhaps
             return self._send_response(accepted=goal_id in self.book.goals)
         record = self.book.accept(goal_id, self.node.context.clock.time_ns())
         self._forget_old()
@@ -227,6 +234,9 @@ class GoalServer(Generic[Goal, Result, Feedback]):
     def _begin(self, goal: ServerGoal[Goal, Result, Feedback]) -> None:
         if self.runner is None or goal.status is not GoalStatus.ACCEPTED:
             return
+        if self.runner.closed:  # the node has stopped meanwhile
+            self._end(goal, GoalEvent.ABORT, goal.partial)
+            return
         if self.policy == "preempt":
             for other in list(self.goals.values()):
                 if other is not goal and not other.status.is_terminal:
@@ -237,7 +247,9 @@ class GoalServer(Generic[Goal, Result, Feedback]):
     def _cancel_goal(self, request: Any, client: bytes) -> Any:
         info = request.goal_info
         stamp = info.stamp.sec * NANOSECONDS + info.stamp.nanosec
-        code, meant = self.book.to_cancel(bytes(info.goal_id.uuid), stamp)
+        if (asked := bytes(info.goal_id.uuid)) in self._deciding:  # its client has given up: it will not be accepted
+            self._deciding[asked] = False
+        code, meant = self.book.to_cancel(asked, stamp)
         granted = [goal_id for goal_id in meant if self._grants_cancel(self.goals[goal_id])]
         if meant and not granted:
             code = CancelCode.REJECTED

@@ -150,8 +150,11 @@ class Context:
         """A number no other node or endpoint of this process has."""
         return next(self._ids)
 
-    async def in_thread(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` in a thread of its own. It goes on there if the waiting is cancelled.
+    async def in_thread(self, fn: Callable[..., T], *args: Any, stays: bool = False) -> T:
+        """Run `fn(*args)` in a thread of its own, which cannot be cancelled.
+
+        Args:
+            stays: Whether to wait for its end also when the waiting is cancelled, and be cancelled then.
 
         The interpreter does not wait for such a thread when it ends, as it would for those of a pool.
         """
@@ -169,7 +172,19 @@ class Context:
         thread = threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True)
         self.waits.threads[future] = thread
         thread.start()
+        cancelled: asyncio.CancelledError | None = None
         try:
+            while stays and not future.done():
+                try:
+                    await asyncio.shield(future)
+                except asyncio.CancelledError as error:
+                    if future.cancelled():
+                        raise
+                    cancelled = error
+                except BaseException:  # the thread's own, which is raised below
+                    break
+            if cancelled is not None and future.exception() is None:
+                raise cancelled
             return await future
         finally:
             del self.waits.threads[future]

@@ -49,7 +49,7 @@ class Detector:
         self.is_on = policy != "off"
         """Whether anybody wants to know; when not, calls keep no account of what they wait for."""
         self.is_armed = policy == "off"
-        """Whether a look is due; always, and in vain, when nobody wants to know."""
+        """Whether a look is due soon; always, and in vain, when nobody wants to know."""
         self.pulls = 0
         """How often other processes were asked."""
         self.reports: dict[Key, tuple[str, str]] = {}
@@ -62,21 +62,33 @@ class Detector:
     def arm(self) -> None:
         """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
         if not self.is_armed:
-            self.is_armed = True
             self._period = PROBE_AFTER
             self._schedule(PROBE_AFTER)
 
     def _schedule(self, seconds: float) -> None:
+        if self._handle is not None:
+            self._handle.cancel()
+        self.is_armed = seconds <= PROBE_AFTER
         clock = self._context.clock
         self._handle = clock.call_at(clock.monotonic_ns() + to_ns(seconds), self._probe)
 
     def _probe(self) -> None:
-        """Look at what waits."""
+        """Look at what waits, and decide when to look again."""
+        try:
+            self._look()
+        except Exception as error:  # a search that has stumbled must not be the last
+            logger.debug("the search for deadlocks: %r", error, exc_info=error)
+            self._schedule(PROBE_LONGEST)
+
+    def _look(self) -> None:
         picture = self._context.waits.picture()
-        self._say_cleared(picture)
+        mine = self._context.session.zid
+        self._say_cleared(picture, {mine})
+        if any(not _is_of(mine, pair[0]) for ring in self.reports for pair in ring):
+            self._ask(self._look_again)
         waiting = {(a.id, a.wait) for a in picture.activities.values() if a.wait is not FREE}
         if not waiting and not any(q.waiting for q in picture.queues.values()):
-            self.is_armed = self.policy == "off"
+            self.is_armed = not self.is_on
             self._last.clear()
             return
         young = [a.age for a in picture.activities.values() if a.wait is not FREE and not _is_old(a)]
@@ -117,9 +129,14 @@ class Detector:
         for reply in replies:
             try:
                 pictures.append(from_json(json.loads(reply)))
-            except (ValueError, KeyError, TypeError) as error:
+            except (ValueError, KeyError, TypeError, RecursionError) as error:
                 logger.debug("a picture of waits that cannot be read: %s", error)
         return joined([*pictures, self._context.waits.picture()])
+
+    def _look_again(self, replies: list[bytes]) -> None:
+        """Whether what was reported still stands in other processes."""
+        whole = self._whole(replies)
+        self._say_cleared(whole, {queue.process for queue in whole.queues.values()})
 
     def _conclude(self, before: Picture, now: Picture) -> None:
         dead = deadlocked(now, before)
@@ -144,7 +161,7 @@ class Detector:
 
     def _tell(self, deadlock: Deadlock, picture: Picture) -> None:
         members = [picture.activities[i] for i in deadlock.ring]
-        ring = frozenset((a.id, a.wait) for a in members)
+        ring = frozenset((name, edge.via) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
         mine = self._context.session.zid
         able = sorted({a.process for a in members if a.process not in picture.blocked}) or [mine]
         if ring in self.reports or able[0] != mine:
@@ -167,11 +184,16 @@ class Detector:
             if not future.done():
                 future.set_exception(DeadlockError(text))
 
-    def _say_cleared(self, picture: Picture) -> None:
-        mine = {(a.id, a.wait) for a in picture.activities.values()}
-        zid = self._context.session.zid
+    def _say_cleared(self, picture: Picture, processes: set[str]) -> None:
+        """Take back reports of rings of which a member in one of these processes has moved on."""
+
+        def still_waits(name: str, via: Condition) -> bool:
+            activity = picture.activities.get(name)
+            return activity is not None and _contains(activity.wait, via)
+
         for ring in list(self.reports):
-            if any(pair not in mine for pair in ring if pair[0].startswith(f"{zid}:")):
+            known = [pair for pair in ring if pair[0].partition(":")[0] in processes]
+            if not all(still_waits(name, via) for name, via in known):
                 _, who = self.reports.pop(ring)
                 logger.warning("the deadlock of %s has cleared", who)
 
@@ -192,6 +214,14 @@ class Detector:
         if self._handle is not None:
             self._handle.cancel()
         self.is_armed = True
+
+
+def _is_of(process: str, activity: str) -> bool:
+    return activity.startswith(f"{process}:")
+
+
+def _contains(wait: Condition, part: Condition) -> bool:
+    return wait == part or any(_contains(inner, part) for inner in getattr(wait, "of", ()))
 
 
 def _is_old(activity: Activity) -> bool:

@@ -74,6 +74,7 @@ class HandlerGroup(GroupState[Member]):
         loop = asyncio.get_running_loop()
         run.group = None
         self.give_back(loop)
+        loop.call_soon(run.runner.wake)  # its own handler may run again meanwhile
         try:
             yield
         finally:
@@ -84,6 +85,7 @@ class HandlerGroup(GroupState[Member]):
         cancelled: CancelledError | None = None
         if not self.admit(returning):
             run.returning_to = self
+            run.runner.stalled()
             while not returning.slot.done():
                 try:
                     await asyncio.shield(returning.slot)

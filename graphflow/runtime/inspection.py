@@ -44,7 +44,7 @@ class Inspection:
         context = self._context
         nodes = {node.full_name: groups_of(node) for node in list(context.waits.nodes)}
         told = {
-            **to_json(context.waits.picture()),
+            **to_json(context.waits.picture_for_others()),
             "reports": [text for text, _ in list(context.detector.reports.values())],
             "nodes": nodes,
             "late": context.watchdog.late,

@@ -631,7 +631,8 @@ class Node:
             raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
 
         async def run(*args: Any) -> Any:
-            return await self.offload(fn, *args)
+            # A thread cannot be cancelled: until it has ended the run goes on, and holds its slot.
+            return await self.context.in_thread(fn, *args, stays=True)
 
         return run
 

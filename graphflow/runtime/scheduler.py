@@ -342,10 +342,8 @@ class Runner:
                     self.stalled()
                     return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
-                if group is not None and (
-                    (group.limit is not None and len(active) >= group.limit) or not group.admit(self)
-                ):
-                    if group.when_full != "wait":
+                if group is not None and (self._fills(group) or not group.admit(self)):
+                    if group.when_full != "wait" and self.kind != "reply":
                         self._overflow(group)
                     self.stalled()
                     return
@@ -358,6 +356,12 @@ class Runner:
         if self.items:
             self._scheduled = True
             self._loop.call_soon(self._go_on)
+
+    def _fills(self, group: HandlerGroup) -> bool:
+        """Whether its own runs hold all slots of the group; those that have let go of theirs do not count."""
+        if group.limit is None or len(self.active) < group.limit:
+            return False
+        return sum(run.group is group for run in self.active) >= group.limit
 
     def _go_on(self) -> None:
         self._scheduled = False
@@ -375,7 +379,8 @@ class Runner:
                 other.yields()
         group.admit(self)
         if group.when_full == "cancel_running":
-            runs = [run for member in group.members if isinstance(member, Runner) for run in member.active]
+            members = [member for member in group.members if isinstance(member, Runner)]
+            runs = [run for member in members for run in member.active if run.group is group]
             if runs and not any(run.cancelling() for run in runs):
                 min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
 
@@ -387,6 +392,8 @@ class Runner:
                 self._refused(item)
 
     def yields(self) -> None:
+        if self.kind == "reply":  # somebody waits for it
+            return
         if self.group is not None:
             self.group.withdraw(self)
         self._refuse(0)

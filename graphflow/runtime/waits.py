@@ -8,6 +8,7 @@ their code. A picture can be taken on any thread, so also while the event loop i
 from __future__ import annotations
 
 import asyncio
+import queue
 import sys
 import sysconfig
 import threading
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 _OURS = str(Path(__file__).parents[1])
 _PYTHONS = sysconfig.get_path("stdlib")
 _ATTEMPTS = 5
+LOOP_LIMIT = 0.2
+"""Seconds that the loop gets to take a picture of itself."""
 
 
 OutCall = tuple[bytes, int, str, int, int | None]
@@ -59,6 +62,7 @@ class Waits:
         """What a call that blocks the event loop waits for."""
         self.nodes: list[Node] = []
         self.process = chain.process_of(context.session.zid)
+        self._lock = threading.RLock()
         self._since: dict[tuple[str, Condition], int] = {}
 
     def begin(self, future: Future[Any], call: OutCall) -> bytes:
@@ -68,11 +72,12 @@ class Waits:
         if not isinstance(run, Run):
             return b""
         asked = getattr(run.item, "attachment", None) if run.runner.kind == "service" else None
-        return chain.extended((asked or b"")[attachment.SIZE :], self.process, run.number)
+        hop = chain.Hop(self.process, run.number, call[0], call[1])
+        return chain.extended((asked or b"")[attachment.SIZE :], hop)
 
     def hopeless(self, runner: Runner, asked: bytes) -> list[Run]:
         """The runs that hold every slot which a queued request needs, if all of them wait for that very request."""
-        hops = chain.hops(asked[attachment.SIZE :])
+        hops = {hop.run: hop for hop in chain.hops(asked[attachment.SIZE :]) if hop.process == self.process}
         if not hops:
             return []
         group = runner.group
@@ -83,17 +88,34 @@ class Waits:
         else:
             members = [m for m in group.members if isinstance(m, Runner)]
             holders, limit = [run for m in members for run in m.active if run.group is group], group.limit
-        waits = all((self.process, run.number) in hops for run in holders)
+        waits = all(run.number in hops and self._awaits(run, hops[run.number]) for run in holders)
         return holders if waits and len(holders) >= limit else []
+
+    def _awaits(self, run: Run, hop: chain.Hop) -> bool:
+        """Whether a run still waits for the call that it is said to wait for: it may have given up."""
+        call = self.calls.get(run._fut_waiter)
+        return call is not None and (call[0], call[1]) == (hop.gid, hop.sequence)
 
     def picture(self) -> Picture:
         """The waits of this process, from any thread."""
-        for _ in range(_ATTEMPTS):
-            try:
-                return _Camera(self._context, self).shoot()
-            except RuntimeError:  # something changed its size meanwhile
-                continue
+        with self._lock:
+            for _ in range(_ATTEMPTS):
+                try:
+                    return _Camera(self._context, self).shoot()
+                except RuntimeError:  # something changed its size meanwhile
+                    continue
         return Picture()
+
+    def picture_for_others(self) -> Picture:
+        """The same, for another thread: taken on the loop, whose coroutines must not be looked into while they run."""
+        if threading.get_ident() == self.thread or self._context.watchdog.is_blocked:
+            return self.picture()
+        taken: queue.SimpleQueue[Picture] = queue.SimpleQueue()
+        try:
+            self._context.loop.call_soon_threadsafe(lambda: taken.put(self.picture()))
+            return taken.get(timeout=LOOP_LIMIT)
+        except (queue.Empty, RuntimeError):  # the loop is blocked, and they stand still; or it is closed
+            return self.picture()
 
     @staticmethod
     def id_of(call: OutCall) -> str:
@@ -175,7 +197,9 @@ class _Camera:
 
     def _named(self, node: Node, group: HandlerGroup) -> str:
         name = f"{self._zid}:{node.full_name}:{group.name}"
-        self._groups[name] = picture_of.Group(name, group.name, node.full_name, group.limit)
+        # A group that cancels what runs is never full for good.
+        limit = None if group.when_full == "cancel_running" else group.limit
+        self._groups[name] = picture_of.Group(name, group.name, node.full_name, limit)
         return name
 
     def _call_of(self, runner: Runner, item: Any) -> str:
@@ -215,13 +239,15 @@ class _Camera:
             group = self._group_of(node, runner)
         else:
             group = self._named(node, run.group)
-        self._add(self.run_id(run), runner.label, node, run, group, serves)
+        self._add(self.run_id(run), runner.label, node, run, group, serves, is_inner=runner.is_inner)
 
     def _add_task(self, node: Node, task: Any) -> None:
         name = task.get_name().removeprefix(f"{node.full_name}.")
         self._add(self.task_id(task), f"task {name}", node, task, "", "")
 
-    def _add(self, id_: str, label: str, node: Node, task: Any, group: str, serves: str) -> None:
+    def _add(
+        self, id_: str, label: str, node: Node, task: Any, group: str, serves: str, *, is_inner: bool = False
+    ) -> None:
         frames = self._frames_of(task)
         wait = self._condition(task, set(), node)
         self._seen.add((id_, wait))
@@ -235,7 +261,7 @@ class _Camera:
             age = (self._now_ns - started) / 1e9
         left = None if deadline is None else (deadline - self._now_ns) / 1e9
         self._activities[id_] = picture_of.Activity(
-            id_, label, node.full_name, group, wait, serves, place, function, age, left, self._zid
+            id_, label, node.full_name, group, wait, serves, place, function, age, left, self._zid, is_inner
         )
 
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
@@ -243,7 +269,9 @@ class _Camera:
         wanted = set(_call_ids(wait))
         found = [c for c in list(self._waits.calls.values()) if self._waits.id_of(c) in wanted]
         deadlines = [c[4] for c in found if c[4] is not None]
-        return min((c[3] for c in found), default=None), min(deadlines, default=None)
+        begun = [c[3] for c in found]
+        begun += [g.began_ns for g in list(self._waits.goals.values()) if goal_id(g.goal_id) in wanted]
+        return min(begun, default=None), min(deadlines, default=None)
 
     # conditions
 
@@ -264,6 +292,8 @@ class _Camera:
             together = _joint_wait(frame)
             if together is not None:
                 futures, kind = together
+                if any(f.done() and (kind is AnyOf or _has_failed(f)) for f in futures):
+                    return FREE  # its next step is due
                 conditions = tuple(self._of_future(f, seen, node) for f in futures if not f.done())
                 return All(conditions) if kind is All else AnyOf(conditions)
         condition = self._of_future(waiter, seen, node)
@@ -274,7 +304,8 @@ class _Camera:
     def _frames_of(self, task: Any) -> list[FrameType]:
         """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
         frames = list(_frames(task.get_coro()))
-        thread = self._waits.threads.get(getattr(task, "_fut_waiter", None))  # type: ignore[arg-type]
+        waiter = getattr(task, "_fut_waiter", None)
+        thread = self._waits.threads.get(_shielded(waiter) or waiter)  # type: ignore[arg-type]
         if thread is not None and thread.ident is not None:
             frames += _stack(thread.ident)
         return frames
@@ -298,6 +329,8 @@ class _Camera:
                 return known if known is not None else self._condition(future, seen, node)
             children = getattr(future, "_children", None)
             if children is not None:  # gather
+                if any(c.done() and _has_failed(c) for c in children):
+                    return FREE
                 return All(tuple(self._of_future(c, seen, node) for c in children if not c.done()))
             inner = _shielded(future)
             if inner is not None:
@@ -316,14 +349,16 @@ class _Camera:
         found = setters(frames, node)
         if found is None:
             return FREE
-        what, names, is_open = found
-        if is_open:
+        what, names = found
+        runners = [r for n, r in self._runners if n is node and r.handler in names]
+        # Runs under way count too, also those that have let go of their slot.
+        others: list[Any] = [run for r in runners for run in list(r.active) if run is not task]
+        others += [t for t in list(node.tasks) if t is not task and _method(t) in names]
+        known = {r.handler for r in runners} | {_method(t) for t in list(node.tasks)}
+        if not names <= known:  # one of them is not there to be waited for
             return FREE
-        queues = [self.queue_id(r) for n, r in self._runners if n is node and r.handler in names]
-        tasks = [t for t in list(node.tasks) if t is not task and _method(t) in names]
-        if len(queues) + len(tasks) < len(names):  # one of them is not there to be waited for
-            return FREE
-        return SetBy(what, tuple(sorted(queues)), tuple(sorted(self.task_id(t) for t in tasks)))
+        queues = sorted(self.queue_id(r) for r in runners)
+        return SetBy(what, tuple(queues), tuple(sorted(self.task_id(other) for other in others)))
 
     # the loop
 
@@ -445,6 +480,10 @@ def _shielded(outer: Any) -> Any:
                 if asyncio.isfuture(cell.cell_contents) and cell.cell_contents is not outer:
                     return cell.cell_contents
     return None
+
+
+def _has_failed(future: Any) -> bool:
+    return bool(future.cancelled() or future.exception() is not None)
 
 
 def _method(task: Any) -> str:

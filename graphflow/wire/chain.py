@@ -1,7 +1,8 @@
 """Who waits for a call: the runs of handlers that await it, directly or through each other, nearest last.
 
 Stands behind the attachment of a request between graphflow processes. Layout: the letter `c`, the number of hops, then
-for each hop the first 8 bytes of its process's Zenoh id and the number of the run there, a uint64; little-endian.
+for each hop the first 8 bytes of its process's Zenoh id, the number of the run there (uint64), and the call that it
+awaits: GID (16 bytes) and sequence number (int64); little-endian.
 
 A server whose group is full of such runs knows that the call can never be answered.
 """
@@ -12,7 +13,7 @@ import struct
 from typing import NamedTuple
 
 _HEAD = b"c"
-_HOP = struct.Struct("<8sQ")
+_HOP = struct.Struct("<8sQ16sq")
 LONGEST = 16
 """Hops that a chain carries; the call of a longer one carries none."""
 
@@ -23,6 +24,9 @@ class Hop(NamedTuple):
     process: bytes
     """The first 8 bytes of its Zenoh id."""
     run: int
+    gid: bytes
+    """Of the client by which it calls."""
+    sequence: int
 
 
 def process_of(zid: str) -> bytes:
@@ -30,16 +34,16 @@ def process_of(zid: str) -> bytes:
     return bytes.fromhex(zid.rjust(16, "0")[:16])
 
 
-def extended(chain: bytes, process: bytes, run: int) -> bytes:
+def extended(chain: bytes, hop: Hop) -> bytes:
     """A chain with one more hop; empty when it has become too long, or is none."""
-    count = chain[1] if chain else 0
-    if count >= LONGEST:
+    count = len(hops(chain))
+    if (chain and not count) or count >= LONGEST:
         return b""
-    return b"%c%c%b%b" % (_HEAD, count + 1, chain[2:], _HOP.pack(process, run))
+    return b"%c%c%b%b" % (_HEAD, count + 1, chain[2:], _HOP.pack(*hop))
 
 
-def hops(chain: bytes) -> frozenset[Hop]:
+def hops(chain: bytes) -> list[Hop]:
     """The runs that wait; none when the bytes are no chain."""
-    if chain[:1] != _HEAD or len(chain) != 2 + chain[1] * _HOP.size or chain[1] > LONGEST:
-        return frozenset()
-    return frozenset(Hop(*hop) for hop in _HOP.iter_unpack(chain[2:]))
+    if len(chain) < 2 or chain[:1] != _HEAD or chain[1] > LONGEST or len(chain) != 2 + chain[1] * _HOP.size:
+        return []
+    return [Hop(*hop) for hop in _HOP.iter_unpack(chain[2:])]
