@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
-from graphflow.machines.explain import title
+from graphflow.machines.explain import group_of, title
 from graphflow.machines.picture import from_json
 from graphflow.machines.waits import (
     FREE,
@@ -68,13 +68,13 @@ def rows(waits: Waits) -> list[dict[str, Any]]:
     picture, dead = waits.picture, stuck(waits)
     found = []
     for a in sorted(picture.activities.values(), key=lambda a: -a.age):
-        group = picture.groups.get(a.group)
-        if a.wait is FREE and (group is None or not group.name):
+        group = group_of(a, picture)
+        if a.wait is FREE and not group:
             continue
         found.append(
             {
                 "activity": title(a),
-                "holds": group.name if group is not None else "",
+                "holds": group,
                 "waits_for": words(a.wait, picture),
                 "since": round(a.age, 3),
                 "left": None if a.left is None else round(a.left, 3),
@@ -90,11 +90,13 @@ def queued(waits: Waits) -> list[dict[str, Any]]:
     found = []
     for queue in waits.picture.queues.values():
         if queue.waiting:
-            group = waits.picture.groups.get(queue.group)
-            holders = [title(a) for a in waits.picture.activities.values() if a.group == queue.group]
+            groups = [waits.picture.groups[name] for name in queue.needs if name in waits.picture.groups]
+            holders = [title(a) for a in waits.picture.activities.values() if set(a.holds) & set(queue.needs)]
             name = f"{queue.label} of {queue.node}"
             numbers = {"waiting": queue.waiting, "dropped": queue.dropped}
-            found.append({"handler": name, "group": group.name if group else "", "held_by": holders, **numbers})
+            found.append(
+                {"handler": name, "group": next((g.name for g in groups if g.name), ""), "held_by": holders, **numbers}
+            )
     return found
 
 

@@ -19,7 +19,9 @@ def explanation(deadlock: Deadlock, picture: Picture) -> str:
 
 def hopeless(service: str, queue: Queue, holders: list[Activity], picture: Picture) -> str:
     """Why a call of `service` can never be answered: all slots are held by activities that wait for it."""
-    group = picture.groups[queue.group]
+    [group] = [picture.groups[name] for name in queue.needs if picture.groups[name].name] or [
+        picture.groups[queue.needs[0]]
+    ]
     held = " and ".join(f"{title(a)}{_where(a)}" for a in holders)
     edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
     head = f"{service} can never answer: {queue.label} of {queue.node} waits for {_slot(group)}, held by {held}"
@@ -54,10 +56,13 @@ def title(activity: Activity) -> str:
 
 
 def _holding(activity: Activity, picture: Picture) -> str:
-    group = picture.groups.get(activity.group)
-    if group is None:
-        return ""
-    return f" holds group '{group.name}' and" if group.name else ""
+    name = group_of(activity, picture)
+    return f" holds group '{name}' and" if name else ""
+
+
+def group_of(activity: Activity, picture: Picture) -> str:
+    """The name of the group whose slot it holds; empty for none."""
+    return next((picture.groups[g].name for g in activity.holds if g in picture.groups and picture.groups[g].name), "")
 
 
 def wanted(edge: Edge) -> str:
@@ -90,6 +95,8 @@ def _reason(edge: Edge, picture: Picture) -> str:
     other = picture.activities[edge.to]
     if edge.loop:
         return f"nothing can arrive while the event loop is blocked by {title(other)}"
+    if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
+        return f"which {title(other)} holds{_where(other)}"
     if not edge.group:
         return f"which {title(other)} is to give"
     queue = picture.queues.get(edge.queue)
@@ -142,6 +149,10 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         )
         return
     queue, group = picture.queues.get(edge.queue), picture.groups.get(edge.group)
+    if isinstance(edge.via, SetBy) and edge.via.is_held:
+        other = picture.activities[edge.to]
+        at = Place(PurePath(other.place.file).name, other.place.line)
+        yield f"  leave {edge.via.what} before what is awaited in {at}"
     if queue is None or group is None:
         return
     handler = _method(queue.label)
@@ -157,17 +168,19 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         )
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
-            holders = sum(1 for a in picture.activities.values() if a.group == group.id)
+            holders = sum(group.id in a.holds for a in picture.activities.values())
             yield (
                 f"  allow more runs, if its handlers share no state\n"
                 f"      {queue.node}: {{concurrency: {{{group.name}: {{limit: {holders + 1}}}}}}}\n"
                 f"    or in the class: {group.name} = Group({holders + 1})"
             )
+    elif queue.label.startswith("action "):
+        yield f"  let several goals be under way: policy='parallel' where {handler} is declared"
     elif not isinstance(edge.via, SetBy):
         yield f"  let several runs of {handler} be under way: {own} = Group(None), and group={own} where it is declared"
-    held = picture.groups.get(activity.group)
-    if held is not None and held.name:
-        yield f"  release the slot while waiting, in {file}: async with self.{held.name}.released(): ..."
+    held = group_of(activity, picture)
+    if held:
+        yield f"  release the slot while waiting, in {file}: async with self.{held}.released(): ..."
 
 
 def _method(label: str) -> str:

@@ -24,7 +24,7 @@ from graphflow.machines.waits import (
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 1
+VERSION = 2
 DEEPEST = 50
 """Conditions inside each other, at most: what comes from the network must not exhaust the stack."""
 
@@ -36,7 +36,7 @@ def to_json(picture: Picture) -> dict[str, Json]:
         "activities": [_activity(a) for a in picture.activities.values()],
         "groups": [list(astuple(g)) for g in picture.groups.values()],
         "queues": [
-            [q.id, q.label, q.node, q.group, list(q.calls), q.waiting, q.dropped, q.process]
+            [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped, q.process]
             for q in picture.queues.values()
         ],
         "blocked": dict(picture.blocked),
@@ -44,7 +44,7 @@ def to_json(picture: Picture) -> dict[str, Json]:
 
 
 def _activity(a: Activity) -> Json:
-    head: list[Json] = [a.id, a.label, a.node, a.group, _condition(a.wait), a.serves, list(a.place), a.function]
+    head: list[Json] = [a.id, a.label, a.node, list(a.holds), _condition(a.wait), a.serves, list(a.place), a.function]
     return [*head, a.age, a.left, a.process, a.is_inner]
 
 
@@ -56,8 +56,8 @@ def _condition(condition: Condition) -> Json:
             return ["slot", group, ticket]
         case Join(activity=activity):
             return ["join", activity]
-        case SetBy(what=what, queues=queues, activities=activities):
-            return ["set", what, list(queues), list(activities)]
+        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held):
+            return ["set", what, list(queues), list(activities), is_held]
         case All(of=conditions):
             return ["all", [_condition(c) for c in conditions]]
         case AnyOf(of=conditions):
@@ -89,20 +89,19 @@ def from_json(data: Mapping[str, object]) -> Picture:
 
 
 def _read_queue(row: list[object]) -> Queue:
-    id_, label, node, group, calls, waiting, dropped, process = row
-    known = tuple(_text(call) for call in _list(calls))
+    id_, label, node, needs, calls, waiting, dropped, process = row
     counts = _int(waiting), _int(dropped)
-    return Queue(_text(id_), _text(label), _text(node), _text(group), known, *counts, _text(process))
+    return Queue(_text(id_), _text(label), _text(node), _texts(needs), _texts(calls), *counts, _text(process))
 
 
 def _read_activity(row: list[object]) -> Activity:
-    id_, label, node, group, wait, serves, place, function, age, left, process, is_inner = row
+    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner = row
     file, line, column = _list(place)
     return Activity(
         _text(id_),
         _text(label),
         _text(node),
-        _text(group),
+        _texts(holds),
         _read_condition(wait, 0),
         _text(serves),
         Place(_text(file), _int(line), _int(column)),
@@ -115,23 +114,24 @@ def _read_activity(row: list[object]) -> Activity:
 
 
 def _read_condition(data: object, depth: int) -> Condition:
-    if data is None:
-        return FREE
     if depth > DEEPEST:
         raise ValueError("conditions are nested too deeply")
-    kind, *rest = _list(data)
-    if kind == "call":
-        return Call(_text(rest[0]), _text(rest[1]))
-    if kind == "slot":
-        return Slot(_text(rest[0]), _int(rest[1]))
-    if kind == "join":
-        return Join(_text(rest[0]))
-    if kind == "set":
-        return SetBy(_text(rest[0]), tuple(map(_text, _list(rest[1]))), tuple(map(_text, _list(rest[2]))))
-    if kind in ("all", "any"):
-        inner = tuple(_read_condition(c, depth + 1) for c in _list(rest[0]))
-        return All(inner) if kind == "all" else AnyOf(inner)
-    raise ValueError(f"a condition of kind {kind!r}")
+    match data:
+        case None:
+            return FREE
+        case ["call", call, name]:
+            return Call(_text(call), _text(name))
+        case ["slot", group, ticket]:
+            return Slot(_text(group), _int(ticket))
+        case ["join", activity]:
+            return Join(_text(activity))
+        case ["set", what, queues, activities, is_held]:
+            return SetBy(_text(what), _texts(queues), _texts(activities), bool(is_held))
+        case ["all", parts]:
+            return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+        case ["any", parts]:
+            return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+    raise ValueError(f"{data!r} is no condition")
 
 
 def _rows(data: object) -> list[list[object]]:
@@ -150,6 +150,10 @@ def _text(data: object) -> str:
     return data
 
 
+def _texts(data: object) -> tuple[str, ...]:
+    return tuple(map(_text, _list(data)))
+
+
 def _int(data: object) -> int:
     if not isinstance(data, int):
         raise TypeError(f"{data!r} is no whole number")
@@ -159,7 +163,10 @@ def _int(data: object) -> int:
 def _number(data: object) -> float:
     if not isinstance(data, (int, float)):
         raise TypeError(f"{data!r} is no number")
-    return float(data)
+    try:
+        return float(data)
+    except OverflowError:
+        raise ValueError(f"{data!r} is too large") from None
 
 
 def _limit(data: object) -> int | None:

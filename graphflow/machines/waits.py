@@ -54,6 +54,8 @@ class SetBy:
     """In words: `self.arrived`."""
     queues: tuple[str, ...]
     activities: tuple[str, ...] = ()
+    is_held: bool = False
+    """Whether it is a lock or its like, which those activities hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +89,8 @@ class Activity:
     label: str
     """Method and kind: `tick`, `service add`."""
     node: str
-    group: str = ""
-    """Whose slot it holds; empty: none."""
+    holds: tuple[str, ...] = ()
+    """The groups of which it holds a slot."""
     wait: Condition = FREE
     serves: str = ""
     """The call or goal that it answers."""
@@ -122,8 +124,8 @@ class Queue:
     id: str
     label: str
     node: str
-    group: str
-    """Whose slot the next run needs."""
+    needs: tuple[str, ...]
+    """The groups of which the next run takes a slot."""
     calls: tuple[str, ...] = ()
     """Calls and goals that wait, in order."""
     waiting: int = 0
@@ -172,15 +174,22 @@ class Edge:
 
 
 class _Index:
-    """A picture by what is looked for."""
+    """A picture by what is looked for.
 
-    def __init__(self, picture: Picture) -> None:
+    Args:
+        may_fail: Whether an error of one of several that are waited for may end the wait for all of them.
+        may_guess: Whether to believe that nobody brings about what is waited for but those whom the source code shows.
+    """
+
+    def __init__(self, picture: Picture, *, may_fail: bool = False, may_guess: bool = True) -> None:
         self.picture = picture
+        self._all_of = any if may_fail else all
+        self._may_guess = may_guess
         self.holders: dict[str, list[str]] = {}
         self.serving: dict[str, str] = {}
         for activity in picture.activities.values():
-            if activity.group:
-                self.holders.setdefault(activity.group, []).append(activity.id)
+            for group in activity.holds:
+                self.holders.setdefault(group, []).append(activity.id)
             if activity.serves:
                 self.serving[activity.serves] = activity.id
         self.queued = {call: queue for queue in picture.queues.values() for call in queue.calls}
@@ -199,16 +208,29 @@ class _Index:
             case SetBy(queues=queues, activities=activities):
                 known = [self.picture.queues[q] for q in queues if q in self.picture.queues]
                 return (
-                    len(known) < len(queues)
+                    not self._may_guess
+                    or len(known) < len(queues)
                     or any(self._may_run(queue, live) for queue in known)
                     or any(other not in self.picture.activities or other in live for other in activities)
                 )
             case All(of=conditions):
-                return all(self.is_met(c, live) for c in conditions)
+                return self._all_of(self.is_met(c, live) for c in conditions)
             case AnyOf(of=conditions):
                 return any(self.is_met(c, live) for c in conditions)
             case Free():
                 return True
+
+    def is_met_outside(self, condition: Condition) -> bool:
+        """Whether it may be fulfilled while the event loop, through which all of graphflow comes, is blocked."""
+        match condition:
+            case SetBy():
+                return not self._may_guess
+            case All(of=conditions):
+                return self._all_of(self.is_met_outside(c) for c in conditions)
+            case AnyOf(of=conditions):
+                return any(self.is_met_outside(c) for c in conditions)
+            case _:
+                return condition is FREE
 
     def _has_slot(self, group: str, live: set[str]) -> bool:
         known = self.picture.groups.get(group)
@@ -219,7 +241,9 @@ class _Index:
 
     def _may_run(self, queue: Queue, live: set[str]) -> bool:
         blocker = self.picture.blocked.get(queue.process)
-        return self._has_slot(queue.group, live) and (blocker is None or blocker in live)
+        if blocker in self.picture.activities and blocker not in live:
+            return False
+        return all(self._has_slot(group, live) for group in queue.needs)
 
     def loop_of(self, activity: Activity) -> str | None:
         """The activity that blocks this one's event loop, if another does."""
@@ -243,7 +267,8 @@ class _Index:
                     blocker = self.picture.blocked.get(queue.process)
                     if blocker in dead:
                         yield Edge(blocker, condition, queue.id, loop=True)
-                    yield from self._slot_edges(queue.group, condition, dead, queue.id)
+                    for group in queue.needs:
+                        yield from self._slot_edges(group, condition, dead, queue.id)
             case Slot(group=group):
                 yield from self._slot_edges(group, condition, dead)
             case Join(activity=other):
@@ -252,17 +277,22 @@ class _Index:
             case SetBy(queues=queues, activities=activities):
                 for name in queues:
                     if name in self.picture.queues:
-                        yield from self._slot_edges(self.picture.queues[name].group, condition, dead, name)
+                        for group in self.picture.queues[name].needs:
+                            yield from self._slot_edges(group, condition, dead, name)
                 for other in activities:
                     if other in dead:
                         yield Edge(other, condition)
             case All(of=conditions) | AnyOf(of=conditions):
+                live = set(self.picture.activities) - dead
                 for inner in conditions:
-                    yield from self._edges(inner, dead)
+                    if not self.is_met(inner, live):
+                        yield from self._edges(inner, dead)
             case Free():
                 return
 
     def _slot_edges(self, group: str, via: Condition, dead: set[str], queue: str = "") -> Iterator[Edge]:
+        if self._has_slot(group, set(self.picture.activities) - dead):
+            return
         for holder in self.holders.get(group, []):
             if holder in dead:
                 yield Edge(holder, via, queue, group)
@@ -281,23 +311,28 @@ def deadlocked(picture: Picture, before: Picture | None = None) -> set[str]:
     else:
         suspects = {a.id for a in activities.values() if _is_same(a, before.activities.get(a.id))}
         suspects = {i for i in suspects if activities[i].wait is not FREE or index.loop_of(activities[i])}
-    live = set(activities) - suspects
-    while True:
-        moving = {i for i in suspects if _may_go_on(index, activities[i], live)}
-        if not moving:
-            return suspects
-        suspects -= moving
+    return _reduced(index, suspects)
+
+
+def _reduced(index: _Index, suspects: Iterable[str]) -> set[str]:
+    """Those of the suspects who cannot go on, however the others do."""
+    left = set(suspects)
+    activities = index.picture.activities
+    live = set(activities) - left
+    while moving := {i for i in left if _may_go_on(index, activities[i], live)}:
+        left -= moving
         live |= moving
+    return left
 
 
 def _is_same(now: Activity, then: Activity | None) -> bool:
-    return then is not None and (now.wait, now.group, now.serves) == (then.wait, then.group, then.serves)
+    return then is not None and (now.wait, now.holds, now.serves) == (then.wait, then.holds, then.serves)
 
 
 def _may_go_on(index: _Index, activity: Activity, live: set[str]) -> bool:
     blocker = index.picture.blocked.get(activity.process)
     if blocker == activity.id:
-        return activity.wait is FREE  # what it waits for would have to come through the loop that it blocks
+        return index.is_met_outside(activity.wait)
     if blocker is not None and blocker in index.picture.activities and blocker not in live:
         return False
     return index.is_met(activity.wait, live)
@@ -314,14 +349,16 @@ class Deadlock:
     victims: tuple[str, ...]
     """Dead activities outside of the ring."""
     is_likely: bool
-    """It is certain only if nothing but what the source code shows sets what is waited for."""
+    """It is certain only if nothing but what the source code shows sets what somebody in it or behind it waits for."""
     is_partial: bool = False
-    """One of several things that are waited for is alive, and its failure could still end the wait."""
+    """The failure of something alive, one of several things that are waited for, could still end it."""
 
 
 def explained(picture: Picture, dead: set[str]) -> list[Deadlock]:
     """The rings in a set of dead activities, each once, and the victims of each."""
     index = _Index(picture)
+    certain = _reduced(_Index(picture, may_guess=False), dead)
+    firm = _reduced(_Index(picture, may_fail=True), dead)
     edges = {i: list(index.edges(picture.activities[i], dead)) for i in dead}
     found: list[Deadlock] = []
     covered: set[str] = set()
@@ -336,8 +373,7 @@ def explained(picture: Picture, dead: set[str]) -> list[Deadlock]:
         behind = sorted(i for i in dead - members if _reaches(i, members, edges))
         covered.update(behind)
         victims = tuple(i for i in behind if not picture.activities[i].is_inner)
-        likely = any(isinstance(edge.via, SetBy) for _, edge in ring)
-        partial = any(_is_partial(index, picture.activities[i].wait, dead) for i in members)
+        likely, partial = not members <= certain, not members <= firm
         found.append(Deadlock(tuple(i for i, _ in ring), tuple(e for _, e in ring), victims, likely, partial))
     return found
 
@@ -369,8 +405,3 @@ def _reaches(start: str, goals: set[str], edges: Mapping[str, list[Edge]]) -> bo
         seen |= new
         todo += new
     return False
-
-
-def _is_partial(index: _Index, wait: Condition, dead: set[str]) -> bool:
-    live = set(index.picture.activities) - dead
-    return isinstance(wait, All) and any(index.is_met(c, live) for c in wait.of)

@@ -108,12 +108,19 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         Raises:
             GoalAborted, GoalCanceled: It ended so; the error's `result` is what the server sent with it.
             GoalLost: The server has gone.
+            DeadlockError: It cannot end, because the server waits for the caller, and the graph's policy is `break`.
             TimeoutError: It has not ended in time, and goes on.
         """
-        if timeout is None:
-            return await asyncio.shield(self.ended)
-        async with self._client.node.clock.timeout(timeout):
-            return await asyncio.shield(self.ended)
+        if timeout is not None:
+            async with self._client.node.clock.timeout(timeout):
+                return await self.result()
+        goals = self._client.node.context.waits.goals
+        ended = asyncio.shield(self.ended)
+        goals[ended] = self
+        try:
+            return await ended
+        finally:
+            del goals[ended]
 
     async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
         """Ask the server to cancel it; whether it agrees. The goal ends a little later, or not as cancelled at all.

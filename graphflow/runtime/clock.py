@@ -62,8 +62,9 @@ class Clock(ABC):
     async def timeout(self, seconds: float) -> AsyncGenerator[None, None]:
         """Cancel the block after `seconds` of this clock's time and raise TimeoutError, as `asyncio.timeout` does."""
         loop = asyncio.get_running_loop()
+        until_ns = self.monotonic_ns() + to_ns(seconds)
         async with asyncio.timeout(None) as scope:
-            handle = self.call_at(self.monotonic_ns() + to_ns(seconds), lambda: scope.reschedule(loop.time()))
+            handle = self.call_at(until_ns, lambda: scope.reschedule(loop.time()))
             try:
                 yield
             finally:

@@ -181,6 +181,8 @@ class Context:
                     if future.cancelled():
                         raise
                     cancelled = error
+                except GeneratorExit:
+                    raise
                 except BaseException:  # the thread's own, which is raised below
                     break
             if cancelled is not None and future.exception() is None:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import logging
 import threading
-from asyncio import Future
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -22,6 +21,7 @@ from graphflow.machines.picture import from_json
 from graphflow.machines.waits import FREE, Activity, Call, Condition, Deadlock, Picture, deadlocked, explained, joined
 from graphflow.runtime.inspection import WAITS, key
 from graphflow.runtime.scheduler import Run, Runner
+from graphflow.runtime.waits import goal_id
 from graphflow.times import to_ns
 
 if TYPE_CHECKING:
@@ -93,9 +93,7 @@ class Detector:
             return
         young = [a.age for a in picture.activities.values() if a.wait is not FREE and not _is_old(a)]
         for deadlock in explained(picture, deadlocked(picture)):
-            # What only the source code tells must have lasted: a setter may be about to run.
-            if not deadlock.is_likely or all(_is_old(picture.activities[i]) for i in deadlock.ring):
-                self._tell(deadlock, picture)
+            self._tell(deadlock, picture)
         if any(self._leaves(a, picture) for a in picture.activities.values() if _is_old(a)):
             self._pull()
         is_new = bool(waiting - self._last)
@@ -161,28 +159,35 @@ class Detector:
 
     def _tell(self, deadlock: Deadlock, picture: Picture) -> None:
         members = [picture.activities[i] for i in deadlock.ring]
+        # What only the source code tells must have lasted: a setter may be about to run.
+        if deadlock.is_likely and not all(_is_old(a) for a in members):
+            return
         ring = frozenset((name, edge.via) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
         mine = self._context.session.zid
+        if self.policy == "break" and not deadlock.is_likely:
+            self._break(deadlock, picture)
         able = sorted({a.process for a in members if a.process not in picture.blocked}) or [mine]
         if ring in self.reports or able[0] != mine:
             return
         text = explanation(deadlock, picture)
         self.reports[ring] = text, " and ".join(title(a) for a in members)
         logger.error("%s", text)
-        if self.policy == "break":
-            self._break(members, text)
 
-    def _break(self, members: list[Activity], text: str) -> None:
-        """End the youngest call of this process that has a part in it."""
+    def _break(self, deadlock: Deadlock, picture: Picture) -> None:
+        """End the youngest call or goal of the ring, if it is of this process: all find the ring, and agree on one."""
         waits = self._context.waits
-        calls = {call for a in members if a.process == self._context.session.zid for call in _calls(a.wait)}
-        found: list[tuple[int, Future[object]]] = [
-            (entry[3], future) for future, entry in waits.calls.items() if waits.id_of(entry) in calls
-        ]
-        if found:
-            _, future = max(found, key=lambda pair: pair[0])
+        ways = zip(deadlock.ring, deadlock.edges, strict=True)
+        calls = [(picture.activities[name], edge.via) for name, edge in ways if isinstance(edge.via, Call)]
+        if not calls:
+            return
+        activity, call = min(calls, key=lambda pair: (round(pair[0].age, 1), pair[0].id))
+        if activity.process != self._context.session.zid:
+            return
+        futures = [future for future, entry in waits.calls.items() if waits.id_of(entry) == call.id]
+        futures += [f for f, goal in waits.goals.items() if goal_id(goal.goal_id) == call.id and f is not goal.ended]
+        for future in futures:
             if not future.done():
-                future.set_exception(DeadlockError(text))
+                future.set_exception(DeadlockError(explanation(deadlock, picture)))
 
     def _say_cleared(self, picture: Picture, processes: set[str]) -> None:
         """Take back reports of rings of which a member in one of these processes has moved on."""

@@ -8,21 +8,25 @@ their code. A picture can be taken on any thread, so also while the event loop i
 from __future__ import annotations
 
 import asyncio
+import gc
 import queue
 import sys
 import sysconfig
 import threading
 from asyncio import Future
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
+from types import FrameType, MethodType
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import DecodeError, Place
 from graphflow.machines import waits as picture_of
 from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot
+from graphflow.runtime.clock import Clock
 from graphflow.runtime.closed_world import setters
 from graphflow.runtime.scheduler import Activity, Run, Runner
+from graphflow.times import to_ns
 from graphflow.wire import attachment, chain
 
 if TYPE_CHECKING:
@@ -153,17 +157,25 @@ class _Camera:
         self._groups: dict[str, picture_of.Group] = {}
         self._queues: dict[str, picture_of.Queue] = {}
         self._seen: set[tuple[str, Condition]] = set()
+        self._limit_ns: int | None = None
+        """When the activity that is looked at gives up waiting."""
 
     def shoot(self) -> Picture:
         arrived = self._arrived()
         for node, runner in self._runners:
-            group = self._group_of(node, runner)
             calls = [c for c in (self._call_of(runner, item) for item in list(runner.items)) if c]
             calls += arrived.get(id(runner), [])
             waiting = len(runner.items) + len(arrived.get(id(runner), []))
             queue = self.queue_id(runner)
             self._queues[queue] = picture_of.Queue(
-                queue, runner.label, node.full_name, group, tuple(calls), waiting, runner.dropped(), self._zid
+                queue,
+                runner.label,
+                node.full_name,
+                self._needs(node, runner),
+                tuple(calls),
+                waiting,
+                runner.dropped(),
+                self._zid,
             )
             for run in sorted(runner.active, key=lambda run: run.number):
                 self._add_run(node, runner, run)
@@ -186,20 +198,28 @@ class _Camera:
     def queue_id(self, runner: Runner) -> str:
         return f"{self._zid}:q{runner.number}"
 
-    def _group_of(self, node: Node, runner: Runner) -> str:
-        """The id of the group whose slot the runner's next run takes."""
-        group = runner.group
-        if group is None or (runner.one_at_a_time and group.limit != 1):
-            own = f"{self._zid}:own{runner.number}"
-            self._groups[own] = picture_of.Group(own, "", node.full_name, 1)
-            return own
-        return self._named(node, group)
+    def _needs(self, node: Node, runner: Runner) -> tuple[str, ...]:
+        """The ids of the groups of which the runner's next run takes a slot; its own queue is as good as one."""
+        return self._slots(node, runner, runner.group)
+
+    def _holds(self, node: Node, run: Run) -> tuple[str, ...]:
+        """The same of a run under way."""
+        return self._slots(node, run.runner, run.group)
+
+    def _slots(self, node: Node, runner: Runner, group: HandlerGroup | None) -> tuple[str, ...]:
+        named = () if group is None else (self._named(node, group),)
+        if runner.group is not None and not runner.one_at_a_time:
+            return named
+        own = f"{self._zid}:own{runner.number}"
+        self._groups[own] = picture_of.Group(own, "", node.full_name, 1)
+        return (*named, own)
 
     def _named(self, node: Node, group: HandlerGroup) -> str:
         name = f"{self._zid}:{node.full_name}:{group.name}"
         # A group that cancels what runs is never full for good.
         limit = None if group.when_full == "cancel_running" else group.limit
-        self._groups[name] = picture_of.Group(name, group.name, node.full_name, limit)
+        known = group.name if group in node.groups.by_name.values() else ""  # it is the runtime's own
+        self._groups[name] = picture_of.Group(name, known, node.full_name, limit)
         return name
 
     def _call_of(self, runner: Runner, item: Any) -> str:
@@ -233,35 +253,41 @@ class _Camera:
     def _add_run(self, node: Node, runner: Runner, run: Run) -> None:
         item = getattr(run, "item", None)
         serves = "" if item is None else self._call_of(runner, item)
-        if run.group is None:
-            group = self._group_of(node, runner) if runner.group is None else ""
-        elif runner.one_at_a_time and run.group.limit != 1:
-            group = self._group_of(node, runner)
-        else:
-            group = self._named(node, run.group)
-        self._add(self.run_id(run), runner.label, node, run, group, serves, is_inner=runner.is_inner)
+        holds = self._holds(node, run)
+        self._add(self.run_id(run), runner.label, node, run, holds, serves, is_inner=runner.is_inner)
 
     def _add_task(self, node: Node, task: Any) -> None:
         name = task.get_name().removeprefix(f"{node.full_name}.")
-        self._add(self.task_id(task), f"task {name}", node, task, "", "")
+        self._add(self.task_id(task), f"task {name}", node, task, (), "")
 
     def _add(
-        self, id_: str, label: str, node: Node, task: Any, group: str, serves: str, *, is_inner: bool = False
+        self,
+        id_: str,
+        label: str,
+        node: Node,
+        task: Any,
+        holds: tuple[str, ...],
+        serves: str,
+        *,
+        is_inner: bool = False,
     ) -> None:
+        self._limit_ns = None
         frames = self._frames_of(task)
-        wait = self._condition(task, set(), node)
+        wait = self._condition(task, _Way(node, task))
         self._seen.add((id_, wait))
         frame = _users(frames)
         place = Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
         function = "" if frame is None else frame.f_code.co_name
         started, deadline = self._bounds(wait)
+        if wait is not FREE and self._limit_ns is not None:
+            deadline = min(self._limit_ns, deadline or self._limit_ns)
         if started is None:
             age = 0.0 if wait is FREE else self._waits.age(id_, wait, self._now_ns)
         else:
             age = (self._now_ns - started) / 1e9
         left = None if deadline is None else (deadline - self._now_ns) / 1e9
         self._activities[id_] = picture_of.Activity(
-            id_, label, node.full_name, group, wait, serves, place, function, age, left, self._zid, is_inner
+            id_, label, node.full_name, holds, wait, serves, place, function, age, left, self._zid, is_inner
         )
 
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
@@ -275,11 +301,10 @@ class _Camera:
 
     # conditions
 
-    def _condition(self, task: Any, seen: set[int], node: Node | None) -> Condition:
-        """What a task or an activity waits for."""
-        if id(task) in seen or task.done():
+    def _condition(self, task: Any, way: _Way) -> Condition:
+        """What a task or an activity waits for, in the end; `way` leads to it."""
+        if id(task) in way.tasks or task.done():
             return FREE
-        seen = seen | {id(task)}
         if isinstance(task, Activity) and task.returning_to is not None:
             for owner in self._nodes:
                 if task.returning_to in owner.groups.by_name.values():
@@ -288,33 +313,53 @@ class _Camera:
         if waiter is None:
             return FREE
         frames = self._frames_of(task)
+        limit_ns = self._limit_of(task)
+        way = _Way(
+            way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, way.is_bounded or limit_ns is not None
+        )
+        if limit_ns is not None:
+            self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
         for frame in reversed(frames):
             together = _joint_wait(frame)
             if together is not None:
                 futures, kind = together
                 if any(f.done() and (kind is AnyOf or _has_failed(f)) for f in futures):
                     return FREE  # its next step is due
-                conditions = tuple(self._of_future(f, seen, node) for f in futures if not f.done())
+                conditions = tuple(self._of_future(f, way) for f in futures if not f.done())
                 return All(conditions) if kind is All else AnyOf(conditions)
-        condition = self._of_future(waiter, seen, node)
-        if condition is FREE and node is not None:
-            return self._closed_world(frames, node, task)
-        return condition
+        return self._of_future(waiter, way)
 
     def _frames_of(self, task: Any) -> list[FrameType]:
         """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
-        frames = list(_frames(task.get_coro()))
+        frames = [frame for frame in map(_frame_of, _coroutines(task.get_coro())) if frame is not None]
         waiter = getattr(task, "_fut_waiter", None)
         thread = self._waits.threads.get(_shielded(waiter) or waiter)  # type: ignore[arg-type]
         if thread is not None and thread.ident is not None:
             frames += _stack(thread.ident)
         return frames
 
-    def _of_future(self, future: Any, seen: set[int], node: Node | None) -> Condition:
+    def _limit_of(self, task: Any) -> int | None:
+        """When a task gives up waiting, in nanoseconds of the clock; None for never."""
+        found: list[float] = []
+        for coroutine in _coroutines(task.get_coro()):
+            frame = _frame_of(coroutine)
+            if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
+                handle = frame.f_locals.get("timeout_handle")
+                found += [handle.when()] if isinstance(handle, asyncio.TimerHandle) else []
+            for context in _entered(coroutine):
+                if isinstance(context, asyncio.Timeout) and (when := context.when()) is not None:
+                    found.append(when)
+                within = getattr(getattr(context, "gen", None), "ag_frame", None)
+                if within is not None and within.f_code is _CLOCK_TIMEOUT:
+                    return int(within.f_locals["until_ns"])
+        seconds = min(found, default=None)
+        return None if seconds is None else self._now_ns + to_ns(max(0.0, seconds - self._context.loop.time()))
+
+    def _of_future(self, future: Any, way: _Way) -> Condition:
         waits = self._waits
         if future in waits.threads:
             asking = waits.asking.get(waits.threads[future].ident or 0)
-            return FREE if asking is None else self._condition(asking, seen, node)
+            return self._closed_world(way, None) if asking is None else self._condition(asking, way)
         if future in waits.calls:
             gid, sequence, name, _, _ = waits.calls[future]
             return Call(call_id(gid, sequence), name)
@@ -326,15 +371,16 @@ class _Camera:
         if isinstance(future, Activity) or asyncio.isfuture(future):
             if hasattr(future, "get_coro"):
                 known = self._known(future)
-                return known if known is not None else self._condition(future, seen, node)
+                return known if known is not None else self._condition(future, way)
             children = getattr(future, "_children", None)
             if children is not None:  # gather
                 if any(c.done() and _has_failed(c) for c in children):
                     return FREE
-                return All(tuple(self._of_future(c, seen, node) for c in children if not c.done()))
+                return All(tuple(self._of_future(c, way) for c in children if not c.done()))
             inner = _shielded(future)
             if inner is not None:
-                return self._of_future(inner, seen, node)
+                return self._of_future(inner, way)
+            return self._closed_world(way, future)
         return FREE
 
     def _known(self, task: Any) -> Condition | None:
@@ -344,21 +390,39 @@ class _Camera:
                 return Join(self.task_id(task))
         return None
 
-    def _closed_world(self, frames: list[FrameType], node: Node, task: Any) -> Condition:
+    def _closed_world(self, way: _Way, waiter: Any) -> Condition:
         """A wait for something that, as far as the source code tells, only handlers of the node bring about."""
-        found = setters(frames, node)
+        node = way.node
+        found = setters(list(way.frames), waiter, node, is_bounded=way.is_bounded)
         if found is None:
             return FREE
-        what, names = found
-        runners = [r for n, r in self._runners if n is node and r.handler in names]
+        runners = [r for n, r in self._runners if n is node and r.handler in found.handlers]
         # Runs under way count too, also those that have let go of their slot.
-        others: list[Any] = [run for r in runners for run in list(r.active) if run is not task]
-        others += [t for t in list(node.tasks) if t is not task and _method(t) in names]
+        others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
+        others += [t for t in list(node.tasks) if t is not way.root and _method(t) in found.handlers]
         known = {r.handler for r in runners} | {_method(t) for t in list(node.tasks)}
-        if not names <= known:  # one of them is not there to be waited for
+        if not found.handlers <= known:  # one of them is not there to be waited for
             return FREE
+        if found.lock is not None:
+            inside = self._inside(found.lock)
+            if len(inside) != found.places:  # somebody else is in it
+                return FREE
+            others += inside
         queues = sorted(self.queue_id(r) for r in runners)
-        return SetBy(what, tuple(queues), tuple(sorted(self.task_id(other) for other in others)))
+        activities = sorted({self.task_id(other) for other in others})
+        return SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
+
+    def _inside(self, lock: Any) -> list[Any]:
+        """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
+        found = []
+        activities = [run for _, runner in self._runners for run in list(runner.active)]
+        for task in activities + [task for node in self._nodes for task in list(node.tasks)]:
+            chain = list(_coroutines(task.get_coro()))
+            frames = [frame for frame in map(_frame_of, chain) if frame is not None]
+            entered = [c for coroutine in chain for c in _entered(coroutine) if lock in (c, getattr(c, "_lock", None))]
+            waits = any(f.f_code is _CONDITION_WAIT and f.f_locals["self"]._lock is lock for f in frames)
+            found += [task] * (len(entered) - waits)
+        return found
 
     # the loop
 
@@ -386,17 +450,18 @@ class _Camera:
         user = _users(stack)
         place = Place("") if user is None else Place(user.f_code.co_filename, user.f_lineno)
         function = "" if user is None else user.f_code.co_name
+        way = _Way(node, run, tuple(stack))
         if self._waits.blocking is None:
-            wait = self._closed_world(stack, node, run)
+            wait = self._closed_world(way, None)
         else:
-            wait = self._of_future(self._waits.blocking, set(), node)
+            wait = self._of_future(self._waits.blocking, way)
         self._seen.add((id_, wait))
         age = self._context.watchdog.blocked_for
         self._activities[id_] = picture_of.Activity(
             id_,
             runner.label,
             node.full_name,
-            self._group_of(node, runner),
+            self._needs(node, runner),
             wait,
             self._call_of(runner, item),
             place,
@@ -417,18 +482,42 @@ def _call_ids(condition: Condition) -> Iterator[str]:
                 yield from _call_ids(inner)
 
 
-def _frames(coroutine: Any) -> Iterator[FrameType]:
-    """The frames of a suspended coroutine, the outermost first."""
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """How a wait was come to: from a run of a handler, through the tasks that it waits for."""
+
+    node: Node
+    root: Any
+    """The activity."""
+    frames: tuple[FrameType, ...] = ()
+    """Of all of them, the outermost first."""
+    tasks: frozenset[int] = frozenset()
+    """Their ids."""
+    is_bounded: bool = False
+    """Whether one of them gives up after some time."""
+
+
+def _coroutines(coroutine: Any) -> Iterator[Any]:
+    """A suspended coroutine and those that it awaits, the outermost first."""
     while coroutine is not None:
-        frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
-        frame = frame or getattr(coroutine, "ag_frame", None)
-        if frame is not None:
-            yield frame
+        yield coroutine
         coroutine = (
             getattr(coroutine, "cr_await", None)
             or getattr(coroutine, "gi_yieldfrom", None)
             or getattr(coroutine, "ag_await", None)
         )
+
+
+def _frame_of(coroutine: Any) -> FrameType | None:
+    frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
+    return frame or getattr(coroutine, "ag_frame", None)
+
+
+def _entered(coroutine: Any) -> Iterator[Any]:
+    """What a suspended coroutine has entered by `with`: CPython keeps the method that leaves it on the stack."""
+    for referent in gc.get_referents(coroutine):
+        if isinstance(referent, MethodType) and referent.__name__ in ("__aexit__", "__exit__"):
+            yield referent.__self__
 
 
 def _stack(thread: int) -> list[FrameType]:
@@ -456,6 +545,8 @@ _TASK_GROUP_EXITS = tuple(
 )
 _WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
 _WAIT_FOR = asyncio.wait_for.__code__
+_CONDITION_WAIT = asyncio.Condition.wait.__code__
+_CLOCK_TIMEOUT = Clock.timeout.__wrapped__.__code__  # type: ignore[attr-defined]
 
 
 def _joint_wait(frame: FrameType) -> tuple[list[Any], type[All | AnyOf]] | None:

@@ -57,7 +57,7 @@ PAIRS = {
         "[left]: the other one says: well",
     ),
     "event": Pair(
-        "LIKELY DEADLOCK: one callback waits for itself; 2 more wait for it",
+        "LIKELY DEADLOCK: one callback waits for itself; 1 more waits for it",
         (
             "action execute of /patient holds group 'everything' and waits for self.time_has_come   (event.py:26 in",
             "timer tick of /patient sets it, and needs group 'everything' of /patient",

@@ -1,11 +1,11 @@
 """A graph so small that all its futures can be tried: the slow and obvious twin of `machines.waits`.
 
-Handlers (services and timers) run under groups or behind themselves; tasks hold no slot. What a run does is a finite
-list of steps: ask services, rest, await tasks, all or any of these, with its slot or without it in the meantime, or on
-a thread, so that it blocks the event loop of its process. The rules are those of the runtime: a request stands in the
-queue of its handler; the head of a queue begins when there is a slot; the run holds it until its steps are done, and
-then the request is answered. Slots go to whoever wants one, in any order: more may happen here than where tickets are
-kept, and no less.
+Handlers (services and timers) run under groups, behind themselves, or both; tasks hold no slot. What a run does is a
+finite list of steps: ask services, rest, await tasks, all or any of these; with its slot or without it meanwhile, or
+without awaiting, so that it blocks the event loop of its process. The rules are those of the runtime: a request stands
+in the queue of its handler; the head of a queue begins when there is a slot; the run holds it until its steps are
+done, and then the request is answered. Slots go to whoever wants one, in any order: more may happen here than where
+tickets are kept, and no less.
 """
 
 from __future__ import annotations
@@ -79,6 +79,8 @@ class Handler:
     group: int | None
     """None: it queues behind itself only."""
     process: int = 0
+    alone: bool = False
+    """It queues behind itself too where its group allows more, as an action does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +105,8 @@ class Run(NamedTuple):
     id: str
     step: int
     wait: Condition
-    group: str
-    """Whose slot it holds."""
+    holds: tuple[str, ...]
+    """The groups of which it holds a slot."""
     blocks: bool
 
 
@@ -132,32 +134,32 @@ class TinyGraph:
     def __init__(self, system: System) -> None:
         self._handlers = [*system.services, *(handler for handler, _ in system.timers)]
         self._limits = {f"group{i}": limit for i, limit in enumerate(system.limits)}
-        self._home: dict[str, str] = {}
-        """The group under which a request is handled, by its id; empty for tasks."""
+        self._needs: dict[str, tuple[str, ...]] = {}
+        """The groups under which a request is handled, by its id; none for tasks."""
         self._process: dict[str, str] = {}
         self._stages: dict[str, tuple[_Stage, ...]] = {}
         for i, handler in enumerate(self._handlers):
-            if handler.group is None:
+            if handler.group is None or handler.alone:
                 self._limits[f"own{i}"] = 1
         for i, (process, steps) in enumerate(system.tasks):
-            self._name(f"task{i}", "", process, steps)
+            self._name(f"task{i}", (), process, steps)
         for i, (_, steps) in enumerate(system.timers, len(system.services)):
             self._name_request(f"tick{i}", i, steps)
         self.start = State(
-            tuple(Run(f"task{i}", -1, FREE, "", False) for i in range(len(system.tasks))),
+            tuple(Run(f"task{i}", -1, FREE, (), False) for i in range(len(system.tasks))),
             tuple((f"tick{i}",) if i >= len(system.services) else () for i in range(len(self._handlers))),
         )
 
     def _name_request(self, id_: str, handler: int, steps: Steps) -> None:
-        self._name(id_, self._group(handler), self._handlers[handler].process, steps)
+        self._name(id_, self._groups(handler), self._handlers[handler].process, steps)
 
-    def _name(self, id_: str, group: str, process: int, steps: Steps) -> None:
-        self._home[id_], self._process[id_] = group, f"process{process}"
+    def _name(self, id_: str, needs: tuple[str, ...], process: int, steps: Steps) -> None:
+        self._needs[id_], self._process[id_] = needs, f"process{process}"
         stages = []
         for i, step in enumerate(steps):
             asks: list[tuple[int, str]] = []
             wait = self._condition(step.work, f"{id_}.{i}", asks)
-            stages.append(_Stage(wait, tuple(asks), step.released and group != "", step.blocks))
+            stages.append(_Stage(wait, tuple(asks), step.released and needs != (), step.blocks))
         self._stages[id_] = tuple(stages)
 
     def _condition(self, work: Work, id_: str, asks: list[tuple[int, str]]) -> Condition:
@@ -177,9 +179,11 @@ class TinyGraph:
                     tuple(self._condition(w, f"{id_}{i}", asks) for i, w in zip("abcdef", works, strict=False))
                 )
 
-    def _group(self, handler: int) -> str:
-        group = self._handlers[handler].group
-        return f"own{handler}" if group is None else f"group{group}"
+    def _groups(self, handler: int) -> tuple[str, ...]:
+        """The groups of which a run takes a slot; it can release that of the first."""
+        group, alone = self._handlers[handler].group, self._handlers[handler].alone
+        own = () if group is not None and not alone else (f"own{handler}",)
+        return own if group is None else (f"group{group}", *own)
 
     # the rules
 
@@ -190,7 +194,7 @@ class TinyGraph:
             may_end: Whoever takes a step may also end with it, whatever it has left to do.
             may_fail: What ends may end with an error, and so end a wait for all of several.
         """
-        taken = Counter(run.group for run in state.runs)
+        taken = Counter(group for run in state.runs for group in run.holds)
         unfinished = {run.id for run in state.runs}.union(*state.queues)
         blockers = {self._process[run.id]: run for run in state.runs if run.blocks}
         for run in state.runs:
@@ -201,10 +205,10 @@ class TinyGraph:
                 if may_end:
                     yield run.id, others
         for handler, queue in enumerate(state.queues):
-            process, group = f"process{self._handlers[handler].process}", self._group(handler)
-            if queue and process not in blockers and taken[group] < self._limits[group]:
+            process, needs = f"process{self._handlers[handler].process}", self._groups(handler)
+            if queue and process not in blockers and all(taken[group] < self._limits[group] for group in needs):
                 rest = State(state.runs, (*state.queues[:handler], queue[1:], *state.queues[handler + 1 :]))
-                yield "", self._step(rest, Run(queue[0], -1, FREE, group, False))
+                yield "", self._step(rest, Run(queue[0], -1, FREE, needs, False))
                 if may_end:
                     yield "", rest
 
@@ -229,9 +233,9 @@ class TinyGraph:
 
     def _step(self, others: State, run: Run) -> State:
         """Have a run go on to its next suspension, or to its end."""
-        home = self._home[run.id]
-        if run.group != home and not isinstance(run.wait, Slot):
-            return _with(others, run._replace(wait=Slot(home, 0)))
+        needs = self._needs[run.id]
+        if run.holds != needs and not isinstance(run.wait, Slot):
+            return _with(others, run._replace(wait=Slot(needs[0], 0)))
         step = run.step + 1
         if step == len(self._stages[run.id]):
             return others
@@ -239,17 +243,17 @@ class TinyGraph:
         queues = list(others.queues)
         for handler, id_ in asks:
             queues[handler] = (*queues[handler], id_)
-        group = "" if released else home
-        return _with(State(others.runs, tuple(queues)), Run(run.id, step, wait, group, blocks))
+        holds = needs[1:] if released else needs
+        return _with(State(others.runs, tuple(queues)), Run(run.id, step, wait, holds, blocks))
 
     def picture(self, state: State) -> Picture:
         """What graphflow would see."""
         activities = (
-            Activity(run.id, run.id, "/n", run.group, run.wait, run.id, process=self._process[run.id])
+            Activity(run.id, run.id, "/n", run.holds, run.wait, run.id, process=self._process[run.id])
             for run in state.runs
         )
         queues = (
-            Queue(f"queue{i}", f"handler{i}", "/n", self._group(i), ids, process=f"process{self._handlers[i].process}")
+            Queue(f"queue{i}", f"handler{i}", "/n", self._groups(i), ids, process=f"process{self._handlers[i].process}")
             for i, ids in enumerate(state.queues)
         )
         return Picture(
