@@ -32,10 +32,13 @@ def distance(pose: Pose, goal: Point) -> float:
 
 
 def steer(pose: Pose, goal: Point, *, gain: float, speed: float) -> Twist:
-    """How to move now, to be at the goal later: straight on, turning the faster the more the goal is to one side."""
+    """How to move now, to be at the goal later: the more it is to one side, the faster to turn and the slower to drive.
+
+    At full speed all the time a turtle that has just missed its goal would circle around it for ever.
+    """
     error = math.atan2(goal.y - pose.y, goal.x - pose.x) - pose.theta
     shortest = math.atan2(math.sin(error), math.cos(error))  # never the long way round
-    return Twist(linear=Vector3(x=speed), angular=Vector3(z=gain * shortest))
+    return Twist(linear=Vector3(x=speed * max(0.0, math.cos(shortest))), angular=Vector3(z=gain * shortest))
 
 
 class PositionController(Node):

@@ -17,7 +17,7 @@ import pytest
 from graphflow.transport.rendezvous import free_endpoint
 
 PROJECT = Path(__file__).parents[1]
-LIMIT = 20.0
+LIMIT = 45.0
 """Seconds that anything here may take before the test fails."""
 
 

@@ -28,9 +28,18 @@ def waits(as_json: bool) -> None:
     """Tell who holds a slot, who waits for what, and where."""
     with View(domain_id()) as view:
         read = _read(view)
+        unresponsive = found.unresponsive(read, view)
     rows, queued = found.rows(read), found.queued(read)
     if as_json:
-        output.as_json({"activities": rows, "queued": queued, "deadlocks": read.reports})
+        output.as_json(
+            {
+                "activities": rows,
+                "queued": queued,
+                "deadlocks": read.reports,
+                "stalls": read.stalls,
+                "unresponsive": unresponsive,
+            }
+        )
         return
     if not rows and not queued:
         output.data("nobody waits")
@@ -46,7 +55,7 @@ def waits(as_json: bool) -> None:
         by = f", held by {' and '.join(queue['held_by'])}" if queue["held_by"] else ""
         dropped = f", {queue['dropped']} dropped" if queue["dropped"] else ""
         output.data(f"  {queue['handler']} is queued for {group}{by}: {queue['waiting']} waiting{dropped}")
-    for report in read.reports:
+    for report in [*read.reports, *read.stalls, *unresponsive]:
         output.data(f"\n{report}")
 
 
@@ -138,21 +147,35 @@ def move(node: str, handler: str, group: str, timeout: float) -> None:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="For programs.")
 def doctor(as_json: bool) -> int:
-    """Look for what is wrong with the running graph: deadlocks, blocked loops, endpoints that do not fit.
+    """Look for what is wrong with the running graph: deadlocks, groups that are kept for long, processes that do not
+    answer, event loops that are blocked or were late, endpoints that do not fit.
 
-    Exit code 1 when something is.
+    Exit code 1 when something is; late loops alone are none.
     """
     with View(domain_id()) as view:
         read = _read(view)
         misfits = list(complaints(view.cache))
+        unresponsive = found.unresponsive(read, view)
+        ours = view.processes()
+        nodes = view.cache.nodes(hidden=False)
+        others = [name for name in nodes if not any(e.zid in ours for e in view.cache.owners(name))]
     late = [f"{who}: the event loop was late {n} times, by {most:.1f} s at most" for who, n, most in read.late]
-    unheard = sorted(set(view.cache.nodes(hidden=False)) - set(read.nodes)) if read.nodes else []
+    blocked = [f"{who}: the event loop is blocked since {seconds:.1f} s; see its log" for who, seconds in read.blocked]
+    faults = {
+        "deadlocks": read.reports,
+        "stalls": read.stalls,
+        "unresponsive": unresponsive,
+        "blocked": blocked,
+        "misfits": misfits,
+    }
     if as_json:
-        output.as_json({"deadlocks": read.reports, "misfits": misfits, "late": late, "silent": unheard})
+        output.as_json({**faults, "late": late, "silent": others})
     else:
-        output.lines([*(f"{report}\n" for report in read.reports), *misfits, *late])
-        if unheard:
-            output.data(f"said nothing of their handlers: {', '.join(unheard)} (ROS 2's, or stopped)")
-        if not (read.reports or misfits or late):
+        output.lines([*(f"{text}\n" for text in read.reports + read.stalls), *unresponsive, *blocked, *misfits, *late])
+        if others:
+            output.data(f"said nothing of their handlers: {', '.join(others)} (not graphflow's)")
+        if read.unreadable:
+            output.data(f"{read.unreadable} processes answered as another version of graphflow does: not understood")
+        if not any(faults.values()) and not late:
             output.data(f"{len(read.nodes)} nodes, nothing wrong")
-    return exits.FAILED if read.reports or misfits else exits.OK
+    return exits.FAILED if any(faults.values()) else exits.OK

@@ -95,6 +95,16 @@ def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
     return sorted(dict.fromkeys(found), key=lambda f: (f.grade == "unresolved", f.place))
 
 
+def warnings(ways: list[Finding], file: str) -> list[str]:
+    """What is said of them when the graph is started: what is certain, and that there is more."""
+    certain = [str(way) for way in ways if way.grade == "CERTAIN"]
+    more = sum(way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS") for way in ways)
+    if not more:
+        return certain
+    what = "1 deadlock that may happen is" if more == 1 else f"{more} deadlocks that may happen are"
+    return [*certain, f"{what} explained by: graphflow check {file}"]
+
+
 class _World:
     """The handlers of a graph and the calls between them."""
 

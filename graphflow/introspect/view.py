@@ -17,12 +17,12 @@ from graphflow.errors import (
 )
 from graphflow.machines.cache import GraphCache
 from graphflow.names import did_you_mean
-from graphflow.system import host_name
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client
-from graphflow.wire import attachment
+from graphflow.wire import attachment, process
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import Kind, watch_key
+from graphflow.wire.process import ProcessToken
 
 GID = bytes(16)
 """Commands are no entity of the graph, so they have no GID of their own."""
@@ -142,12 +142,15 @@ class View:
     def owner(self, name: str) -> str:
         """Whose the node `name` is: the process it lives in, as far as its tokens tell."""
         zids = {e.zid for e in self.cache.owners(name)}
-        for token in self._client.tokens(f"@graphflow/{self.domain}/proc/**"):
-            parts = token.split("/")
-            if len(parts) == 7 and parts[3] in zids:
-                pid, host = parts[5:]
-                return f"process {pid}{_command_of(int(pid)) if host == host_name() else f' on {host}'}"
+        for zid, token in self.processes().items():
+            if zid in zids:
+                return f"{token}: {token.command}" if token.command else str(token)
         return f"session {', '.join(sorted(zids))}, not of graphflow"
+
+    def processes(self) -> dict[str, ProcessToken]:
+        """Processes of graphflow in the domain, by session."""
+        tokens = map(process.parse, self._client.tokens(process.watch_key(self.domain)))
+        return {token.zid: token for token in tokens if token is not None}
 
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:
         for server in self.cache.endpoints(Kind.SERVICE, name):
@@ -181,14 +184,3 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
                 f"already in domain {domain}: {owners}. Stop what runs there, {hint}, or take another domain with "
                 "--domain N"
             )
-
-
-def _command_of(pid: int) -> str:
-    """What a process was started as, where the system tells."""
-    from pathlib import Path
-
-    try:
-        words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
-    except OSError:
-        return ""
-    return f": {b' '.join(words).decode(errors='replace').strip()}"

@@ -6,8 +6,11 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
+from graphflow.introspect.view import View
 from graphflow.machines.explain import group_of, title
 from graphflow.machines.picture import from_json
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import explained
 from graphflow.machines.waits import (
     FREE,
     Activity,
@@ -19,8 +22,6 @@ from graphflow.machines.waits import (
     Picture,
     SetBy,
     Slot,
-    deadlocked,
-    explained,
     joined,
 )
 
@@ -35,7 +36,12 @@ class Waits:
     nodes: dict[str, list[dict[str, Any]]]
     """Groups by node."""
     unreadable: int = 0
-    processes: list[str] = field(default_factory=list)
+    processes: set[str] = field(default_factory=set)
+    """Sessions of those that have answered."""
+    stalls: list[str] = field(default_factory=list)
+    """Groups that are kept for long while others wait, explained."""
+    blocked: list[tuple[str, float]] = field(default_factory=list)
+    """Nodes whose event loop is blocked now, and for how many seconds at least."""
     late: list[tuple[str, int, float]] = field(default_factory=list)
     """Nodes whose event loop was late: how often, and how many seconds at most."""
 
@@ -47,14 +53,29 @@ def read(replies: list[bytes]) -> Waits:
         try:
             data = json.loads(reply)
             pictures.append(from_json(data))
+            found.processes.add(str(data["process"]))
+            found.stalls += [str(text) for text in data["stalls"]]
             found.reports += [str(text) for text in data["reports"]]
             found.nodes |= dict(data["nodes"])
+            who = " and ".join(sorted(data["nodes"]))
+            if data["blocked_for"]:
+                found.blocked.append((who, float(data["blocked_for"])))
             if data["late"]:
-                found.late.append((", ".join(sorted(data["nodes"])), int(data["late"]), float(data["longest"])))
+                found.late.append((who, int(data["late"]), float(data["longest"])))
         except (ValueError, KeyError, TypeError, RecursionError):
             found.unreadable += 1
     found.picture = joined(pictures)
     return found
+
+
+def unresponsive(waits: Waits, view: View) -> list[str]:
+    """Processes with nodes that have not answered, and why that may be."""
+    found = []
+    for zid, process in view.processes().items():
+        nodes = sorted({e.node_name for e in view.cache if e.zid == zid} & set(view.cache.nodes(hidden=False)))
+        if nodes and zid not in waits.processes:
+            found.append(f"NODE UNRESPONSIVE: {' and '.join(nodes)} ({process}) did not answer: {process.why_silent}")
+    return sorted(found)
 
 
 def stuck(waits: Waits) -> set[str]:

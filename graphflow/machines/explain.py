@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from graphflow.errors import Place
-from graphflow.machines.waits import Activity, Call, Deadlock, Edge, Free, Group, Picture, Queue, SetBy, Slot
+from graphflow.machines.rings import Deadlock, Edge
+from graphflow.machines.waits import Activity, Call, Free, Group, Picture, Queue, SetBy, Slot
 
 
 def explanation(deadlock: Deadlock, picture: Picture) -> str:
@@ -22,12 +23,28 @@ def hopeless(service: str, queue: Queue, holders: list[Activity], picture: Pictu
     [group] = [picture.groups[name] for name in queue.needs if picture.groups[name].name] or [
         picture.groups[queue.needs[0]]
     ]
-    held = " and ".join(f"{title(a)}{_where(a)}" for a in holders)
+    held = " and ".join(f"{title(a)}{where(a)}" for a in holders)
     edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
     head = f"{service} can never answer: {queue.label} of {queue.node} waits for {_slot(group)}, held by {held}"
     head = f"{head}, which waits for this very call"
-    fixes = list(_fix(holders[0], edge, picture)) if holders else []
+    fixes = [*_fix(holders[0], edge, picture), *_release(holders[0], group)] if holders else []
     return "\n".join([head, "Any one of these ends it:", *fixes] if fixes else [head])
+
+
+def stall(group: Group, holders: list[Activity], waiting: list[Queue], dropped: dict[str, int], seconds: float) -> str:
+    """What is said of a group that the same runs keep for long.
+
+    Args:
+        dropped: By queue, what it had dropped before.
+    """
+    who = " and ".join(f"{title(a)} ({''.join(_place(a))})" for a in holders)
+    lines = [f"STALL: {who} has kept {_slot(group)} for more than {seconds:.1f} s"]
+    for queue in waiting:
+        lost = queue.dropped - dropped.get(queue.id, 0)
+        lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
+    held = {_method(a.label) for a in holders}
+    handlers = [name for queue in waiting if (name := _method(queue.label)) not in held]
+    return "\n".join([*lines, "If that is too long:", *(_own_group(waiting[0].node, name) for name in handlers[:1])])
 
 
 def _headline(deadlock: Deadlock) -> str:
@@ -45,7 +62,7 @@ def _ring(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
         holding = _holding(activity, picture)
         if edge.loop and edge.to == name:
             holding = f"{holding} blocks the event loop and" if not holding else f"{holding} blocks the event loop,"
-        yield f"  {title(activity)}{holding} waits for {wanted(edge)}{_where(activity)}"
+        yield f"  {title(activity)}{holding} waits for {wanted(edge)}{where(activity)}"
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
         yield f"    -> {_reason(edge, picture)}{back}"
 
@@ -80,15 +97,17 @@ def wanted(edge: Edge) -> str:
             return "another task"
 
 
-def _where(activity: Activity) -> str:
-    words = []
-    if activity.place.file:
-        place = Place(PurePath(activity.place.file).name, activity.place.line)
-        words.append(f"{place} in {activity.function}")
-    words.append(f"since {activity.age:.2f} s")
+def where(activity: Activity) -> str:
+    """Where it waits, and since when."""
+    words = [*_place(activity), f"since {activity.age:.2f} s"]
     if activity.left is not None:
         words.append(f"times out in {max(0.0, activity.left):.1f} s")
     return f"   ({', '.join(words)})"
+
+
+def _place(activity: Activity) -> Iterator[str]:
+    if activity.place.file:
+        yield f"{Place(PurePath(activity.place.file).name, activity.place.line)} in {activity.function}"
 
 
 def _reason(edge: Edge, picture: Picture) -> str:
@@ -96,7 +115,7 @@ def _reason(edge: Edge, picture: Picture) -> str:
     if edge.loop:
         return f"nothing can arrive while the event loop is blocked by {title(other)}"
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
-        return f"which {title(other)} holds{_where(other)}"
+        return f"which {title(other)} holds"
     if not edge.group:
         return f"which {title(other)} is to give"
     queue = picture.queues.get(edge.queue)
@@ -119,13 +138,14 @@ def _slot(group: Group) -> str:
 def _victims(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
     for name in deadlock.victims:
         activity = picture.activities[name]
-        yield f"  behind them: {title(activity)}{_where(activity)}"
+        yield f"  behind them: {title(activity)}{where(activity)}"
 
 
 def _fixes(deadlock: Deadlock, picture: Picture) -> list[str]:
     found: list[str] = []
-    for name, edge in zip(deadlock.ring, deadlock.edges, strict=True):
-        for fix in _fix(picture.activities[name], edge, picture):
+    for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
+        activity, wanted_of_it = picture.activities[name], picture.groups.get(deadlock.edges[i - 1].group)
+        for fix in (*_fix(activity, edge, picture), *_release(activity, wanted_of_it)):
             if fix not in found:
                 found.append(fix)
     # The same advice for every member of a ring is one advice: to follow it once is enough.
@@ -136,7 +156,6 @@ def _fixes(deadlock: Deadlock, picture: Picture) -> list[str]:
 
 
 def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
-    file = Place(PurePath(activity.place.file).name, activity.place.line)
     if edge.loop:
         other = picture.activities[edge.to]
         at = Place(PurePath(other.place.file).name, other.place.line)
@@ -160,12 +179,8 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         yield f"  let replies pass: declare the client of {handler} without group="
         queue, handler = replace(queue, node=activity.node), _method(activity.label)
     own = f"{handler}_group"
-    if group.name and handler != _method(activity.label):
-        yield (
-            f"  give {handler} a group of its own, in the graph file\n"
-            f"      {queue.node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
-            f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
-        )
+    if group.name and (queue.node, handler) != (activity.node, _method(activity.label)):
+        yield _own_group(queue.node, handler)
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
             holders = sum(group.id in a.holds for a in picture.activities.values())
@@ -178,9 +193,22 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         yield f"  let several goals be under way: policy='parallel' where {handler} is declared"
     elif not isinstance(edge.via, SetBy):
         yield f"  let several runs of {handler} be under way: {own} = Group(None), and group={own} where it is declared"
-    held = group_of(activity, picture)
-    if held:
-        yield f"  release the slot while waiting, in {file}: async with self.{held}.released(): ..."
+
+
+def _release(activity: Activity, wanted: Group | None) -> Iterator[str]:
+    """To let go of a slot helps where the one before in the ring wants it."""
+    if wanted is not None and wanted.name:
+        place = Place(PurePath(activity.place.file).name, activity.place.line)
+        yield f"  release the slot while waiting, in {place}: async with self.group.released(): ..."
+
+
+def _own_group(node: str, handler: str) -> str:
+    own = f"{handler}_group"
+    return (
+        f"  give {handler} a group of its own, in the graph file\n"
+        f"      {node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
+        f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
+    )
 
 
 def _method(label: str) -> str:

@@ -48,8 +48,10 @@ def _activity(a: Activity) -> Json:
     return [*head, a.age, a.left, a.process, a.is_inner]
 
 
-def _condition(condition: Condition) -> Json:
+def _condition(condition: Condition, depth: int = 0) -> Json:
     match condition:
+        case All() | AnyOf() if depth >= DEEPEST:
+            return None  # which only makes the picture say less
         case Call(id=call, name=name):
             return ["call", call, name]
         case Slot(group=group, ticket=ticket):
@@ -59,9 +61,9 @@ def _condition(condition: Condition) -> Json:
         case SetBy(what=what, queues=queues, activities=activities, is_held=is_held):
             return ["set", what, list(queues), list(activities), is_held]
         case All(of=conditions):
-            return ["all", [_condition(c) for c in conditions]]
+            return ["all", [_condition(c, depth + 1) for c in conditions]]
         case AnyOf(of=conditions):
-            return ["any", [_condition(c) for c in conditions]]
+            return ["any", [_condition(c, depth + 1) for c in conditions]]
         case _:
             return None
 
@@ -109,7 +111,7 @@ def _read_activity(row: list[object]) -> Activity:
         _number(age),
         None if left is None else _number(left),
         _text(process),
-        bool(is_inner),
+        _bool(is_inner),
     )
 
 
@@ -126,7 +128,7 @@ def _read_condition(data: object, depth: int) -> Condition:
         case ["join", activity]:
             return Join(_text(activity))
         case ["set", what, queues, activities, is_held]:
-            return SetBy(_text(what), _texts(queues), _texts(activities), bool(is_held))
+            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held))
         case ["all", parts]:
             return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
         case ["any", parts]:
@@ -155,13 +157,19 @@ def _texts(data: object) -> tuple[str, ...]:
 
 
 def _int(data: object) -> int:
-    if not isinstance(data, int):
+    if not isinstance(data, int) or isinstance(data, bool):
         raise TypeError(f"{data!r} is no whole number")
     return data
 
 
+def _bool(data: object) -> bool:
+    if not isinstance(data, bool):
+        raise TypeError(f"{data!r} is neither true nor false")
+    return data
+
+
 def _number(data: object) -> float:
-    if not isinstance(data, (int, float)):
+    if not isinstance(data, (int, float)) or isinstance(data, bool):
         raise TypeError(f"{data!r} is no number")
     try:
         return float(data)
@@ -170,4 +178,6 @@ def _number(data: object) -> float:
 
 
 def _limit(data: object) -> int | None:
+    if data is not None and _int(data) < 1:
+        raise ValueError(f"{data!r} is no limit")
     return None if data is None else _int(data)

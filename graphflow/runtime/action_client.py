@@ -20,6 +20,7 @@ from graphflow.errors import (
     GoalError,
     GoalLost,
     GoalRejected,
+    ServerBusy,
     ServerLost,
     ServiceUnavailable,
 )
@@ -274,7 +275,8 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         except (CancelledError, CallTimeout):
             # The server may have it by now.
             del self._goals[sent.goal_id]
-            self._in_background(self._withdraw(sent))
+            if self._cancel.is_open:
+                self._in_background(self._withdraw(sent))
             raise
         except BaseException:
             del self._goals[sent.goal_id]
@@ -306,7 +308,8 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             try:
                 await asyncio.shield(leaving)
             except CancelledError as error:
-                cancelled = error
+                if not leaving.cancelled():  # which happens when the client is closed
+                    cancelled = error
         if cancelled is not None:
             raise cancelled
 
@@ -338,6 +341,8 @@ class GoalClient(Generic[Goal, Result, Feedback]):
                 try:
                     answer = await self._get.call(request, timeout=patience)
                     break
+                except ServerBusy:
+                    await clock.sleep(RESULT_PATIENCE)
                 except CallTimeout:  # it takes long, or the network has lost the request or the answer
                     patience = min(2 * patience, RESULT_LONGEST)
                 except ServerLost:
@@ -345,10 +350,12 @@ class GoalClient(Generic[Goal, Result, Feedback]):
                     await self._get.wait_ready(LOST_GRACE)
             self._end(goal, GoalStatus(answer.status), answer.result)
         except (CallError, ClosedError, ValueError) as error:
-            lost = f"{self.name}: the server has gone, and with it the goal, last known as {goal.status.name}"
+            known = f"last known as {goal.status.name}"
+            if isinstance(error, (ServerLost, ServiceUnavailable, ClosedError)):
+                lost = f"{self.name}: the server has gone, and with it the goal, {known}"
+            else:
+                lost = f"{self.name}: the goal's result is not to be had, {known}: {error}"
             goal.end(GoalStatus.LOST, None, GoalLost(lost))
-            if not isinstance(error, (CallError, ClosedError)):
-                raise
         finally:
             clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
 
@@ -376,7 +383,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             if goal is None or goal.done:
                 continue
             if not GoalStatus(entry.status).is_terminal:
-                goal.status = GoalStatus(entry.status)
+                goal.status = max(goal.status, GoalStatus(entry.status))  # what was told before may come after
             elif not goal.is_asked_again:  # the end comes with the result, which may have been lost
                 goal.is_asked_again = True
                 self._in_background(self._ask_again(goal))

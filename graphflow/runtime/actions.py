@@ -13,6 +13,7 @@ import asyncio
 from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
 from inspect import isawaitable
 from typing import TYPE_CHECKING, Any, Generic
 
@@ -23,6 +24,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Handle, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime import waits
+from graphflow.runtime.clock import Clock
 from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.services import ServiceServer
@@ -80,10 +82,25 @@ class ServerGoal(Handle[Goal, Result, Feedback]):
 
     @property
     def is_cancel_requested(self) -> bool:
-        return self.is_preempted or self.status is GoalStatus.CANCELING
+        return self.is_preempted or self.status is GoalStatus.CANCELING or self.is_over
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended, however long ago."""
+        return self.status.is_terminal or self.status is GoalStatus.UNKNOWN
 
     def feedback(self, feedback: Feedback) -> None:
         self._server.send_feedback(self._id, feedback)
+
+
+@dataclass
+class _Decision:
+    """Whether a goal is to be accepted, while it is not known."""
+
+    client: bytes
+    is_wanted: bool = True
+    is_client_gone: bool = False
+    is_made: asyncio.Event = field(default_factory=asyncio.Event)
 
 
 class GoalServer(Generic[Goal, Result, Feedback]):
@@ -124,8 +141,12 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         self._accept, self._cancellable = accept, cancellable
         self._on_client_loss, self._cleanup_timeout = on_client_loss, cleanup_timeout
         self._waiting: deque[Any] = deque()
-        self._deciding: dict[bytes, bool] = {}
-        """Goals whose accept hook runs, and whether they are still wanted."""
+        self._deciding: dict[bytes, _Decision] = {}
+        """Goals whose accept hook runs."""
+        self._arriving = 0
+        """Goals that were accepted and are put into the queue when their answers have gone out."""
+        self._clock: Clock
+        """Also when the node has stopped, and a body has not."""
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
         send: Any = registry.interface_class(f"{type_.NAME}_SendGoal")
@@ -161,11 +182,9 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         return {"runs": runs, "errors": errors, "active": self.book.active(), "waiting": len(self._waiting)}
 
     def open(self) -> None:
-        group = self._group
-        if group is None and self.policy == "parallel":
-            group = HandlerGroup(None, self._label)
+        self._clock = self.node.clock
         queue = (self._waiting, self._run, self._finished, self._refused)
-        runner = self.node.runner(self._label, group, *queue, kind="action")
+        runner = self.node.runner(self._label, self._group, *queue, kind="action")
         runner.one_at_a_time = self.policy != "parallel"
         self.runner = runner
         for endpoint in self.endpoints:
@@ -192,23 +211,35 @@ class GoalServer(Generic[Goal, Result, Feedback]):
     async def _send_goal(self, request: Any, client: bytes) -> Any:
         goal_id = bytes(request.goal_id.uuid)
         known = self.book.goals.get(goal_id)
-        if known is not None:  # asked twice, by a client that has not heard the answer
+        # Asked twice, by a client that has not heard the answer.
+        if known is None and goal_id in self._deciding:
+            await self._deciding[goal_id].is_made.wait()
+            known = self.book.goals.get(goal_id)
+            return self._send_response(accepted=known is not None, stamp=_stamp(known.accepted_ns if known else 0))
+        if known is not None:
             return self._send_response(accepted=True, stamp=_stamp(known.accepted_ns))
         if self._is_full():
             return self._send_response(accepted=False)
-        self._deciding[goal_id] = True
+        decision = self._deciding[goal_id] = _Decision(client)
         try:
-            is_accepted = await self._is_accepted(request.goal) and self._deciding[goal_id]
+            is_accepted = await self._is_accepted(request.goal) and decision.is_wanted and not self._is_full()
+            if not is_accepted:
+                return self._send_response(accepted=False)
+            return self._accepted(goal_id, request.goal, decision)
         finally:
-            self._deciding.pop(goal_id, None)
-        if goal_id in self.book.goals or self._is_full() or not is_accepted:  # meanwhile, perhaps
-            return self._send_response(accepted=goal_id in self.book.goals)
-        record = self.book.accept(goal_id, self.node.context.clock.time_ns())
+            del self._deciding[goal_id]
+            decision.is_made.set()
+
+    def _accepted(self, goal_id: bytes, request: Any, decision: _Decision) -> Any:
+        record = self.book.accept(goal_id, self._clock.time_ns())
         self._forget_old()
-        goal = self.goals[goal_id] = ServerGoal(self, goal_id, request.goal, client)
+        goal = self.goals[goal_id] = ServerGoal(self, goal_id, request, decision.client)
         self._tell_status()
         # The answer goes out first.
+        self._arriving += 1
         self.node.context.loop.call_soon(self._begin, goal)
+        if decision.is_client_gone:
+            self.client_gone(decision.client)
         return self._send_response(accepted=True, stamp=_stamp(record.accepted_ns))
 
     def _is_full(self) -> bool:
@@ -216,7 +247,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
             return True
         if self.policy == "reject":
             return self.book.active() > 0
-        return self.policy == "queue" and len(self._waiting) >= QUEUE_DEPTH
+        return self.policy == "queue" and len(self._waiting) + self._arriving >= QUEUE_DEPTH
 
     async def _is_accepted(self, goal: Goal) -> bool:
         if self._accept is None:
@@ -232,6 +263,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         return False
 
     def _begin(self, goal: ServerGoal[Goal, Result, Feedback]) -> None:
+        self._arriving -= 1
         if self.runner is None or goal.status is not GoalStatus.ACCEPTED:
             return
         if self.runner.closed:  # the node has stopped meanwhile
@@ -248,7 +280,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         info = request.goal_info
         stamp = info.stamp.sec * NANOSECONDS + info.stamp.nanosec
         if (asked := bytes(info.goal_id.uuid)) in self._deciding:  # its client has given up: it will not be accepted
-            self._deciding[asked] = False
+            self._deciding[asked].is_wanted = False
         code, meant = self.book.to_cancel(asked, stamp)
         granted = [goal_id for goal_id in meant if self._grants_cancel(self.goals[goal_id])]
         if meant and not granted:
@@ -287,7 +319,8 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         """A cancel request was granted: the body gets CancelledError, once; a goal that waits ends without running."""
         if goal.status.is_cancelable:
             self._step(goal, GoalEvent.CANCEL_GOAL)
-            self._cancel_body(goal, "cancel requested")
+            if not goal.is_preempted:  # else its body is being cancelled as it is
+                self._cancel_body(goal, "cancel requested")
 
     def _preempt(self, goal: ServerGoal[Goal, Result, Feedback]) -> None:
         if goal.is_preempted:
@@ -305,8 +338,8 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         for run in self.runner.active:
             if run.item is goal:
                 run.cancel(why)
-                limit = self.node.context.clock.monotonic_ns() + to_ns(self._cleanup_timeout)
-                self.node.context.clock.call_at(limit, lambda: self._outstayed(goal))
+                limit = self._clock.monotonic_ns() + to_ns(self._cleanup_timeout)
+                self._clock.call_at(limit, lambda: self._outstayed(goal))
                 return
         if goal.status in (GoalStatus.ACCEPTED, GoalStatus.CANCELING) and not self._has_begun(goal):
             self._end_cancelled(goal)  # its answer is on its way, and it has not been put into the queue yet
@@ -315,7 +348,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         return self.runner is not None and any(run.item is goal for run in self.runner.active)
 
     def _outstayed(self, goal: ServerGoal[Goal, Result, Feedback]) -> None:
-        if not goal.status.is_terminal:
+        if not goal.is_over:
             self.is_degraded = True
             self.node.log.error(
                 "%s still runs %g s after it was cancelled; its goal is aborted, and it keeps its slot",
@@ -333,7 +366,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         self._end(goal, GoalEvent.ABORT, goal.partial)
 
     def _finished(self, goal: ServerGoal[Goal, Result, Feedback], result: Any, error: BaseException | None) -> None:
-        if goal.status.is_terminal:  # it outstayed its cancellation
+        if goal.is_over:  # it outstayed its cancellation
             return
         if error is None:
             if result is None and not self.result_class.SCHEMA.fields:
@@ -373,16 +406,18 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         goal.waiters.clear()
 
     def _step(self, goal: ServerGoal[Goal, Result, Feedback], event: GoalEvent) -> GoalStatus:
-        status = self.book.step(goal.goal_id, event, self.node.context.clock.monotonic_ns())
+        status = self.book.step(goal.goal_id, event, self._clock.monotonic_ns())
         self._tell_status()
         return status
 
     def _forget_old(self) -> None:
-        for goal_id in self.book.expire(self.node.context.clock.monotonic_ns()):
+        for goal_id in self.book.expire(self._clock.monotonic_ns()):
             del self.goals[goal_id]
 
     def client_gone(self, client: bytes) -> None:
         """A client's token is gone; it may come back."""
+        for decision in self._deciding.values():
+            decision.is_client_gone |= decision.client == client
         mine = [goal for goal in self.goals.values() if goal.client == client and not goal.status.is_terminal]
         if not mine or self._on_client_loss == "continue":
             return
@@ -394,8 +429,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
                         self.node.log.warning("%s: its client has gone; %r is cancelled", self._label, goal)
                         self.cancel(goal)
 
-        clock = self.node.context.clock
-        clock.call_at(clock.monotonic_ns() + to_ns(CLIENT_GRACE), still_gone)
+        self._clock.call_at(self._clock.monotonic_ns() + to_ns(CLIENT_GRACE), still_gone)
 
     # what clients hear
 
@@ -416,7 +450,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
     def _tell_status(self) -> None:
         if self._status.is_open:
             message = self._status.type()
-            for goal_id, record in self.book.shown(self.node.context.clock.monotonic_ns()):
+            for goal_id, record in self.book.shown(self._clock.monotonic_ns()):
                 entry = self.goals[goal_id].entry
                 entry.status = int(record.status)
                 message.status_list.append(entry)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-import os
 import threading
 from collections.abc import Callable
 from contextvars import copy_context
@@ -20,8 +19,8 @@ from graphflow.runtime.direct import Switchboard
 from graphflow.runtime.inspection import Inspection
 from graphflow.runtime.waits import Waits
 from graphflow.runtime.watchdog import Watchdog
-from graphflow.system import host_name, user_id
 from graphflow.transport.base import Closable, Session
+from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile
 
@@ -69,7 +68,7 @@ class Context:
         """What the handlers of this process wait for."""
         self.detector = Detector(self, deadlock)
         self.watchdog = Watchdog(self, self.detector.probe_blocked)
-        self._inspection = Inspection(self)
+        self.inspection = Inspection(self)
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._link: Link | None = None
@@ -117,8 +116,7 @@ class Context:
         context._takeover = takeover
         context.watchdog.start()
         takeover.guard(session)
-        token = f"@graphflow/{domain}/proc/{session.zid}/{user_id()}/{os.getpid()}/{host_name()}"
-        context._declared.append(session.announce(token))
+        context._declared.append(session.announce(process.token(domain, session.zid)))
         if link and not checked:
             try:
                 context.open_link()
@@ -247,7 +245,7 @@ class Context:
         """Leave the network. Nodes are to be stopped before."""
         self.watchdog.close()
         self.detector.close()
-        self._inspection.close()
+        self.inspection.close()
         if self._link is not None:
             await asyncio.to_thread(self._link.close)
         if self._takeover is not None:

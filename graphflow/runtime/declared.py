@@ -78,18 +78,28 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 
 
 def check_attributes(cls: type, taken: frozenset[str]) -> None:
-    """See that no declaration hides something that every node has.
+    """See that no declaration hides something that every node has, nor a method that does not call on it.
 
     Raises:
         DeclarationError: One does.
     """
-    found: dict[str, Held | Handler | Group] = {**held(cls), **handlers(cls), **groups(cls)}
+    found: dict[str, Any] = {**held(cls), **handlers(cls), **groups(cls)}
+    for attribute, value in vars(cls).items():
+        if inspect.isfunction(value) and not attribute.startswith("__") and "super" not in value.__code__.co_names:
+            found.setdefault(attribute, value)
     for attribute, declared in found.items():
-        if attribute in taken and attribute != "default_group":
+        if attribute in taken and attribute not in _REDEFINED:
             hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
             text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
-            place = f"{declared.place}: " if hasattr(declared, "place") else f"{cls.__name__}: "
+            if inspect.isfunction(declared):
+                place = f"{Place(declared.__code__.co_filename, declared.__code__.co_firstlineno)}: "
+            else:
+                place = f"{declared.place}: " if hasattr(declared, "place") else f"{cls.__name__}: "
             raise DeclarationError(f"{place}{text}")
+
+
+_REDEFINED = {"default_group", "on_start", "on_shutdown"}
+"""What subclasses are to say anew."""
 
 
 def groups(cls: type) -> dict[str, Group]:

@@ -1,9 +1,10 @@
 """Looks for deadlocks when somebody has waited: first in this process, then, if waits lead out of it, in all.
 
-Nothing is done while nothing waits. A call, or work that finds no slot, arms a look a quarter of a second later; what
-still waits then is looked at, and again at growing distances. Deadlocks within a process are seen in one picture of
-it. For others all processes are asked twice, as `machines.waits` explains. Every process that has a part in a
-deadlock finds it; the one that comes first by id reports it, and says when it is over.
+Nothing is done while nothing waits. A call, or work that finds no slot, arms a look a quarter of a second later, and
+so does the start of a task; what still waits then is looked at, and again at growing distances. Deadlocks within a
+process are seen in one picture of it. For others all processes are asked twice, as `machines.reduction` explains.
+Every process that has a part in a deadlock finds it; the one that comes first by id reports it, and says when it is
+over. Whoever finds it first has that one look at once.
 """
 
 from __future__ import annotations
@@ -12,15 +13,20 @@ import json
 import logging
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.errors import DeadlockError
 from graphflow.interface import DeadlockPolicy
 from graphflow.machines.explain import explanation, hopeless, title
 from graphflow.machines.picture import from_json
-from graphflow.machines.waits import FREE, Activity, Call, Condition, Deadlock, Picture, deadlocked, explained, joined
-from graphflow.runtime.inspection import WAITS, key
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import Deadlock, explained
+from graphflow.machines.waits import FREE, Activity, Call, Condition, Picture, joined
+from graphflow.runtime.inspection import LOOK, WAITS, key
 from graphflow.runtime.scheduler import Run, Runner
+from graphflow.runtime.stalls import Stalls
+from graphflow.runtime.unresponsive import SILENT_AFTER, Unresponsive, calls_of
 from graphflow.runtime.waits import goal_id
 from graphflow.times import to_ns
 
@@ -34,10 +40,23 @@ PROBE_AFTER = 0.25
 """Seconds that something waits before it is looked at."""
 PROBE_LONGEST = 8.0
 """Seconds between two looks at the same waits, at most."""
+TASKS_EVERY = 2.0
+"""Seconds between two looks at tasks, whose waits nobody announces, while nothing else waits."""
 PULL_LIMIT = 0.5
 """Seconds that other processes get to answer."""
 
-Key = frozenset[tuple[str, Condition]]
+Ring = frozenset[str]
+"""The members of a deadlock."""
+
+
+class Report(NamedTuple):
+    """A deadlock that was reported."""
+
+    text: str
+    who: str
+    """Has a part in it, in words."""
+    processes: set[str]
+    """In which its members are, and those who wait behind them."""
 
 
 class Detector:
@@ -52,12 +71,21 @@ class Detector:
         """Whether a look is due soon; always, and in vain, when nobody wants to know."""
         self.pulls = 0
         """How often other processes were asked."""
-        self.reports: dict[Key, tuple[str, str]] = {}
-        """The deadlocks there are now: explained, and who has a part in them."""
+        self.reports: dict[Ring, Report] = {}
+        """The deadlocks that this process has reported and that there are now."""
+        self.stalls = Stalls()
+        self._unresponsive = Unresponsive(context)
+        self._dead: set[str] = set()
+        """Whoever was last found to be dead, with the help of other processes."""
+        self._behind: dict[Ring, set[str]] = {}
+        """By deadlock, of whichever process: who was said to wait for it."""
         self._period = PROBE_AFTER
+        self._grown_ns = 0
+        """When the period has last become longer."""
         self._handle: Handle | None = None
         self._last: set[tuple[str, Condition]] = set()
         self._lock = threading.Lock()
+        self._is_closed = False
 
     def arm(self) -> None:
         """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
@@ -83,63 +111,101 @@ class Detector:
     def _look(self) -> None:
         picture = self._context.waits.picture()
         mine = self._context.session.zid
-        self._say_cleared(picture, {mine})
-        if any(not _is_of(mine, pair[0]) for ring in self.reports for pair in ring):
+        dead = deadlocked(picture)
+        self._say_cleared(dead, {mine})
+        if any(report.processes != {mine} for report in self.reports.values()):
             self._ask(self._look_again)
         waiting = {(a.id, a.wait) for a in picture.activities.values() if a.wait is not FREE}
         if not waiting and not any(q.waiting for q in picture.queues.values()):
             self.is_armed = not self.is_on
             self._last.clear()
+            self._behind.clear()
+            self._stall(picture, set())
+            if any(node.tasks for node in self._context.waits.nodes):
+                self._schedule(TASKS_EVERY)
             return
         young = [a.age for a in picture.activities.values() if a.wait is not FREE and not _is_old(a)]
-        for deadlock in explained(picture, deadlocked(picture)):
+        found = explained(picture, dead)
+        is_told_whole = _is_asked(picture) and not all(self._is_reported(frozenset(d.ring)) for d in found)
+        for deadlock in () if is_told_whole else found:
             self._tell(deadlock, picture)
-        if any(self._leaves(a, picture) for a in picture.activities.values() if _is_old(a)):
+        if is_told_whole or any(self._leaves(a, picture) for a in picture.activities.values() if _is_old(a)):
             self._pull()
         is_new = bool(waiting - self._last)
         self._last = waiting
         longest = 2 * PROBE_AFTER if self.reports else PROBE_LONGEST
-        self._period = PROBE_AFTER if is_new else min(2 * self._period, longest)
-        soonest = PROBE_AFTER - max(young) if young else self._period
-        self._schedule(min(max(soonest, 0.01), self._period))
+        now_ns = self._context.clock.monotonic_ns()
+        if is_new:
+            self._period, self._grown_ns = PROBE_AFTER, now_ns
+        elif now_ns - self._grown_ns >= to_ns(0.999 * self._period):
+            self._period, self._grown_ns = min(2 * self._period, longest), now_ns
+        else:
+            self._period = min(self._period, longest)
+        soonest = [PROBE_AFTER - max(young)] if young else []
+        soonest += [SILENT_AFTER] if self._unresponsive else []
+        soonest += self._stall(picture, dead | self._dead)
+        self._schedule(min(max(min(soonest, default=self._period), 0.01), self._period))
+
+    def _stall(self, picture: Picture, dead: set[str]) -> list[float]:
+        due = self.stalls.look(picture, dead, self._context.clock.monotonic_ns())
+        return [] if due is None else [due]
 
     def _leaves(self, activity: Activity, picture: Picture) -> bool:
         """Whether an activity waits for another process."""
         here = {a.serves for a in picture.activities.values()} | {c for q in picture.queues.values() for c in q.calls}
-        return any(call not in here for call in _calls(activity.wait))
+        return any(call.id not in here for call in calls_of(activity.wait))
 
     # other processes
 
     def _pull(self) -> None:
-        def first(replies: list[bytes]) -> None:
-            before = self._whole(replies)
-            if any(self._context.session.zid == before.activities[i].process for i in deadlocked(before)):
-                self._ask(lambda again: self._conclude(before, self._whole(again)))
+        """Ask all twice. Those who have not answered count as alive, so what the others tell may be enough."""
+        goes_on = False
+
+        def first(replies: list[bytes], is_all: bool) -> None:
+            nonlocal goes_on
+            before, answered = self._whole(replies)
+            if is_all:
+                self._unresponsive.compare(self._context.waits.picture(), answered)
+            dead = () if goes_on else deadlocked(before)
+            if any(self._context.session.zid == before.activities[i].process for i in dead):
+                goes_on = True
+                self._ask(lambda again, _: self._conclude(before, self._whole(again)[0]))
 
         self._ask(first)
 
-    def _ask(self, told: Callable[[list[bytes]], None]) -> None:
+    def _ask(self, told: Callable[[list[bytes], bool], None]) -> None:
+        if self._is_closed:
+            return
         self.pulls += 1
         self._context.session.ask_reports(key(self._context.domain, WAITS), PULL_LIMIT, told)
 
-    def _whole(self, replies: list[bytes]) -> Picture:
-        pictures = []
+    def _whole(self, replies: list[bytes]) -> tuple[Picture, set[str]]:
+        """The waits of all, and who has answered."""
+        pictures, answered = [], {self._context.session.zid}
         for reply in replies:
             try:
-                pictures.append(from_json(json.loads(reply)))
+                data = json.loads(reply)
+                picture, process = from_json(data), str(data["process"])
             except (ValueError, KeyError, TypeError, RecursionError) as error:
                 logger.debug("a picture of waits that cannot be read: %s", error)
-        return joined([*pictures, self._context.waits.picture()])
+                continue
+            pictures.append(picture)
+            answered.add(process)
+        return joined([*pictures, self._context.waits.picture()]), answered
 
-    def _look_again(self, replies: list[bytes]) -> None:
+    def _look_again(self, replies: list[bytes], is_all: bool) -> None:
         """Whether what was reported still stands in other processes."""
-        whole = self._whole(replies)
-        self._say_cleared(whole, {queue.process for queue in whole.queues.values()})
+        if not is_all:
+            return
+        whole, answered = self._whole(replies)
+        self._say_cleared(deadlocked(whole), answered)
 
     def _conclude(self, before: Picture, now: Picture) -> None:
-        dead = deadlocked(now, before)
-        for deadlock in explained(now, dead):
+        self._dead = deadlocked(now, before)
+        for deadlock in explained(now, self._dead):
             self._tell(deadlock, now)
+        if self.reports:  # to see when they are over
+            self._schedule(min(self._period, 2 * PROBE_AFTER))
 
     # what is said
 
@@ -162,16 +228,32 @@ class Detector:
         # What only the source code tells must have lasted: a setter may be about to run.
         if deadlock.is_likely and not all(_is_old(a) for a in members):
             return
-        ring = frozenset((name, edge.via) for name, edge in zip(deadlock.ring, deadlock.edges, strict=True))
-        mine = self._context.session.zid
+        ring, mine = frozenset(deadlock.ring), self._context.session.zid
+        who = " and ".join(title(a) for a in members)
+        # One that was told may have grown since, and another ring of it be found.
+        told = next((known for known in self.reports if known & ring), ring)
+        behind = [picture.activities[i] for i in (*deadlock.victims, *(ring - told))]
+        victims = {title(a) for a in behind if a.process == mine}
         if self.policy == "break" and not deadlock.is_likely:
             self._break(deadlock, picture)
-        able = sorted({a.process for a in members if a.process not in picture.blocked}) or [mine]
-        if ring in self.reports or able[0] != mine:
-            return
-        text = explanation(deadlock, picture)
-        self.reports[ring] = text, " and ".join(title(a) for a in members)
-        logger.error("%s", text)
+        processes = {a.process for a in members}
+        first = min(processes - set(picture.blocked) or processes)
+        if first != mine and ring not in self._behind:
+            self._context.session.ask_reports(key(self._context.domain, LOOK, first), PULL_LIMIT, _nothing)
+        if first == mine and told not in self.reports:
+            text = explanation(deadlock, picture)
+            involved = {a.process for a in behind} | processes
+            self.reports[ring] = Report(text, who, involved)
+            logger.error("%s", text)
+            self._behind[ring] = victims
+        for victim in sorted(victims - self._behind.setdefault(told, set())):
+            report = self.reports.get(told)
+            logger.warning("%s waits behind the deadlock of %s", victim, who if report is None else report.who)
+        self._behind[told] |= victims
+
+    def _is_reported(self, ring: Ring) -> bool:
+        """Whether it, or another ring through one of its members, has been reported and stands."""
+        return any(ring & known for known in self.reports)
 
     def _break(self, deadlock: Deadlock, picture: Picture) -> None:
         """End the youngest call or goal of the ring, if it is of this process: all find the ring, and agree on one."""
@@ -189,18 +271,24 @@ class Detector:
             if not future.done():
                 future.set_exception(DeadlockError(explanation(deadlock, picture)))
 
-    def _say_cleared(self, picture: Picture, processes: set[str]) -> None:
-        """Take back reports of rings of which a member in one of these processes has moved on."""
+    def _say_cleared(self, dead: set[str], processes: set[str]) -> None:
+        """Take back reports of rings that are no longer dead.
 
-        def still_waits(name: str, via: Condition) -> bool:
-            activity = picture.activities.get(name)
-            return activity is not None and _contains(activity.wait, via)
+        Args:
+            processes: Those that have been looked at. Nothing is known of others that are there.
+        """
+        for ring, report in list(self.reports.items()):
+            unknown = report.processes - processes
+            if not ring <= dead and not any(entity.zid in unknown for entity in self._context.cache):
+                del self.reports[ring]
+                self._behind.pop(ring, None)
+                logger.warning("the deadlock of %s has cleared", report.who)
 
-        for ring in list(self.reports):
-            known = [pair for pair in ring if pair[0].partition(":")[0] in processes]
-            if not all(still_waits(name, via) for name, via in known):
-                _, who = self.reports.pop(ring)
-                logger.warning("the deadlock of %s has cleared", who)
+    def look_now(self) -> None:
+        """Another process has found a deadlock that this one is to report. From any thread."""
+        if self.policy != "off":
+            with suppress(RuntimeError):  # the loop is closed
+                self._context.loop.call_soon_threadsafe(self._pull)
 
     def probe_blocked(self) -> None:
         """The event loop is blocked: look from the thread that has noticed it."""
@@ -216,25 +304,23 @@ class Detector:
 
     def close(self) -> None:
         """Look no more."""
+        self._is_closed = True
         if self._handle is not None:
             self._handle.cancel()
         self.is_armed = True
 
 
-def _is_of(process: str, activity: str) -> bool:
-    return activity.startswith(f"{process}:")
+def _nothing(*_: object) -> None:
+    """Nobody waits for the answers."""
 
 
-def _contains(wait: Condition, part: Condition) -> bool:
-    return wait == part or any(_contains(inner, part) for inner in getattr(wait, "of", ()))
+def _is_asked(picture: Picture) -> bool:
+    """Whether somebody else waits for what this process is to answer."""
+    activities, queues = picture.activities.values(), picture.queues.values()
+    asked = {call for queue in queues for call in queue.calls} | {a.serves for a in activities if a.serves}
+    return not asked.issubset(call.id for a in activities for call in calls_of(a.wait))
 
 
 def _is_old(activity: Activity) -> bool:
     """Whether it has waited long enough to be looked at."""
     return activity.age >= 0.999 * PROBE_AFTER
-
-
-def _calls(wait: Condition) -> list[str]:
-    if isinstance(wait, Call):
-        return [wait.id]
-    return [call for inner in getattr(wait, "of", ()) for call in _calls(inner)]

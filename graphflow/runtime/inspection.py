@@ -1,6 +1,7 @@
 """What a process tells of its handlers and groups, and lets be changed in them, on keys that ROS 2 knows nothing of.
 
 @graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
+@graphflow/<domain>/look/<zid>       has it look for a deadlock that somebody else has found and it is to report
 @graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
 """
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from graphflow.runtime.node import Node
     from graphflow.runtime.scheduler import Runner
 
-WAITS, GROUPS = "waits", "groups"
+WAITS, LOOK, GROUPS = "waits", "look", "groups"
 _KINDS = ("timer", "subscription", "service", "action")
 
 
@@ -35,7 +36,10 @@ class Inspection:
     def __init__(self, context: Context) -> None:
         self._context = context
         session, domain = context.session, context.domain
-        self._report = session.open_report(key(domain, WAITS, session.zid), self._waits)
+        self._reports = (
+            session.open_report(key(domain, WAITS, session.zid), self._waits),
+            session.open_report(key(domain, LOOK, session.zid), self._look),
+        )
         self._inbox = Inbox(session.bell, None, self._asked)
         self._server = session.open_server(key(domain, GROUPS, session.zid), self._inbox)
 
@@ -45,12 +49,20 @@ class Inspection:
         nodes = {node.full_name: groups_of(node) for node in list(context.waits.nodes)}
         told = {
             **to_json(context.waits.picture_for_others()),
-            "reports": [text for text, _ in list(context.detector.reports.values())],
+            "reports": [report.text for report in list(context.detector.reports.values())],
+            "process": context.session.zid,
+            "stalls": context.detector.stalls.texts,
             "nodes": nodes,
+            "blocked_for": context.watchdog.blocked_for if context.watchdog.is_blocked else 0.0,
             "late": context.watchdog.late,
             "longest": context.watchdog.longest,
         }
         return json.dumps(told).encode()
+
+    def _look(self) -> bytes:
+        """On any thread."""
+        self._context.detector.look_now()
+        return b""
 
     def _asked(self) -> None:
         while self._inbox.items:
@@ -79,7 +91,8 @@ class Inspection:
 
     def close(self) -> None:
         """Answer no more."""
-        self._report.close()
+        for report in self._reports:
+            report.close()
         self._server.close()
 
 

@@ -32,6 +32,7 @@ from graphflow.runtime.groups import Groups, HandlerGroup
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import Change, Parameters
+from graphflow.runtime.places import is_users
 from graphflow.runtime.rosout import Rosout, node_logger
 from graphflow.runtime.scheduler import Finished, Runner
 from graphflow.runtime.service_events import Introspection
@@ -91,7 +92,9 @@ class Node:
     __firstlineno__: ClassVar[int]
     failure: BaseException | None = None
     """The error that ended the node."""
-    _made = False
+    _ended: asyncio.Future[None] | None = None
+    _made: Mapping[str, Any] | None = None
+    """What its own `__init__` has set."""
 
     def __init__(
         self,
@@ -124,7 +127,6 @@ class Node:
         """What `spawn` has started and has not ended."""
         self.runners: list[Runner] = []
         """What runs its handlers."""
-        self._ended: asyncio.Future[None] | None = None
         self._token: Any = None
         self._own_services: set[str] = set()
         self._rosout: Rosout | None = None
@@ -133,7 +135,7 @@ class Node:
         self.groups = Groups(declared.groups(type(self)), type(self).default_group, concurrency or {})
         """The node's concurrency groups."""
         self._failures = Failures(self, self._fail)
-        self._made = True
+        self._made = dict(vars(self))
         self._bind_declarations(
             parameter_services=start_parameter_services, rosout=enable_rosout, logger_service=enable_logger_service
         )
@@ -399,6 +401,7 @@ class Node:
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
         self.tasks.add(task)
         task.add_done_callback(self._task_done)
+        self.context.detector.arm()
 
     # its life
 
@@ -406,11 +409,15 @@ class Node:
         """See that the node was made as it should be.
 
         Raises:
-            DeclarationError: Its `__init__` did not call `super().__init__`.
+            DeclarationError: Its `__init__` did not call `super().__init__`, or has set what every node has.
             ParameterError: A value was given for a parameter that it does not have.
         """
-        if not self._made:
+        if self._made is None:
             raise DeclarationError(f"{type(self).__name__}.__init__ must call super().__init__(...)")
+        for attribute, value in self._made.items():
+            if not attribute.startswith("_") and vars(self).get(attribute) is not value:
+                text = f"self.{attribute} is something every node has; call the attribute otherwise"
+                raise DeclarationError(f"{type(self).__name__}: {text}")
         unused = self.parameters.unused_overrides()
         if unused:
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
@@ -438,10 +445,10 @@ class Node:
             nothing is left open.
             ClosedError: The node is running already, or has been stopped.
         """
-        self.ensure_made()
         if self._ended is not None:
             state = "is running already" if self.is_running else "has been stopped; make a new one"
             raise ClosedError(f"node {self.full_name} {state}")
+        self.ensure_made()
         self._context = context
         self.id = context.next_id()
         self._ended = context.loop.create_future()
@@ -594,7 +601,7 @@ class Node:
         name = f"{self.full_name}.{label}"
         made = Runner(self.context.loop, name, group, items, invoke, finished, refused, kind=kind)
         made.stalled = self.context.detector.arm
-        self.runners = [r for r in self.runners if not r.closed or r.active]
+        self.runners[:] = [r for r in self.runners if not r.closed or r.active]
         self.runners.append(made)
         return made
 
@@ -738,7 +745,7 @@ def _place(error: BaseException) -> str:
     """The last line of the user's own code that an error passed through, to be put behind its text."""
     place, trace = "", error.__traceback__
     while trace is not None:
-        if not trace.tb_frame.f_code.co_filename.startswith(_PACKAGE):
+        if is_users(trace.tb_frame.f_code.co_filename):
             place = f" ({trace.tb_frame.f_code.co_filename}:{trace.tb_lineno})"
         trace = trace.tb_next
     return place

@@ -300,8 +300,8 @@ class Runner:
         self.errors = 0
         """Runs that ended with an error."""
         self.group = group
-        self.one_at_a_time = False
-        """Whether its runs exclude each other even in a group that allows more."""
+        self.one_at_a_time: bool | None = None
+        """Whether its runs exclude each other whatever group they run in; None: when they run in none."""
         self.active: set[Run] = set()
         """Runs that have begun and not ended."""
         self._loop = loop
@@ -324,6 +324,11 @@ class Runner:
         return f"{self.kind} {self.handler}".strip()
 
     @property
+    def is_serial(self) -> bool:
+        """Whether its runs come one after the other."""
+        return self.group is None if self.one_at_a_time is None else self.one_at_a_time
+
+    @property
     def closed(self) -> bool:
         """Whether `cancel` has been called."""
         return self._closed
@@ -338,7 +343,7 @@ class Runner:
             for _ in range(BURST):
                 if not items or self._closed:
                     return
-                if (group is None or self.one_at_a_time) and active:
+                if active and (group is None if self.one_at_a_time is None else self.one_at_a_time):
                     self.stalled()
                     return
                 # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
@@ -450,7 +455,11 @@ class Runner:
             self.wake()
 
     def cancel(self) -> asyncio.Future[None]:
-        """Begin no more runs and cancel those under way; the future is done when they have ended."""
+        """Begin no more runs and cancel those under way, but for those that clean up after having been cancelled.
+
+        Returns:
+            A future that is done when all have ended.
+        """
         if not self._closed and self.group is not None:
             self.group.withdraw(self)
             self.group.members.remove(self)
@@ -458,7 +467,8 @@ class Runner:
         if self._idle is None:
             self._idle = self._loop.create_future()
         for run in list(self.active):
-            run.cancel()
+            if not run.cancelling():
+                run.cancel()
         self._look_idle()
         return self._idle
 

@@ -110,6 +110,9 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def _arrived(self) -> None:
         assert self._inbox is not None
         assert self.runner is not None
+        if not self.is_open:
+            self._answer_no_more()
+            return
         self.runner.wake()
         if self._inbox.items and self.node.context.detector.fails_hopeless:
             self._fail_hopeless()
@@ -175,11 +178,14 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._service_events.close()
         if self.runner is not None:
             self.runner.cancel()
-        while self._inbox is not None and self._inbox.items:
-            self._inbox.items.popleft().reply_error(_STOPPING.to_payload())
+        self._answer_no_more()
         if self._lines is not None:
             self._lines.close()
         super().close()
+
+    def _answer_no_more(self) -> None:
+        while self._inbox is not None and self._inbox.items:
+            self._inbox.items.popleft().reply_error(_STOPPING.to_payload())
 
 
 class _Reply(NamedTuple):
@@ -386,7 +392,9 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         assert runner is not None
 
         def queue(answer: Answer | None) -> None:
-            if answer is not None:
+            if answer is not None and answer.is_error and isinstance(_error_of(answer.payload, ""), DeadlockError):
+                answered(answer)  # it would wait for its own caller
+            elif answer is not None:
                 self._replies.append(_Reply(call, lambda: answered(answer)))
                 runner.wake()
             elif not any(reply.call == call for reply in self._replies):

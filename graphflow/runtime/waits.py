@@ -11,20 +11,20 @@ import asyncio
 import gc
 import queue
 import sys
-import sysconfig
 import threading
 from asyncio import Future
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from types import FrameType, MethodType
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from graphflow.errors import DecodeError, Place
 from graphflow.machines import waits as picture_of
 from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot
 from graphflow.runtime.clock import Clock
 from graphflow.runtime.closed_world import setters
+from graphflow.runtime.places import is_users
 from graphflow.runtime.scheduler import Activity, Run, Runner
 from graphflow.times import to_ns
 from graphflow.wire import attachment, chain
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from graphflow.runtime.groups import HandlerGroup
     from graphflow.runtime.node import Node
 
-_OURS = str(Path(__file__).parents[1])
-_PYTHONS = sysconfig.get_path("stdlib")
 _ATTEMPTS = 5
 LOOP_LIMIT = 0.2
 """Seconds that the loop gets to take a picture of itself."""
@@ -66,6 +64,9 @@ class Waits:
         """What a call that blocks the event loop waits for."""
         self.nodes: list[Node] = []
         self.process = chain.process_of(context.session.zid)
+        self._count = 0
+        """Of tasks that have a number."""
+        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
         self._lock = threading.RLock()
         self._since: dict[tuple[str, Condition], int] = {}
 
@@ -85,9 +86,9 @@ class Waits:
         if not hops:
             return []
         group = runner.group
-        if group is None:
+        if group is None and runner.is_serial:
             holders, limit = list(runner.active), 1
-        elif group.limit is None:
+        elif group is None or group.limit is None:
             return []
         else:
             members = [m for m in group.members if isinstance(m, Runner)]
@@ -124,6 +125,12 @@ class Waits:
     @staticmethod
     def id_of(call: OutCall) -> str:
         return call_id(call[0], call[1])
+
+    def number_of(self, task: Any) -> int:
+        """A number that no other task ever has."""
+        if task not in self._numbers:
+            self._count += 1
+        return self._numbers.setdefault(task, self._count)
 
     def age(self, activity: str, wait: Condition, now_ns: int) -> float:
         """Seconds since this wait was first seen."""
@@ -193,7 +200,7 @@ class _Camera:
         return f"{self._zid}:{run.number}"
 
     def task_id(self, task: Any) -> str:
-        return self.run_id(task) if isinstance(task, Run) else f"{self._zid}:t{id(task):x}"
+        return self.run_id(task) if isinstance(task, Run) else f"{self._zid}:t{self._waits.number_of(task)}"
 
     def queue_id(self, runner: Runner) -> str:
         return f"{self._zid}:q{runner.number}"
@@ -208,7 +215,7 @@ class _Camera:
 
     def _slots(self, node: Node, runner: Runner, group: HandlerGroup | None) -> tuple[str, ...]:
         named = () if group is None else (self._named(node, group),)
-        if runner.group is not None and not runner.one_at_a_time:
+        if not runner.is_serial:
             return named
         own = f"{self._zid}:own{runner.number}"
         self._groups[own] = picture_of.Group(own, "", node.full_name, 1)
@@ -322,8 +329,8 @@ class _Camera:
         for frame in reversed(frames):
             together = _joint_wait(frame)
             if together is not None:
-                futures, kind = together
-                if any(f.done() and (kind is AnyOf or _has_failed(f)) for f in futures):
+                futures, kind, fails_early = together
+                if any(f.done() and (kind is AnyOf or (fails_early and _has_failed(f))) for f in futures):
                     return FREE  # its next step is due
                 conditions = tuple(self._of_future(f, way) for f in futures if not f.done())
                 return All(conditions) if kind is All else AnyOf(conditions)
@@ -374,7 +381,7 @@ class _Camera:
                 return known if known is not None else self._condition(future, way)
             children = getattr(future, "_children", None)
             if children is not None:  # gather
-                if any(c.done() and _has_failed(c) for c in children):
+                if any(c.done() and _has_failed(c) for c in children) and not _returns_errors(children):
                     return FREE
                 return All(tuple(self._of_future(c, way) for c in children if not c.done()))
             inner = _shielded(future)
@@ -420,8 +427,8 @@ class _Camera:
             chain = list(_coroutines(task.get_coro()))
             frames = [frame for frame in map(_frame_of, chain) if frame is not None]
             entered = [c for coroutine in chain for c in _entered(coroutine) if lock in (c, getattr(c, "_lock", None))]
-            waits = any(f.f_code is _CONDITION_WAIT and f.f_locals["self"]._lock is lock for f in frames)
-            found += [task] * (len(entered) - waits)
+            outside = [f.f_locals["self"] for f in frames if f.f_code in (_CONDITION_WAIT, _ENTER)]
+            found += [task] * (len(entered) - sum(lock in (o, getattr(o, "_lock", None)) for o in outside))
         return found
 
     # the loop
@@ -534,8 +541,7 @@ def _users(frames: Iterable[FrameType]) -> FrameType | None:
     """The innermost frame that is neither graphflow's nor Python's own."""
     found = None
     for frame in frames:
-        file = frame.f_code.co_filename
-        if not file.startswith((_OURS, _PYTHONS, "<frozen")):
+        if is_users(frame.f_code.co_filename):
             found = frame
     return found
 
@@ -546,20 +552,36 @@ _TASK_GROUP_EXITS = tuple(
 _WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
 _WAIT_FOR = asyncio.wait_for.__code__
 _CONDITION_WAIT = asyncio.Condition.wait.__code__
+_ENTER = asyncio.Lock.__aenter__.__code__
 _CLOCK_TIMEOUT = Clock.timeout.__wrapped__.__code__  # type: ignore[attr-defined]
 
 
-def _joint_wait(frame: FrameType) -> tuple[list[Any], type[All | AnyOf]] | None:
-    """The tasks that one of asyncio's primitives waits for, if this is the frame of one."""
+def _joint_wait(frame: FrameType) -> tuple[list[Any], type[All | AnyOf], bool] | None:
+    """The tasks that one of asyncio's primitives waits for, if this is the frame of one.
+
+    Returns:
+        The tasks, whether all or any is waited for, and whether an error of one of them ends the wait.
+    """
     code, names = frame.f_code, frame.f_locals
     if code in _TASK_GROUP_EXITS:
-        return list(names["self"]._tasks), All
+        return list(names["self"]._tasks), All, True
     if code is _WAIT:
         is_all = names["return_when"] == asyncio.ALL_COMPLETED
-        return list(names["fs"]), All if is_all else AnyOf
+        return list(names["fs"]), All if is_all else AnyOf, False
     if code is _WAIT_FOR and asyncio.isfuture(names.get("fut")):
-        return [names["fut"]], All
+        return [names["fut"]], All, True
     return None
+
+
+def _returns_errors(children: Iterable[Any]) -> bool:
+    """Whether `asyncio.gather` was called with `return_exceptions`, told by the callback that it hangs on its parts."""
+    for child in children:
+        for entry in getattr(child, "_callbacks", None) or ():
+            callback = entry[0] if isinstance(entry, tuple) else entry
+            names = getattr(getattr(callback, "__code__", None), "co_freevars", ())
+            if "return_exceptions" in names:
+                return bool(callback.__closure__[names.index("return_exceptions")].cell_contents)
+    return False
 
 
 def _shielded(outer: Any) -> Any:

@@ -63,9 +63,14 @@ class Watchdog:
         return self.blocked_for > ANSWER_WITHIN
 
     def _watch(self) -> None:
+        began = time.monotonic()
         while not self._ended.wait(LOOK_EVERY):
+            held = time.monotonic() - began - LOOK_EVERY
+            if held > REPORT_AFTER:
+                logger.warning("nothing of this process could run for %.1f s: it was stopped, or C code held it", held)
             if self._is_busy():
                 self._ring_and_wait()
+            began = time.monotonic()
 
     def _is_busy(self) -> bool:
         """Whether the loop is doing something just now."""

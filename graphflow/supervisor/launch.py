@@ -19,10 +19,12 @@ from typing import TYPE_CHECKING, Any
 from graphflow.system import detached, is_portable
 
 if TYPE_CHECKING:
+    from graphflow.graph.check import Interfaces
     from graphflow.graph.plan import Plan
     from graphflow.runtime.context import Context
     from graphflow.supervisor.rundir import Run, RunDirectory
     from graphflow.supervisor.starter import Starter
+    from graphflow.supervisor.supervisor import Supervisor
 
 Report = dict[str, Any]
 
@@ -162,11 +164,10 @@ class _Launch:
         if problems:
             raise GraphFileError(problems)
         types = {s.name: t for s in plan.steps if (t := step_type(s, plan, interfaces))}
-        places = {path: str(i.place) for path, i in interfaces.items()}
-        return asyncio.run(self._claim_and_supervise(plan, domain, places, types))
+        return asyncio.run(self._claim_and_supervise(plan, domain, interfaces, types))
 
     async def _claim_and_supervise(
-        self, plan: Plan, domain: int, places: dict[str, str], step_types: dict[str, str]
+        self, plan: Plan, domain: int, interfaces: Interfaces, step_types: dict[str, str]
     ) -> int:
         from graphflow.introspect.view import refuse_taken_names
         from graphflow.runtime.context import Context
@@ -183,7 +184,7 @@ class _Launch:
             try:
                 context.open_link()
                 run = _run_file(plan, run_id, logs, domain)
-                return await self._supervise(plan, context, directory, run, places, step_types)
+                return await self._supervise(plan, context, directory, run, interfaces, step_types)
             finally:
                 await context.close()
         finally:
@@ -195,7 +196,7 @@ class _Launch:
         context: Context,
         directory: RunDirectory,
         run: Run,
-        places: dict[str, str],
+        interfaces: Interfaces,
         step_types: dict[str, str],
     ) -> int:
         import asyncio
@@ -214,18 +215,34 @@ class _Launch:
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
         if self._attached:
             control.expect_lifeline()
-        self._report(ok=True, run=run.__dict__, classes=places)
+        classes = {path: str(interface.place) for path, interface in interfaces.items()}
+        self._report(ok=True, run=run.__dict__, classes=classes)
         os.close(self._report_pipe)
         self._report_pipe = -1
         linked = asyncio.create_task(context.wait_linked())
+        warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
         try:
             code = await supervisor.run()
             await control.wait_followed()
             return code
         finally:
             linked.cancel()
+            warned.cancel()
             await control.close()
             await self._starter.close()
+
+
+async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
+    """Once the graph is up, tell of the deadlocks that its source tells of."""
+    import asyncio
+
+    from graphflow.graph.static import findings, warnings
+
+    await supervisor.up.wait()
+    if plan.deadlock != "off":
+        ways = await asyncio.to_thread(findings, plan, interfaces)
+        for text in warnings(ways, plan.file):
+            supervisor.note(text)
 
 
 def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> Run:

@@ -54,6 +54,8 @@ class Supervisor:
     def __init__(self, plan: Plan, context: Context, starter: Starter, logs: Path, step_types: dict[str, str]) -> None:
         self.plan = plan
         self.exit_code = 0
+        self.up = asyncio.Event()
+        """All is ready, and all steps are done."""
         self.ended = asyncio.Event()
         self._context = context
         self._starter = starter
@@ -71,7 +73,6 @@ class Supervisor:
         self._stopping = False
         self._layers: list[list[str]] = []
         self._began = time.monotonic()
-        self._is_up = False
         self._history: list[dict[str, Any]] = []
         self._listeners: list[Callable[[dict[str, Any]], None]] = []
 
@@ -205,8 +206,8 @@ class Supervisor:
             elif name not in self._step_tasks:
                 planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
                 self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
-        if not self._is_up and len(self._done) == len(self._processes) + len(self.plan.steps):
-            self._is_up = True
+        if not self.up.is_set() and len(self._done) == len(self._processes) + len(self.plan.steps):
+            self.up.set()
             self._tell(event="up", seconds=time.monotonic() - self._began)
 
     def _finished(self, name: str) -> None:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from asyncio import AbstractEventLoop
 
 Payload = bytes | bytearray | memoryview
+EARLY = 0.1
+"""Seconds after which reports that have come are told although others have not."""
 
 
 class Closable(Protocol):
@@ -130,9 +132,13 @@ class Session(Protocol):
         are threads, so that it answers while the loop is blocked.
         """
 
-    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
-        """Ask all reports whose key matches; `told` is called on the loop, once, with those that came in `limit`
-        seconds.
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
+        """Ask all reports whose key matches.
+
+        Args:
+            limit: Seconds that they get to come.
+            told: Called on the loop with those that came, and whether these are all: once, or also before, after
+                `EARLY` seconds, where some have not come by then.
         """
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:

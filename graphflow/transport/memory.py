@@ -101,6 +101,7 @@ class _Sender:
     ) -> None:
         self._network, self._key, self.zid = network, key, zid
         self._changed = changed
+        self._is_closed = False
         keeps = qos.durability is Durability.TRANSIENT_LOCAL
         self.history: deque[_Sample] = deque(maxlen=qos.depth if keeps else 0)
         network.senders.setdefault(key, []).append(self)
@@ -114,6 +115,8 @@ class _Sender:
             self._changed()
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
+        if self._is_closed:  # its session has died, and its node has not noticed
+            return
         sample = _Sample(bytes(payload), attachment, self._key)
         self.history.append(sample)
         for receiver in self._network.receivers_of(self._key):
@@ -123,7 +126,7 @@ class _Sender:
                 self._network.deliver(partial(put, sample), link, is_lossy=True)
 
     def close(self) -> None:
-        self._changed = None
+        self._changed, self._is_closed = None, True
         if self in self._network.senders.get(self._key, ()):
             self._network.senders[self._key].remove(self)
 
@@ -161,15 +164,16 @@ class _Call:
         self._given_up = False
 
     def server_done(self, answer: Answer | None) -> None:
-        self._open -= 1
-        for event in ([answer] if answer is not None else []) + ([None] if self._open <= 0 else []):
-            if not self._loop.is_closed():
-                arrive = partial(self._loop.call_soon, self._deliver, event)
-                self._network.deliver(arrive, f"answer {id(self)}")
+        if not self._loop.is_closed():
+            arrive = partial(self._loop.call_soon, self._arrive, answer)
+            self._network.deliver(arrive, f"answer {id(self)}")
 
-    def _deliver(self, event: Answer | None) -> None:
-        if not self._given_up:
-            self._answered(event)
+    def _arrive(self, answer: Answer | None) -> None:
+        self._open -= 1
+        if answer is not None and not self._given_up:
+            self._answered(answer)
+        if self._open <= 0 and not self._given_up:
+            self._answered(None)
 
     def give_up(self) -> None:
         self._given_up = True
@@ -273,9 +277,9 @@ class MemorySession:
 
         return self._keep(_Declared(withdraw))
 
-    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
-        reports = [report for known, report in self._network.reports.items() if _any_of(known) == key]
-        self._loop.call_soon(lambda: told([report() for report in reports]))
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
+        reports = [report for known, report in self._network.reports.items() if key in (known, _any_of(known))]
+        self._loop.call_soon(lambda: told([report() for report in reports], True))
 
     def announce(self, token: str) -> _Declared:
         self._network.tokens[token] = None

@@ -23,7 +23,7 @@ import zenoh
 from zenoh.handlers import Callback
 
 from graphflow.qos import Durability, Qos, Reliability
-from graphflow.transport.base import Answer, Bell, Inbox, Payload
+from graphflow.transport.base import EARLY, Answer, Bell, Inbox, Payload
 from graphflow.transport.config import (
     QUERY_LIMIT_MS,
     close_at_exit,
@@ -260,14 +260,16 @@ class ZenohSession:
 
         return _Declared(self.raw.declare_queryable(key, asked))  # on Zenoh's callback thread: the loop may be blocked
 
-    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes]], None]) -> None:
+    def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
         found: list[bytes] = []
+        early = self._loop.call_later(EARLY, lambda: told(found.copy(), False))
 
         def deliver() -> None:
             while inbox.items:
                 reply = inbox.items.popleft()
                 if reply is None:
-                    told(found)
+                    early.cancel()
+                    told(found, True)
                 elif reply.ok is not None:
                     found.append(reply.ok.payload.to_bytes())
 

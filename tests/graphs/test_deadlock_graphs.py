@@ -121,6 +121,20 @@ def test_a_fixed_graph_works(machine: Machine, name: str) -> None:
     assert up.end() == 0
 
 
+@pytest.mark.parametrize(
+    ("name", "note"),
+    [
+        ("self_call", "self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add"),
+        ("crossing", "note: 1 deadlock that may happen is explained by: graphflow check "),
+    ],
+)
+def test_what_the_source_tells_is_told_at_the_start(machine: Machine, name: str, note: str) -> None:
+    """What will not work is said in full, of what may not it is said how to learn more."""
+    up = machine.start("up", str(FOLDER / f"{name}_broken.yaml"))
+    up.wait_for(note)
+    assert up.end() == 0
+
+
 def test_every_pair_is_here() -> None:
     """A fix is an `include` and an `override`, and nothing else; every file has its counterpart."""
     names = {f.stem.removesuffix("_broken").removesuffix("_fixed") for f in FOLDER.glob("*.yaml")}

@@ -134,6 +134,8 @@ def test_what_is_no_picture(data: Any) -> None:
         ("activities", [["a"]], ValueError),
         ("groups", [["g", "g", "/n", "1"]], TypeError),
         ("groups", [["g", "g", "/n"]], ValueError),
+        ("groups", [["g", "g", "/n", 0]], ValueError),
+        ("groups", [["g", "g", "/n", True]], TypeError),
         ("queues", [["q", "service q", "/n", ["g"], ["c", 1], 0, 0, "p"]], TypeError),
         ("blocked", ["p"], TypeError),
         ("blocked", {"p": 1}, TypeError),
@@ -150,7 +152,8 @@ def test_parts_that_are_wrong(key: str, value: object, error: type[Exception]) -
 
 
 @pytest.mark.parametrize(
-    "wait", [["later"], [], "call", [["call"]], ["call", "c", 1], ["slot", "g", "1"], ["all", [1]]]
+    "wait",
+    [["later"], ["set", "it", [], [], 1], [], "call", [["call"]], ["call", "c", 1], ["slot", "g", "1"], ["all", [1]]],
 )
 def test_conditions_that_are_wrong(wait: object) -> None:
     """Only conditions of known kinds are read, and only with parts of the right types."""
@@ -166,7 +169,12 @@ def nested(levels: int) -> list[Any]:
 
 
 def test_how_deep_conditions_go() -> None:
-    """Conditions inside each other are read to a limit, far below that of the stack."""
+    """Conditions inside each other are written and read to a limit, far below that of the stack."""
+    deep: Condition = Call("c", "/add")
+    for _ in range(DEEPEST + 1):
+        deep = All((deep,))
+    written = to_json(Picture({"a": Activity("a", "timer tick", "/n", wait=deep)}))
+    assert from_json(json.loads(json.dumps(written))).activities["a"].wait != deep
     picture = from_json(one(nested(DEEPEST)))
     assert to_json(picture)["activities"] == one(nested(DEEPEST))["activities"]
 

@@ -11,6 +11,8 @@ import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import Edge, explained
 from graphflow.machines.waits import (
     FREE,
     Activity,
@@ -18,15 +20,12 @@ from graphflow.machines.waits import (
     AnyOf,
     Call,
     Condition,
-    Edge,
     Group,
     Join,
     Picture,
     Queue,
     SetBy,
     Slot,
-    deadlocked,
-    explained,
     joined,
 )
 from tests.machines.tiny_graph import (
@@ -263,7 +262,6 @@ def test_tasks_that_await_each_other() -> None:
         (All((call("c"), LIVE)), True),
         (All((call("c"), call("soon"))), True),
         (All((call("c"), DEAD)), False),
-        (AnyOf((call("c"), DEAD)), False),
         (All((All((call("c"), LIVE)), DEAD)), True),
     ],
 )
@@ -378,12 +376,15 @@ def test_a_loop_blocked_by_somebody_unknown() -> None:
     assert not deadlocked(seen)
 
 
-def test_a_request_for_a_blocked_loop() -> None:
-    """A request cannot begin where the loop is blocked for ever, whatever slots are free."""
-    asks = run("asks", call("d"), process="q")
+@pytest.mark.parametrize("wait", [call("d"), SetBy("self.arrived", ("s",))])
+def test_a_request_for_a_blocked_loop(wait: Condition) -> None:
+    """No handler begins where the loop is blocked for ever, whatever slots are free."""
+    asks = run("asks", wait, process="q")
     there = (run("blocker", call("c"), process="p"), group("g"), queue("s", "g", "d", process="p"))
 
-    assert deadlocked(picture(asks, *there, blocked={"p": "blocker"})) == {"asks", "blocker"}
+    seen = picture(asks, *there, blocked={"p": "blocker"})
+    (found,) = explained(seen, deadlocked(seen))
+    assert (found.ring, found.victims) == (("blocker",), ("asks",))
     assert deadlocked(picture(asks, *there)) == set()
 
 
@@ -408,6 +409,31 @@ def test_the_shortest_ring() -> None:
 
     (found,) = explained(seen, deadlocked(seen))
     assert (found.ring, found.victims) == (("a",), ("b",))
+
+
+def test_a_way_out_that_another_ring_bars() -> None:
+    """Who would go on if another ring was mended waits behind that one, and is in no ring, whatever waits for him."""
+    me = run("me", AnyOf((call("c"), DEAD)), holds="g", age=9.0)
+    seen = picture(*BACKGROUND, me, group("g"), queue("s", "g", "c"))
+
+    (found,) = explained(seen, deadlocked(seen))
+    assert (found.ring, found.victims) == (("stuck",), ("me", "waits_on_stuck"))
+
+
+@pytest.mark.parametrize("ages", [(1.0, 9.0), (9.0, 1.0)])
+def test_a_ring_behind_another(ages: tuple[float, float]) -> None:
+    """What stays a ring when the one it waits for is mended is told too, whichever is older."""
+    behind = run("behind", All((call("c"), DEAD)), holds="g", age=ages[0])
+    ahead = run("stuck", call("stuck_call"), holds="stuck_group", age=ages[1])
+    seen = picture(*BACKGROUND[1:], ahead, behind, group("g"), queue("s", "g", "c"))
+
+    found = {d.ring: d.victims for d in explained(seen, deadlocked(seen))}
+    assert found == {("behind",): (), ("stuck",): ("waits_on_stuck",)}
+
+
+def test_waits_for_nothing() -> None:
+    """A wait for one of nothing, or for what nobody is known to set, is over or unknown: it is no deadlock."""
+    assert not deadlocked(picture(run("a", AnyOf(())), run("b", SetBy("self.arrived", ()))))
 
 
 def test_inner_runs_are_no_victims() -> None:

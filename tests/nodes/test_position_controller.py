@@ -26,20 +26,37 @@ class Patient(PositionController):
 
 
 @pytest.mark.parametrize(
-    ("theta", "turning"),
+    ("theta", "turning", "driving"),
     [
-        (0.0, 5 * math.pi / 2),
-        (math.pi / 2, 0.0),
-        (math.pi, -5 * math.pi / 2),
-        (-3.0, 5 * (math.pi / 2 + 3.0 - math.tau)),
+        (0.0, 5 * math.pi / 2, 0.0),
+        (math.pi / 2, 0.0, 1.5),
+        (math.pi / 6, 5 * math.pi / 3, 0.75),
+        (math.pi, -5 * math.pi / 2, 0.0),
+        (-3.0, 5 * (math.pi / 2 + 3.0 - math.tau), 0.0),
     ],
 )
-def test_steering_turns_the_short_way(theta: float, turning: float) -> None:
-    """Towards a goal straight above, by the gain times the angle that is missing."""
+def test_steering_turns_the_short_way(theta: float, turning: float, driving: float) -> None:
+    """Towards a goal straight above, by the gain times the angle that is missing, and onwards as far as it leads."""
     twist = steer(Pose(x=1.0, y=1.0, theta=theta), Point(1.0, 4.0), gain=5.0, speed=1.5)
 
-    assert twist.linear.x == 1.5
+    assert twist.linear.x == pytest.approx(driving, abs=1e-12)
     assert twist.angular.z == pytest.approx(turning)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.03, 0.06, 0.09])
+@pytest.mark.parametrize("speed", [1.0, 2.0, 3.0])
+def test_a_goal_that_is_missed_is_reached_all_the_same(late: float, speed: float) -> None:
+    """Nobody circles around it for ever, wherever the tenths of a second fall in which it is looked for."""
+    goal, pose = Point(5.0, 9.0), Pose(x=2.0 + late * speed, y=1.0, theta=3.0)
+    for _ in range(150):
+        if distance(pose, goal) <= 0.1:
+            return
+        twist = steer(pose, goal, gain=5.0, speed=speed)
+        for _ in range(6):  # turtlesim's frames
+            pose.theta += twist.angular.z / 60
+            pose.x += twist.linear.x * math.cos(pose.theta) / 60
+            pose.y += twist.linear.x * math.sin(pose.theta) / 60
+    pytest.fail(f"at {pose.x:.2f}, {pose.y:.2f} after 15 s")
 
 
 def test_distance_is_euclidean() -> None:

@@ -29,6 +29,7 @@ from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
 from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.actions import GoalServer
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 from tests.runtime.cast import Log
@@ -488,3 +489,50 @@ async def test_a_node_may_send_a_goal_to_itself(graph: Graph) -> None:
     await graph.clock.advance(1.0)
 
     assert both.told == [[0, 1, 1]]
+
+
+async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The server is there, and the client is told what is wrong with it."""
+
+    def broken(*_: Any) -> None:
+        raise LookupError("mislaid")
+
+    monkeypatch.setattr(GoalServer, "_get_result", broken)
+    _, asker = await pair(graph)
+    goal = await asker.order(3)
+    await graph.clock.advance(1.0)
+
+    with pytest.raises(GoalLost, match="result is not to be had, last known as EXECUTING"):
+        await goal.result()
+
+
+class Crowd(Node):
+    """Has as many goals under way as are sent, in no group."""
+
+    bodies = 0
+
+    @action(Fibonacci, "fibonacci", policy="parallel")
+    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        self.bodies += 1
+        await self.clock.sleep(10.0)
+        self.bodies -= 1
+        return Fibonacci.Result()
+
+
+async def test_a_parallel_action_that_is_moved(graph: Graph) -> None:
+    """It takes turns in the group that it is moved to, and none when it is moved back to no group."""
+    server, asker = await pair(graph, Crowd())
+    [runner] = [r for r in server.runners if r.handler == "compute"]
+    for order in (1, 2):
+        await asker.order(order)
+    await graph.settle()
+    assert server.bodies == 2
+
+    runner.move(server.groups.named("one"))
+    for order in (3, 4):
+        await asker.order(order)
+    await graph.settle()
+    assert server.bodies == 3
+    runner.move(server.groups.named("none"))
+    await graph.settle()
+    assert server.bodies == 4

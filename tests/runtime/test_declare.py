@@ -155,7 +155,7 @@ def test_two_parameters_of_one_name() -> None:
 
 
 def test_names_that_a_node_needs_itself() -> None:
-    """A declaration cannot take the place of something of the node's own; a plain override can."""
+    """Nothing can take the place of something of the node's own by accident; an override that calls on it can."""
     with pytest.raises(DeclarationError) as caught:
 
         class Named(Node):
@@ -168,6 +168,24 @@ def test_names_that_a_node_needs_itself() -> None:
             type("Hiding", (Node,), {attribute: Param(1.0)})
     with pytest.raises(DeclarationError, match="'stop' is something every node has"):
         type("Hiding", (Node,), {"stop": timer(1.0)(of_self_copy())})
+
+    with pytest.raises(DeclarationError) as caught:
+
+        class Robot(Node):
+            async def stop(self) -> None:  # type: ignore[override]  # hides what stops the node
+                """Stand still."""
+
+    assert str(caught.value).startswith(f"{__file__}:{line_of('hides what stops the node')}: 'stop' is something")
+
+    class Busy(Node):
+        def __init__(self) -> None:
+            super().__init__()
+            self.tasks = ["wash up"]  # type: ignore[assignment]
+
+    with pytest.raises(
+        DeclarationError, match=r"Busy: self\.tasks is something every node has; call the attribute oth"
+    ):
+        Busy().ensure_made()
 
     class Careful(Node):
         default_group = Group(1)

@@ -502,9 +502,13 @@ async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio
     await settle()
     early = other.runner.cancel()
     await settle()
-    late = other.runner.cancel()  # this one cancels the cleanup itself
+    late = other.runner.cancel()  # the cleanup goes on undisturbed
     await settle()
+    assert not early.done()
+    assert not late.done()
 
+    gate.set()
+    await settle()
     assert early.done()
     assert late.done()
 

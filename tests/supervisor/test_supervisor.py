@@ -107,10 +107,10 @@ GOOD = "nodes:\n  /a: {class: nodes.lab:Good}\n  /b: {class: nodes.lab:Good, env
 def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None:
     """The first command of the README: a greeting, log lines, Ctrl-C, exit code 0, nothing left."""
     up = machine.start("up", "graphs/talker_listener.yaml", "rate:=20.0")
-    text = up.wait_for("I heard")
+    up.wait_for("I heard")
+    text = up.wait_for("Stop with Ctrl-C")
     assert "graph talker_listener is up: 2 nodes" in text
     assert "graphflow topic list" in text
-    assert "Stop with Ctrl-C" in text
     pids = [row["pid"] for row in rows(machine).values()] + [supervisor_of(machine)["pid"]]
 
     assert up.end(signal.SIGINT) == 0

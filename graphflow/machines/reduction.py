@@ -1,0 +1,184 @@
+"""Which activities of a picture can never go on.
+
+`deadlocked` is Holt's reduction: whoever may go on goes on and gives everything back, until nobody is left who can.
+It is optimistic: what the picture does not show may go on. So what remains cannot, whatever happens outside.
+
+Pictures of several processes are not taken at one moment. An activity counts as stuck only if it was seen in the very
+same wait in a picture that was complete before the present one was begun: ids are never used twice, so there was a
+moment between the two at which all the waits that are left existed together.
+
+Source: Holt, "Some deadlock properties of computer systems", 1972.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from graphflow.machines.waits import (
+    FREE,
+    Activity,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Join,
+    Picture,
+    Queue,
+    SetBy,
+    Slot,
+)
+
+Lacking = tuple[str, ...]
+"""Activities that must go on, or groups that must get a free slot, before something can happen: one of them at least.
+Of nothing: it may happen now."""
+
+
+class Index:
+    """A picture by what is looked for.
+
+    Args:
+        may_fail: Whether an error of one of several that are waited for may end the wait for all of them.
+        may_guess: Whether to believe that nobody brings about what is waited for but those whom the source code shows.
+    """
+
+    def __init__(self, picture: Picture, *, may_fail: bool = False, may_guess: bool = True) -> None:
+        self.picture = picture
+        self.holders: dict[str, list[str]] = {}
+        """Activities by the group of which they hold a slot."""
+        self.serving: dict[str, str] = {}
+        """Activities by the call that they answer."""
+        for activity in picture.activities.values():
+            for group in activity.holds:
+                self.holders.setdefault(group, []).append(activity.id)
+            if activity.serves:
+                self.serving[activity.serves] = activity.id
+        self.queued = {call: queue for queue in picture.queues.values() for call in queue.calls}
+        """Queues by the calls that wait in them."""
+        self._all_of = _one_of if may_fail else _each_of
+        self._may_guess = may_guess
+
+    def is_full(self, group: str) -> bool:
+        """Whether all slots of a group are held."""
+        known = self.picture.groups.get(group)
+        return known is not None and known.limit is not None and len(self.holders.get(group, ())) >= known.limit
+
+    def loop_of(self, activity: Activity) -> str | None:
+        """The activity that blocks this one's event loop, if another does."""
+        blocker = self.picture.blocked.get(activity.process)
+        return None if blocker == activity.id else blocker
+
+    def lacking(self, activity: Activity, dead: Dead) -> Lacking:
+        """What keeps an activity from going on."""
+        blocker = self.picture.blocked.get(activity.process)
+        if blocker == activity.id:
+            return () if self._is_met_outside(activity.wait) else (activity.id,)
+        return self._of(blocker, dead) or self.lacking_for(activity.wait, dead)
+
+    def lacking_for(self, condition: Condition, dead: Dead) -> Lacking:
+        """What keeps a condition from being fulfilled."""
+        match condition:
+            case Call(id=call):
+                if call in self.serving:
+                    return self._of(self.serving[call], dead)
+                return self.lacking_to_run(self.queued[call], dead) if call in self.queued else ()
+            case Slot(group=group):
+                return (group,) if group in dead.groups else ()
+            case Join(activity=other):
+                return self._of(other, dead)
+            case SetBy(queues=names, activities=activities) if self._may_guess:
+                queues = [self.picture.queues.get(name) for name in names]
+                ways = [() if queue is None else self.lacking_to_run(queue, dead) for queue in queues]
+                return _one_of([*ways, *(self._of(other, dead) for other in activities)])
+            case All(of=conditions):
+                return self._all_of(self.lacking_for(c, dead) for c in conditions)
+            case AnyOf(of=conditions):
+                return _one_of(self.lacking_for(c, dead) for c in conditions)
+            case _:
+                return ()
+
+    def lacking_to_run(self, queue: Queue, dead: Dead) -> Lacking:
+        """What keeps the next run of a handler from being begun."""
+        blocker = self._of(self.picture.blocked.get(queue.process), dead)
+        return blocker or next(((group,) for group in queue.needs if group in dead.groups), ())
+
+    def _of(self, activity: str | None, dead: Dead) -> Lacking:
+        return (activity,) if activity is not None and activity in dead.activities else ()
+
+    def _is_met_outside(self, condition: Condition) -> bool:
+        """Whether it may be fulfilled while the event loop, through which all of graphflow comes, is blocked."""
+        match condition:
+            case SetBy():
+                return not self._may_guess
+            case All(of=conditions):
+                of = all if self._all_of is _each_of else any
+                return not conditions or of(self._is_met_outside(c) for c in conditions)
+            case AnyOf(of=conditions):
+                return not conditions or any(self._is_met_outside(c) for c in conditions)
+            case _:
+                return condition is FREE
+
+
+def _each_of(ways: Iterable[Lacking]) -> Lacking:
+    return next(filter(None, ways), ())
+
+
+def _one_of(ways: Iterable[Lacking]) -> Lacking:
+    things: list[str] = []
+    for way in ways:
+        if not way:
+            return ()
+        things += way
+    return tuple(things)
+
+
+class Dead:
+    """Activities that are taken for stuck, and the groups of which they therefore hold all slots."""
+
+    def __init__(self, index: Index, activities: Iterable[str]) -> None:
+        self.activities = set(activities)
+        held = Counter(group for i in self.activities for group in index.picture.activities[i].holds)
+        self.groups = {g for g, count in held.items() if count == len(index.holders[g]) and index.is_full(g)}
+
+    def lose(self, activity: Activity) -> Iterable[str]:
+        """One of them goes on; what that changes for others."""
+        self.activities.discard(activity.id)
+        freed = self.groups.intersection(activity.holds)
+        self.groups -= freed
+        return activity.id, *freed
+
+
+def deadlocked(picture: Picture, before: Picture | None = None) -> set[str]:
+    """The activities that can never take another step, whatever happens outside of the picture.
+
+    Args:
+        before: A picture that was complete before this one was begun; None when this one was taken at one moment.
+    """
+    index = Index(picture)
+    suspects = [a for a in picture.activities.values() if a.wait is not FREE or index.loop_of(a)]
+    if before is not None:
+        suspects = [a for a in suspects if _is_same(a, before.activities.get(a.id))]
+    return reduced(index, (a.id for a in suspects))
+
+
+def _is_same(now: Activity, then: Activity | None) -> bool:
+    return then is not None and (now.wait, now.holds, now.serves) == (then.wait, then.holds, then.serves)
+
+
+def reduced(index: Index, suspects: Iterable[str]) -> set[str]:
+    """Those of the suspects who cannot go on, however the others do."""
+    activities, dead = index.picture.activities, Dead(index, suspects)
+    watching: dict[str, set[str]] = {}
+    """By what they lack: those who are to be looked at again when it changes."""
+    todo = list(dead.activities)
+    while todo:
+        name = todo.pop()
+        if name not in dead.activities:
+            continue
+        lacking = index.lacking(activities[name], dead)
+        for thing in lacking:
+            watching.setdefault(thing, set()).add(name)
+        if not lacking:
+            for thing in dead.lose(activities[name]):
+                todo += watching.pop(thing, ())
+    return dead.activities

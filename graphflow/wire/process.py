@@ -1,0 +1,64 @@
+"""How a process of graphflow shows itself in a domain: `@graphflow/<domain>/proc/<zid>/<uid>/<pid>/<host>`."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from graphflow.system import host_name, user_id
+
+
+class ProcessToken(NamedTuple):
+    """What a process tells of itself."""
+
+    zid: str
+    """Of its session."""
+    user: str
+    pid: int
+    host: str
+
+    def __str__(self) -> str:
+        return f"process {self.pid}" if self.host == host_name() else f"process {self.pid} on {self.host}"
+
+    @property
+    def why_silent(self) -> str:
+        """What may keep it from answering, and what to do about it."""
+        if self.host == host_name() and _state(self.pid) in ("T", "t"):
+            return f"it is stopped: kill -CONT {self.pid}"
+        return "it is stopped, or something holds its interpreter, or it cannot be reached"
+
+    @property
+    def command(self) -> str:
+        """What it was started as, where this system tells."""
+        try:
+            words = Path(f"/proc/{self.pid}/cmdline").read_bytes().split(b"\0") if self.host == host_name() else []
+        except OSError:
+            return ""
+        return b" ".join(words).decode(errors="replace").strip()
+
+
+def token(domain: int, zid: str) -> str:
+    """This process's own."""
+    return f"@graphflow/{domain}/proc/{zid}/{user_id()}/{os.getpid()}/{host_name()}"
+
+
+def watch_key(domain: int) -> str:
+    """The key of all of a domain."""
+    return f"@graphflow/{domain}/proc/**"
+
+
+def parse(text: str) -> ProcessToken | None:
+    """What a token tells; None if it is none."""
+    parts = text.split("/")
+    if len(parts) != 7 or parts[0] != "@graphflow" or parts[2] != "proc" or not parts[5].isdecimal():
+        return None
+    return ProcessToken(parts[3], parts[4], int(parts[5]), parts[6])
+
+
+def _state(pid: int) -> str:
+    """The letter that Linux has for what a process does."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return ""
