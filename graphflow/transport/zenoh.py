@@ -35,6 +35,9 @@ from graphflow.transport.config import (
 
 logger = logging.getLogger("graphflow.transport")
 
+ASK_AGAIN = (0.5, 2.0)
+"""Seconds after the sign of life of a publisher that keeps messages, until it is asked again for them."""
+
 
 class _Declared:
     """A Zenoh declaration, until closed."""
@@ -85,6 +88,48 @@ class _KeepingSender(_Declared):
     def __init__(self, publisher: Any) -> None:
         super().__init__(publisher)
         self.put = publisher.put
+
+
+class _AskingAgain:
+    """Asks publishers that have appeared a second and a third time for what they keep.
+
+    The subscriber asks once, at the sign of life. Across routers that may come before the way to the publisher is
+    there, and the question ends at once, unanswered: after an outage, what was said meanwhile would be missed for good.
+    A heartbeat that only this session hears makes the subscriber look for whatever it has not had.
+    """
+
+    def __init__(self, session: ZenohSession, key: str, inbox: Inbox) -> None:
+        self._raw, self._loop, self._inbox = session.raw, session.loop, inbox
+        self._last: dict[str, int] = {}
+        """The last sequence number heard, by publisher."""
+        self._timers: set[asyncio.TimerHandle] = set()
+        self._signs = session.watch(f"{key}/@adv/pub/**", self._changed)
+
+    def heard(self, sample: zenoh.Sample) -> None:
+        """A message has come. On Zenoh's thread."""
+        source = sample.source_info
+        if source is not None:
+            self._last[f"{source.source_id.zid}/{source.source_id.eid}"] = source.source_sn
+        self._inbox.put(sample)
+
+    def _changed(self, token: str, is_there: bool) -> None:
+        if is_there:
+            self._timers = {timer for timer in self._timers if timer.when() > self._loop.time()}
+            self._timers |= {self._loop.call_later(after, self._ask, token) for after in ASK_AGAIN}
+
+    def _ask(self, token: str) -> None:
+        publisher = "/".join(token.split("/")[-3:-1])
+        # Numbers go round, and half of them are ahead: this one surely is, and the publisher answers with what it has.
+        ahead = (self._last.get(publisher, 0) + (1 << 30)) % (1 << 32)
+        try:
+            self._raw.put(token, ahead.to_bytes(4, "little"), allowed_destination=zenoh.Locality.SESSION_LOCAL)
+        except zenoh.ZError as error:  # the session is closed already
+            logger.debug("asking again: %s", error)
+
+    def undeclare(self) -> None:
+        for timer in self._timers:
+            timer.cancel()
+        self._signs.close()
 
 
 class _ZenohRequest:
@@ -181,7 +226,7 @@ class ZenohSession:
         close_at_exit(self.raw)
         self.zid = str(self.raw.info.zid())
         self.bell = Bell(loop)
-        self._loop = loop
+        self.loop = loop
 
     def open_sender(
         self, key: str, qos: Qos, changed: Callable[[], None] | None = None
@@ -211,18 +256,17 @@ class ZenohSession:
             return _Declared(self.raw.declare_subscriber(key, inbox.put, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
-        history = ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth)
-        return _Declared(
-            ext.declare_advanced_subscriber(
-                self.raw,
-                key,
-                inbox.put,
-                history=history,
-                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
-                subscriber_detection=True,
-                allowed_origin=origin,
-            )
+        again = _AskingAgain(self, key, inbox) if reliable else None
+        subscriber = ext.declare_advanced_subscriber(
+            self.raw,
+            key,
+            inbox.put if again is None else again.heard,
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=qos.depth),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
+            subscriber_detection=True,
+            allowed_origin=origin,
         )
+        return _Declared(subscriber) if again is None else _Declared(subscriber, again)
 
     def open_server(self, key: str, inbox: Inbox) -> _Declared:
         def arrived(query: zenoh.Query) -> None:
@@ -262,7 +306,7 @@ class ZenohSession:
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
         found: list[bytes] = []
-        early = self._loop.call_later(EARLY, lambda: told(found.copy(), False))
+        early = self.loop.call_later(EARLY, lambda: told(found.copy(), False))
 
         def deliver() -> None:
             while inbox.items:
