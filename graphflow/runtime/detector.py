@@ -14,10 +14,12 @@ import logging
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.errors import DeadlockError
 from graphflow.interface import DeadlockPolicy
+from graphflow.machines.cache import Change
 from graphflow.machines.explain import explanation, hopeless, title
 from graphflow.machines.picture import from_json
 from graphflow.machines.reduction import deadlocked
@@ -44,6 +46,8 @@ TASKS_EVERY = 2.0
 """Seconds between two looks at tasks, whose waits nobody announces, while nothing else waits."""
 PULL_LIMIT = 0.5
 """Seconds that other processes get to answer."""
+GONE_AFTER = 0.5
+"""Seconds from the first sign that a process goes until all of it has gone."""
 
 Ring = frozenset[str]
 """The members of a deadlock."""
@@ -57,6 +61,17 @@ class Report(NamedTuple):
     """Has a part in it, in words."""
     processes: set[str]
     """In which its members are, and those who wait behind them."""
+
+
+class Foreign(NamedTuple):
+    """A deadlock with a part in this process that another one is to report."""
+
+    reporter: str
+    """Its process."""
+    who: str
+    processes: set[str]
+    waits: frozenset[tuple[str, Condition]]
+    """Those of the members that are in this process."""
 
 
 class Detector:
@@ -77,6 +92,9 @@ class Detector:
         self._unresponsive = Unresponsive(context)
         self._dead: set[str] = set()
         """Whoever was last found to be dead, with the help of other processes."""
+        self._foreign: dict[Ring, Foreign] = {}
+        """If who is to report them goes, somebody else has to say that they are over."""
+        self._is_watching = False
         self._behind: dict[Ring, set[str]] = {}
         """By deadlock, of whichever process: who was said to wait for it."""
         self._period = PROBE_AFTER
@@ -120,6 +138,7 @@ class Detector:
             self.is_armed = not self.is_on
             self._last.clear()
             self._behind.clear()
+            self._foreign.clear()
             self._stall(picture, set())
             if any(node.tasks for node in self._context.waits.nodes):
                 self._schedule(TASKS_EVERY)
@@ -202,6 +221,7 @@ class Detector:
 
     def _conclude(self, before: Picture, now: Picture) -> None:
         self._dead = deadlocked(now, before)
+        self._foreign = {ring: foreign for ring, foreign in self._foreign.items() if ring <= self._dead}
         for deadlock in explained(now, self._dead):
             self._tell(deadlock, now)
         if self.reports:  # to see when they are over
@@ -240,15 +260,20 @@ class Detector:
         first = min(processes - set(picture.blocked) or processes)
         if first != mine and ring not in self._behind:
             self._context.session.ask_reports(key(self._context.domain, LOOK, first), PULL_LIMIT, _nothing)
+        if first != mine and ring not in self._foreign:
+            waits = frozenset((a.id, a.wait) for a in members if a.process == mine)
+            self._foreign[ring] = Foreign(first, who, processes, waits)
+            if not self._is_watching:
+                self._is_watching = True
+                self._context.on_change(self._changed)
         if first == mine and told not in self.reports:
-            text = explanation(deadlock, picture)
             involved = {a.process for a in behind} | processes
-            self.reports[ring] = Report(text, who, involved)
-            logger.error("%s", text)
+            report = self.reports[ring] = Report(explanation(deadlock, picture), who, involved)
+            logger.error("%s", report.text)
             self._behind[ring] = victims
         for victim in sorted(victims - self._behind.setdefault(told, set())):
-            report = self.reports.get(told)
-            logger.warning("%s waits behind the deadlock of %s", victim, who if report is None else report.who)
+            known = self.reports.get(told)
+            logger.warning("%s waits behind the deadlock of %s", victim, who if known is None else known.who)
         self._behind[told] |= victims
 
     def _is_reported(self, ring: Ring) -> bool:
@@ -283,6 +308,25 @@ class Detector:
                 del self.reports[ring]
                 self._behind.pop(ring, None)
                 logger.warning("the deadlock of %s has cleared", report.who)
+
+    def _changed(self, change: Change) -> None:
+        """A process that was to report a deadlock may be going, and the deadlock with it."""
+        if change.alive:
+            return
+        leaving = {ring for ring, foreign in self._foreign.items() if foreign.reporter == change.entity.zid}
+        for ring in leaving:
+            foreign, known = self._foreign.pop(ring), self._context.waits.picture().activities
+            # Those who wait for the process have been told that it has gone, and have not gone on yet.
+            if all(name in known and known[name].wait in (wait, FREE) for name, wait in foreign.waits):
+                clock = self._context.clock
+                clock.call_at(clock.monotonic_ns() + to_ns(GONE_AFTER), partial(self._say_gone, ring, foreign))
+
+    def _say_gone(self, ring: Ring, foreign: Foreign) -> None:
+        there = {entity.zid for entity in self._context.cache}
+        if foreign.reporter in there:
+            self._foreign[ring] = foreign  # something else of it went
+        elif not self._is_closed and self._context.session.zid == min(foreign.processes & there, default=""):
+            logger.warning("the deadlock of %s has cleared: a process of it has gone", foreign.who)
 
     def look_now(self) -> None:
         """Another process has found a deadlock that this one is to report. From any thread."""
