@@ -16,6 +16,10 @@ import pytest
 
 from graphflow.transport.rendezvous import free_endpoint
 
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    # A shell starts what it puts into the background so, and what is started from there would be deaf to Ctrl-C.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 PROJECT = Path(__file__).parents[1]
 LIMIT = 45.0
 """Seconds that anything here may take before the test fails."""
