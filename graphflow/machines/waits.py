@@ -22,6 +22,16 @@ class Call:
     """Of the service or action."""
 
 
+def call_id(gid: bytes, sequence: int) -> str:
+    """How pictures of all processes name a call."""
+    return f"{gid.hex()}:{abs(sequence)}"
+
+
+def goal_id(raw: bytes) -> str:
+    """How pictures of all processes name a goal."""
+    return f"goal:{raw.hex()}"
+
+
 @dataclass(frozen=True, slots=True)
 class Slot:
     """Wait for a slot of a group, to come back to it."""

@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Any, Generic
 
 from graphflow.errors import Abort
 from graphflow.interface import GoalPolicy, OnClientLoss
+from graphflow.machines import waits
 from graphflow.machines.goal import CancelCode, GoalBook, GoalEvent, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Handle, Result
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
-from graphflow.runtime import waits
 from graphflow.runtime.clock import Clock
 from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner

@@ -23,7 +23,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.msgs.base import Message
 from graphflow.runtime import declared
-from graphflow.runtime.conditions import CONTAINERS, FUTURE, LOOKING, PLAIN, QUESTIONS, TOOLS, Conditions, Loop
+from graphflow.runtime.conditions import (
+    CONTAINERS,
+    FUTURE,
+    LOOKING,
+    PLAIN,
+    QUESTIONS,
+    TOOLS,
+    Conditions,
+    Loop,
+    makes_task,
+)
 from graphflow.runtime.source import Function, FunctionNode, Unknown, Use, is_nested, is_own, source_of, walk
 
 if TYPE_CHECKING:
@@ -49,7 +59,7 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
 _ENDS = {"clear", *(name for names in _WAITS.values() for name in names)}
 _BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
 _MAKERS = {*(tool.__name__ for tool in TOOLS), "create_future", "Lock", "Semaphore", "BoundedSemaphore", "Condition"}
-_MAKERS |= {"PriorityQueue", "LifoQueue"}
+_MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
 _CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
 _CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
 
@@ -64,6 +74,8 @@ class Setters(NamedTuple):
     """What ends the wait when one of those who have entered it by `with` leaves it."""
     places: int = 1
     """How many can be in it."""
+    tasks: tuple[asyncio.Future[Any], ...] = ()
+    """Whose ends may end the wait too."""
 
 
 def setters(frames: list[FrameType], waiter: Any, node: Node, *, is_bounded: bool = False) -> Setters | None:
@@ -210,9 +222,8 @@ class _Question:
         below = {method for name in called & set(self._source.methods) for method in self._source.below(name)}
         if self._source.may_fail(loop, below):
             raise Unknown
-        attributes = Conditions(loop, place.function.syntax, place.frame, self._source, self._node).attributes()
-        if not attributes:
-            return None
+        conditions = Conditions(loop, place.function.syntax, place.frame, self._source, self._node)
+        attributes = conditions.attributes()
         inside = set(ast.walk(loop))
         changing: set[str] = set()
         for name in attributes:
@@ -220,7 +231,11 @@ class _Question:
                 if use.syntax in inside or use.method in below:  # the loop changes itself what it looks at
                     raise Unknown
                 changing.add(use.method)
-        return self._reached(" and ".join(f"self.{name}" for name in sorted(attributes)), changing)
+        what = " and ".join(f"self.{name}" for name in sorted(attributes))
+        if conditions.tasks and not changing - _BEGINNINGS:
+            return Setters(what, frozenset(), tasks=tuple(conditions.tasks))
+        found = self._reached(what, changing)
+        return None if found is None else found._replace(tasks=tuple(conditions.tasks))
 
     def _changes(self, name: str) -> Iterator[Use]:
         """The uses of an attribute that may make it something else than it is now."""
@@ -228,7 +243,8 @@ class _Question:
         changes = next((methods for tool, methods in TOOLS.items() if isinstance(value, tool)), None)
         if changes is not None:
             for use in self._uses(name):
-                if use.kind == "assigned" or (use.kind == "called" and use.name in changes):
+                is_begun = isinstance(value, asyncio.Task) and use.value is not None and makes_task(use.value)
+                if (use.kind == "assigned" and not is_begun) or (use.kind == "called" and use.name in changes):
                     yield use
             return
         known = isinstance(value, CONTAINERS)

@@ -1,8 +1,8 @@
 """On what attributes of a node it depends whether a loop ends that only waits and looks again.
 
-A condition may be made of attributes, constants, local names that stay what they are, arithmetic, functions of `math`
-and `numpy`, and methods of the node that only look and reckon. Of anything else it is not known when it changes:
-`Unknown`.
+A condition may be made of attributes, constants, local names that stay what they are, tasks and goals that only the
+function knows, arithmetic, functions of `math` and `numpy`, and methods of the node that only look and reckon. Of
+anything else it is not known when it changes: `Unknown`.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import concurrent.futures
 import queue
 import threading
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum
-from types import FrameType, ModuleType, NoneType
+from types import FrameType, MappingProxyType, ModuleType, NoneType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from graphflow.msgs.base import Message
-from graphflow.runtime.source import FunctionNode, Source, Unknown, walk
+from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.source import FunctionNode, Source, Unknown, looks, walk
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -48,6 +49,7 @@ LOOKING |= {"issubset", "issuperset", "isdisjoint", "all", "any", "sum", "min", 
 """Methods that leave what they are called on as it is."""
 _PURE = {"abs", "all", "any", "bool", "dict", "float", "frozenset", "int", "len", "list", "max", "min", "round", "set"}
 _PURE |= {"sorted", "str", "sum", "tuple"}
+_TASK_MAKERS = ("create_task", "ensure_future")
 _MODULES = ("math", "numpy", "numpy.linalg")
 """Whose functions look at what they are given, and at nothing else."""
 
@@ -62,6 +64,8 @@ class _Scope(NamedTuple):
     globals: Mapping[str, Any]
     rebound: set[str]
     """Global names that do not stay what they are."""
+    tasks: Mapping[str, Sequence[asyncio.Future[Any]]] = MappingProxyType({})
+    """What those names stand for, or are lists of, that are tasks or goals which nobody else knows."""
 
     def is_constant(self, node: ast.AST) -> bool:
         """Whether it is a name, or part of something, whose value nobody changes while the loop runs."""
@@ -102,6 +106,8 @@ class Conditions:
     def __init__(self, loop: Loop, function: FunctionNode, frame: FrameType, source: Source, node: Node) -> None:
         self._loop, self._source, self._node = loop, source, node
         self._found: set[str] = set()
+        self.tasks: list[asyncio.Future[Any]] = []
+        """What it depends on that ends by itself."""
         inside = set(ast.walk(loop))
         code, values = frame.f_code, frame.f_locals
         bound = _bindings(function)
@@ -116,7 +122,15 @@ class Conditions:
         # and what is given to the function, by whoever has given it.
         locals_: dict[str, list[ast.expr | None]] = {name: [None] for name in values}
         locals_ |= {name: [value for _, value in bound[name]] for name in own if name in bound and name not in given}
-        self._scope = _Scope(locals_, frozenset(constants), frame.f_globals, source.rebound)
+        tasks = {
+            name: _futures(values.get(name))
+            for name in own
+            if name in bound and _is_kept(name, function, inside)
+            if not any(target in inside for target, _ in bound[name])
+            if isinstance(values.get(name), ClientGoal)
+            or all(value is not None and makes_task(value) for _, value in bound[name])
+        }
+        self._scope = _Scope(locals_, frozenset(constants), frame.f_globals, source.rebound, tasks)
 
     def attributes(self) -> set[str]:
         """Raises `Unknown` when it depends on something else."""
@@ -157,6 +171,8 @@ class Conditions:
                 self._comprehension(element, loops, scope, seen)
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 self._attribute(name, seen)
+            case ast.Attribute(value=ast.Name(id=name), attr="done") if scope.tasks.get(name):
+                self.tasks += scope.tasks[name]
             case ast.Attribute(value=ast.Name(), attr="request" | "is_cancel_requested"):
                 return  # a goal's: to cancel it ends any wait
             case ast.Attribute(value=value):
@@ -177,8 +193,12 @@ class Conditions:
         self, element: ast.expr, loops: list[ast.comprehension], scope: _Scope, seen: frozenset[str]
     ) -> None:
         for loop in loops:
-            self._read(loop.iter, scope, seen)
             bound = {node.id for node in ast.walk(loop.target) if isinstance(node, ast.Name)}
+            match loop:
+                case ast.comprehension(target=ast.Name(id=each), iter=ast.Name(id=name)) if scope.tasks.get(name):
+                    scope = scope._replace(tasks={**scope.tasks, each: scope.tasks[name]})
+                    continue
+            self._read(loop.iter, scope, seen)
             scope = scope._replace(constants=scope.constants | bound)
             for test in loop.ifs:
                 self._read(test, scope, seen)
@@ -192,9 +212,11 @@ class Conditions:
             case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=asked) if (
                 asked in QUESTIONS and isinstance(getattr(self._node, name, None), tuple(TOOLS))
             ):
-                if isinstance(getattr(self._node, name), asyncio.Task):
-                    raise Unknown  # it ends by itself
                 self._found.add(name)
+                if isinstance(task := getattr(self._node, name), asyncio.Task):
+                    self.tasks.append(task)
+            case ast.Attribute(value=ast.Name(id=name), attr=asked) if asked in QUESTIONS and scope.tasks.get(name):
+                self.tasks += scope.tasks[name]
             case ast.Attribute(value=value, attr=name) if name in LOOKING and not scope.is_mathematics(function):
                 self._read(value, scope, seen)
             case _:
@@ -274,6 +296,39 @@ def _bindings(function: FunctionNode) -> dict[str, list[tuple[ast.AST, ast.expr 
             case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)):
                 found.setdefault(name, []).append((node, None))
     return found
+
+
+def makes_task(value: ast.expr) -> bool:
+    """Whether it makes a task, or several."""
+    match value:
+        case ast.Call(func=function):
+            return ast.unparse(function).split(".")[-1] in _TASK_MAKERS
+        case ast.ListComp(elt=element):
+            return makes_task(element)
+        case ast.List(elts=parts) | ast.Tuple(elts=parts):
+            return all(map(makes_task, parts))
+    return False
+
+
+def _futures(value: Any) -> list[asyncio.Future[Any]]:
+    if isinstance(value, ClientGoal):
+        return [value.ended]
+    parts = list(value) if isinstance(value, (list, tuple)) else [value]
+    return parts if all(asyncio.isfuture(part) for part in parts) else []
+
+
+def _is_kept(name: str, function: FunctionNode, loop: set[ast.AST]) -> bool:
+    """Whether nobody else gets to know what a local name stands for, and the loop only asks it something."""
+    for node, parents in walk(function):
+        if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load):
+            match parents[-1]:
+                case ast.Attribute(attr=asked) if asked in QUESTIONS or node not in loop:
+                    pass
+                case ast.comprehension():
+                    pass
+                case _ if not looks(node, parents):
+                    return False
+    return True
 
 
 def _is_of_inner_loop(parents: list[ast.AST]) -> bool:

@@ -24,12 +24,11 @@ from graphflow.machines.explain import explanation, hopeless, title
 from graphflow.machines.picture import from_json
 from graphflow.machines.reduction import deadlocked
 from graphflow.machines.rings import Deadlock, explained
-from graphflow.machines.waits import FREE, Activity, Call, Condition, Picture, joined
+from graphflow.machines.waits import FREE, Activity, Call, Condition, Picture, goal_id, joined
 from graphflow.runtime.inspection import LOOK, WAITS, key
 from graphflow.runtime.scheduler import Run, Runner
 from graphflow.runtime.stalls import Stalls
 from graphflow.runtime.unresponsive import SILENT_AFTER, Unresponsive, calls_of
-from graphflow.runtime.waits import goal_id
 from graphflow.times import to_ns
 
 if TYPE_CHECKING:

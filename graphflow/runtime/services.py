@@ -24,6 +24,7 @@ from graphflow.errors import (
     ServerLost,
     ServiceUnavailable,
 )
+from graphflow.machines.waits import call_id
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.names import did_you_mean
@@ -33,7 +34,6 @@ from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.groups import HandlerGroup
 from graphflow.runtime.scheduler import Runner
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
-from graphflow.runtime.waits import call_id
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller, Inbox
 from graphflow.wire import attachment

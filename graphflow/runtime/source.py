@@ -283,15 +283,15 @@ def _use(method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> Use:
     if isinstance(above, ast.withitem) and above.context_expr is node:
         return Use(method, node, "entered", is_nested=nested)
     return Use(
-        method, node, "read" if _looks(node, around) else "given", is_nested=nested, is_registered=_registers(above)
+        method, node, "read" if looks(node, around) else "given", is_nested=nested, is_registered=_registers(above)
     )
 
 
-def _looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
+def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
     """Whether a mention cannot make known to anybody what is mentioned."""
     above = parents[-1]
     if isinstance(above, ast.Starred):
-        return _looks(above, parents[:-1])
+        return looks(above, parents[:-1])
     if isinstance(above, ast.IfExp):
         return above.test is node
     if isinstance(above, ast.Call):
@@ -303,7 +303,7 @@ def _looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
 def _only_looked_at(name: str, function: ast.AST) -> bool:
     """Whether a second name of something is never used but to look at it."""
     return not any(
-        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not _looks(node, parents)
+        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
         for node, parents in walk(function)
     )
 

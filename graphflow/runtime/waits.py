@@ -21,7 +21,7 @@ from weakref import WeakKeyDictionary
 
 from graphflow.errors import DecodeError, Place
 from graphflow.machines import waits as picture_of
-from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot
+from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot, call_id, goal_id
 from graphflow.runtime.clock import Clock
 from graphflow.runtime.closed_world import setters
 from graphflow.runtime.places import is_users
@@ -139,16 +139,6 @@ class Waits:
     def forget(self, keep: set[tuple[str, Condition]]) -> None:
         """Keep account of these waits only."""
         self._since = {key: when for key, when in self._since.items() if key in keep}
-
-
-def call_id(gid: bytes, sequence: int) -> str:
-    """How pictures of all processes name a call."""
-    return f"{gid.hex()}:{abs(sequence)}"
-
-
-def goal_id(raw: bytes) -> str:
-    """How pictures of all processes name a goal."""
-    return f"goal:{raw.hex()}"
 
 
 class _Camera:
@@ -401,8 +391,11 @@ class _Camera:
         """A wait for something that, as far as the source code tells, only handlers of the node bring about."""
         node = way.node
         found = setters(list(way.frames), waiter, node, is_bounded=way.is_bounded)
-        if found is None:
+        if found is None or any(task.done() for task in found.tasks):
             return FREE
+        ends = [self._of_future(task, way) for task in found.tasks]
+        if ends and not found.handlers:
+            return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
         runners = [r for n, r in self._runners if n is node and r.handler in found.handlers]
         # Runs under way count too, also those that have let go of their slot.
         others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
@@ -417,7 +410,8 @@ class _Camera:
             others += inside
         queues = sorted(self.queue_id(r) for r in runners)
         activities = sorted({self.task_id(other) for other in others})
-        return SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
+        change = SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
+        return AnyOf((change, *ends)) if ends else change
 
     def _inside(self, lock: Any) -> list[Any]:
         """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""

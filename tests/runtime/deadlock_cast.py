@@ -131,6 +131,39 @@ class Dialler(Robot):
         return Empty.Response()
 
 
+class PollsACall(Dialler):
+    async def go(self, _: String) -> None:
+        asking = asyncio.create_task(self.ping.call(Empty.Request()))
+        try:
+            while not asking.done():
+                await self.clock.sleep(0.05)  # stuck: PollsACall
+        finally:
+            asking.cancel()
+
+
+class PollsACallOfItsNodes(Dialler):
+    async def go(self, _: String) -> None:
+        self.asking = asyncio.ensure_future(self.ping.call(Empty.Request()))
+        while True:
+            if self.asking.done():
+                break
+            await self.clock.sleep(0.05)  # stuck: PollsACallOfItsNodes
+
+    async def on_shutdown(self) -> None:
+        self.asking.cancel()
+
+
+class PollsSeveral(Dialler):
+    async def go(self, _: String) -> None:
+        asking = [asyncio.create_task(self.ping.call(Empty.Request())) for _ in range(3)]
+        try:
+            while not all(each.done() for each in asking):
+                await self.clock.sleep(0.05)  # stuck: PollsSeveral
+        finally:
+            for each in asking:
+                each.cancel()
+
+
 class Planner(Robot):
     """Has an action in the group of its handlers, or that waits for them."""
 

@@ -847,6 +847,81 @@ class TheParentSetsStill(TheParentSets):
         await super().look()
 
 
+class PollsWhatAnotherCancels(Dialler):
+    """It ends with an error, which is an end."""
+
+    async def go(self, _: String) -> None:
+        self.asking = asyncio.ensure_future(self.ping.call(Empty.Request()))
+        while not self.asking.done():
+            await self.clock.sleep(0.05)
+
+    @timer(3.0)
+    def give_up(self) -> None:
+        self.asking.cancel()
+
+
+class PollsWhatItGaveAway(Dialler):
+    def __init__(self) -> None:
+        super().__init__()
+        self.begun: list[asyncio.Task[Any]] = []
+
+    async def go(self, _: String) -> None:
+        asking = asyncio.create_task(self.ping.call(Empty.Request()))
+        self.begun.append(asking)
+        while not asking.done():
+            await self.clock.sleep(0.05)
+
+    @timer(3.0)
+    def give_up(self) -> None:
+        for asking in self.begun:
+            asking.cancel()
+
+
+class PollsUntilItIsReplaced(Dialler):
+    task_of_go: asyncio.Task[Any] | None = None
+
+    async def go(self, _: String) -> None:
+        self.task_of_go = asyncio.create_task(self.ping.call(Empty.Request()))
+        while self.task_of_go and not self.task_of_go.done():
+            await self.clock.sleep(0.05)
+
+    @timer(3.0)
+    def give_up(self) -> None:
+        self.task_of_go = None
+
+
+class PollsWhatTakesItsTime(Dialler):
+    async def go(self, _: String) -> None:
+        walking = asyncio.create_task(self.clock.sleep(3.0))
+        while not walking.done():
+            await self.clock.sleep(0.05)
+
+
+class PollsTheFirstOfTwo(Dialler):
+    """One of them is never answered, which does not matter."""
+
+    async def go(self, _: String) -> None:
+        asking = [asyncio.create_task(client.call(Empty.Request())) for client in (self.ping, self.pong)]
+        while not any(each.done() for each in asking):
+            await self.clock.sleep(0.1)
+        await self.clock.sleep(2.0)
+        for each in asking:
+            each.cancel()
+
+
+class PollsAndCancels(Dialler):
+    """Counts, and loses patience."""
+
+    async def go(self, _: String) -> None:
+        asking = asyncio.create_task(self.ping.call(Empty.Request()))
+        turns = 0
+        while not asking.done():
+            turns += 1
+            if turns == 30:
+                asking.cancel()
+            await self.clock.sleep(0.1)
+
+
 def legal(program: type[Robot]) -> Any:
     return pytest.param(program, id=program.__name__)
 
@@ -892,6 +967,12 @@ def legal(program: type[Robot]) -> Any:
         legal(LooksInBetween),
         legal(StepsItself),
         legal(EndsAtATime),
+        legal(PollsWhatAnotherCancels),
+        legal(PollsWhatItGaveAway),
+        legal(PollsUntilItIsReplaced),
+        legal(PollsWhatTakesItsTime),
+        legal(PollsTheFirstOfTwo),
+        legal(PollsAndCancels),
         legal(EndsAtATimeByImport),
         legal(EndsAfterTurns),
         legal(EndsAfterTurnsCounted),

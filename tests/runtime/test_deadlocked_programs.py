@@ -34,6 +34,9 @@ from tests.runtime.deadlock_cast import (
     Driver,
     DrivesByPose,
     Planner,
+    PollsACall,
+    PollsACallOfItsNodes,
+    PollsSeveral,
     Promised,
     Robot,
     Sleeper,
@@ -521,6 +524,13 @@ class AwaitsItsPlan(Planner):
             await goal.result()  # stuck: AwaitsItsPlan
 
 
+class PollsItsPlan(Planner):
+    async def go(self, _: String) -> None:
+        async with self.plan.send(Fibonacci.Goal(order=1)) as goal:
+            while not goal.done:
+                await self.clock.sleep(0.05)  # stuck: PollsItsPlan
+
+
 class FollowsItsPlan(Planner):
     async def go(self, _: String) -> None:
         async with self.plan.send(Fibonacci.Goal(order=1)) as goal:
@@ -842,6 +852,9 @@ def dead_call(program: type[Node], *expected: str) -> Any:
         dead_call(CallsInTime),
         dead_call(CallsShielded),
         dead_call(CallsInATask),
+        dead_call(PollsACall),
+        dead_call(PollsACallOfItsNodes),
+        dead_call(PollsSeveral),
         dead_call(CallsTwoAtOnce),
         dead_call(CallsAGroup),
         dead_call(TakesTheFirst),
@@ -860,6 +873,7 @@ def dead_call(program: type[Node], *expected: str) -> Any:
             "pair",
         ),
         dead_call(AwaitsItsPlan, PLANNED, "action on_plan"),
+        dead_call(PollsItsPlan, PLANNED, "action on_plan"),
         dead_call(FollowsItsPlan, PLANNED, "action on_plan"),
         dead_call(PlansWithinPlans, PLANNED, "action on_plan", "action on_plan", ""),
         dead_call(
