@@ -70,6 +70,12 @@ def explained(picture: Picture, dead: Iterable[str]) -> list[Deadlock]:
     return [deadlock for _, deadlock in sorted(found, key=lambda pair: (-pair[0], pair[1].ring))]
 
 
+def is_ring(names: Sequence[str], picture: Picture, dead: Iterable[str]) -> bool:
+    """Whether each of these waits for the next, and the last for the first, for whatever reason; and all are dead."""
+    waits = _Waits(Index(picture), dead)
+    return all(waits.leads(here, there) for here, there in zip(names, [*names[1:], names[0]], strict=True))
+
+
 class _Waits:
     """Who waits for whom among dead activities.
 
@@ -95,6 +101,11 @@ class _Waits:
         if thing in self._edges:
             return [edge.to for edge in self._edges[thing]]
         return self._index.holders[thing]
+
+    def leads(self, here: str, there: str) -> bool:
+        """Whether one dead activity cannot go on before another does."""
+        edges = self._edges.get(here, ())
+        return any(there == edge.to or (edge.group and there in self._index.holders[edge.group]) for edge in edges)
 
     def behind(self, members: set[str], others: set[str]) -> set[str]:
         """The activities that wait for some of them, and those who wait for these, but for `others`."""

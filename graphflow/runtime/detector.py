@@ -23,7 +23,7 @@ from graphflow.machines.cache import Change
 from graphflow.machines.explain import explanation, hopeless, title
 from graphflow.machines.picture import from_json
 from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import Deadlock, explained
+from graphflow.machines.rings import Deadlock, explained, is_ring
 from graphflow.machines.waits import FREE, Activity, Call, Condition, Picture, goal_id, joined
 from graphflow.runtime.inspection import LOOK, WAITS, key
 from graphflow.runtime.scheduler import Run, Runner
@@ -60,6 +60,8 @@ class Report(NamedTuple):
     """Has a part in it, in words."""
     processes: set[str]
     """In which its members are, and those who wait behind them."""
+    order: tuple[str, ...]
+    """The members, each of whom waits for the next."""
 
 
 class Foreign(NamedTuple):
@@ -129,7 +131,7 @@ class Detector:
         picture = self._context.waits.picture()
         mine = self._context.session.zid
         dead = deadlocked(picture)
-        self._say_cleared(dead, {mine})
+        self._take_back(picture, dead, {mine})
         if any(report.processes != {mine} for report in self.reports.values()):
             self._ask(self._look_again)
         waiting = {(a.id, a.wait) for a in picture.activities.values() if a.wait is not FREE}
@@ -216,7 +218,7 @@ class Detector:
         if not is_all:
             return
         whole, answered = self._whole(replies)
-        self._say_cleared(deadlocked(whole), answered)
+        self._take_back(whole, deadlocked(whole), answered)
 
     def _conclude(self, before: Picture, now: Picture) -> None:
         self._dead = deadlocked(now, before)
@@ -260,14 +262,14 @@ class Detector:
         if first != mine and ring not in self._behind:
             self._context.session.ask_reports(key(self._context.domain, LOOK, first), PULL_LIMIT, _nothing)
         if first != mine and ring not in self._foreign:
-            waits = frozenset((a.id, a.wait) for a in members if a.process == mine)
-            self._foreign[ring] = Foreign(first, who, processes, waits)
+            held = frozenset((a.id, a.wait) for a in members if a.process == mine)
+            self._foreign[ring] = Foreign(first, who, processes, held)
             if not self._is_watching:
                 self._is_watching = True
                 self._context.on_change(self._changed)
         if first == mine and told not in self.reports:
             involved = {a.process for a in behind} | processes
-            report = self.reports[ring] = Report(explanation(deadlock, picture), who, involved)
+            report = self.reports[ring] = Report(explanation(deadlock, picture), who, involved, deadlock.ring)
             logger.error("%s", report.text)
             self._behind[ring] = victims
         for victim in sorted(victims - self._behind.setdefault(told, set())):
@@ -295,17 +297,19 @@ class Detector:
             if not future.done():
                 future.set_exception(DeadlockError(explanation(deadlock, picture)))
 
-    def _say_cleared(self, dead: set[str], processes: set[str]) -> None:
-        """Take back reports of rings that are no longer dead.
+    def _take_back(self, picture: Picture, dead: set[str], processes: set[str]) -> None:
+        """Take back reports of rings that are none any more.
 
         Args:
             processes: Those that have been looked at. Nothing is known of others that are there.
         """
         for ring, report in list(self.reports.items()):
             unknown = report.processes - processes
-            if not ring <= dead and not any(entity.zid in unknown for entity in self._context.cache):
-                del self.reports[ring]
-                self._behind.pop(ring, None)
+            if is_ring(report.order, picture, dead) or any(entity.zid in unknown for entity in self._context.cache):
+                continue
+            del self.reports[ring]
+            self._behind.pop(ring, None)
+            if not ring <= dead:  # otherwise they are in another, which is told now
                 logger.warning("the deadlock of %s has cleared", report.who)
 
     def _changed(self, change: Change) -> None:

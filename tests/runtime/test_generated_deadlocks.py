@@ -1054,6 +1054,17 @@ def test_a_report_that_somebody_without_handlers_had_a_part_in() -> None:
     assert [outcome_of(system, seed, "report").told for seed in range(20)] == [1] * 20
 
 
+def test_a_ring_that_becomes_another() -> None:
+    """One of three gives up and waits for the first all the same: that is told again, and nothing has cleared."""
+    inner = Step(Ask(0, (Step(Nap(0.3), is_released=True),), timeout=0.9), is_released=True)
+    first = Starter(HOME, "timer", 0.05, 1, (Step(Ask(0, (inner,))),))
+    second = Starter(HOME, "timer", 0.2, 1, (Step(Ask(0)),))
+
+    outcome = outcome_of(System((0,), ((0, 2),), (None,), (Server(HOME, "service"),), (first, second)), 0, "report")
+
+    assert outcome.told == 2
+
+
 def test_somebody_who_joins_a_deadlock() -> None:
     """He is told of, as others are who come to wait for it."""
     home = Place(0, None)
