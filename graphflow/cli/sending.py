@@ -57,6 +57,7 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
             is_canceled = sent.status.name == "CANCELED"
             output.data("Goal canceled." if is_canceled else f"Goal is {sent.status.name}.")
             return exits.OK if is_canceled else exits.FAILED
+        output.data("Goal withdrawn before it was accepted.")
         raise
 
 

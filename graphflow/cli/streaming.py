@@ -168,12 +168,17 @@ class _Stream:
             output.talk(f"  {node['node']:{width}}  {node['class']:{class_width}}  {_shown(place)}")
         output.talk("")
         output.talk("In another terminal:")
+        name = self._nodes[0]["node"]
+        hints = {
+            "graphflow topic list": "what the nodes say to each other",
+            f"graphflow node info {name}": "what a node does",
+            f"graphflow param list {name}": "what can be set",
+            "graphflow ps": "how the nodes are",
+        }
         if run["domain"] != domain_id():
-            output.talk(f"  export GRAPHFLOW_DOMAIN={run['domain']}".ljust(36) + "first: the file has its own domain")
-        output.talk("  graphflow topic list              what the nodes say to each other")
-        output.talk(f"  graphflow node info {self._nodes[0]['node']:<14}".ljust(36) + "what a node does")
-        output.talk(f"  graphflow param list {self._nodes[0]['node']:<13}".ljust(36) + "what can be set")
-        output.talk("  graphflow ps                      how the nodes are")
+            hints = {f"export GRAPHFLOW_DOMAIN={run['domain']}": "first: the file has its own domain", **hints}
+        for command, what in hints.items():
+            output.talk(f"  {command:32}  {what}")
         output.talk(f"Logs are in {run['logs']}")
         output.talk("Stop with: graphflow down" if self._detach else "Stop with Ctrl-C.")
         output.talk("")

@@ -177,5 +177,6 @@ def doctor(as_json: bool) -> int:
         if read.unreadable:
             output.data(f"{read.unreadable} processes answered as another version of graphflow does: not understood")
         if not any(faults.values()) and not late:
-            output.data(f"{len(read.nodes)} nodes, nothing wrong")
+            count = len(read.nodes)
+            output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
     return exits.FAILED if any(faults.values()) else exits.OK

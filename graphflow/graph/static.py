@@ -17,7 +17,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -25,7 +25,7 @@ from typing import Literal
 from graphflow.errors import Place
 from graphflow.graph.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
-from graphflow.interface import NO_GROUP, Handler, Interface
+from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, Handler, Interface
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
@@ -66,6 +66,8 @@ class _Call:
     name: str
     place: Place
     is_certain: bool
+    is_released: bool
+    """Whether the handler has let go of its slot."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ class _World:
 
     def __init__(self) -> None:
         self._calls: dict[_Actor, list[_Call]] = {}
-        self._servers: dict[str, _Actor] = {}
+        self._servers: dict[str, _Actor | None] = {}
         self._unresolved: list[Finding] = []
 
     def add(self, node: PlannedNode, interface: Interface) -> None:
@@ -121,14 +123,18 @@ class _World:
                 continue
             actor = _Actor(node.name, handler.name, handler.kind, _slot(node, interface, handler))
             found = list(source.calls(handler.name))
-            self._calls[actor] = [_Call(clients[c.name], c.place, c.is_certain) for c in found if c.name in clients]
+            self._calls[actor] = [replace(c, name=clients[c.name]) for c in found if c.name in clients]
             for call in found:
                 if call.name not in clients:
                     text = f"{actor} calls self.{call.name}, which is made at run time"
                     self._unresolved.append(Finding("unresolved", call.place, text))
             for endpoint in interface.endpoints:
                 if endpoint.kind in ("service", "action") and endpoint.attribute == handler.name:
-                    self._servers[names.resolve(endpoint.name, "service")] = actor
+                    self._offer(names.resolve(endpoint.name, "service"), actor)
+
+    def _offer(self, name: str, actor: _Actor) -> None:
+        """Note a server; of several nobody knows which will answer."""
+        self._servers[name] = actor if self._servers.get(name, actor) == actor else None
 
     def unresolved(self) -> list[Finding]:
         missing = [
@@ -156,6 +162,7 @@ class _World:
             if server is None:
                 continue
             slot, way = server.slot, [*path, call]
+            held[actor.slot] -= call.is_released
             if slot.limit is not None and held[slot] >= slot.limit:
                 grade: Grade = "CERTAIN" if all(c.is_certain for c in way) else "IF THIS BRANCH RUNS"
                 text = (
@@ -167,18 +174,21 @@ class _World:
                 held[slot] += 1
                 yield from self._follow(server, way, held)
                 held[slot] -= 1
+            held[actor.slot] += call.is_released
 
     def _told(self, way: list[_Call]) -> str:
         return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in way)
 
     def rings(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
         """Groups of which each is held while the next is waited for."""
-        edges: dict[_Slot, dict[_Slot, tuple[_Actor, _Call]]] = {}
+        edges: dict[_Slot, dict[_Slot, tuple[_Actor, _Call, _Actor]]] = {}
         for actor, calls in self._calls.items():
             for call in calls:
                 server = self._servers.get(call.name)
-                if server is not None and server.slot.limit is not None and actor.slot.limit is not None:
-                    edges.setdefault(actor.slot, {}).setdefault(server.slot, (actor, call))
+                if server is None or call.is_released:
+                    continue
+                if server.slot.limit is not None and actor.slot.limit is not None:
+                    edges.setdefault(actor.slot, {}).setdefault(server.slot, (actor, call, server))
         done: set[frozenset[_Slot]] = set()
         for start in edges:
             ring = _ring(start, edges)
@@ -188,10 +198,10 @@ class _World:
             steps = [edges[a][b] for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
             told = "; ".join(
                 f"{actor} holds {actor.slot} and awaits {call.name} ({Path(call.place.file).name}:{call.place.line})"
-                for actor, call in steps
+                for actor, call, _ in steps
             )
-            actor, call = steps[0]
-            remedy = _remedy(self._servers[call.name], actor)
+            actor, call, server = steps[0]
+            remedy = _remedy(server, actor)
             yield Finding("POSSIBLE", call.place, f"{told}. {remedy}"), frozenset(ring)
 
 
@@ -231,9 +241,11 @@ def _slot(node: PlannedNode, interface: Interface, handler: Handler) -> _Slot:
             name = "" if group == NO_GROUP else group
     if not name:
         return _Slot(node.name, handler.name, 1, is_own=True)
-    limit = interface.groups[name].limit if name in interface.groups else 1
-    change = node.concurrency[name].change if name in node.concurrency else None
-    return _Slot(node.name, name, change.limit if change is not None and change.sets_limit else limit)
+    declared = interface.groups.get(name, GroupInfo())
+    change = node.concurrency[name].change if name in node.concurrency else GroupChange()
+    if (change.when_full or declared.when_full) == "cancel_running":
+        return _Slot(node.name, name, None)  # it is never full for good
+    return _Slot(node.name, name, change.limit if change.sets_limit else declared.limit)
 
 
 class _Source:
@@ -260,12 +272,14 @@ class _Source:
                     self._methods.setdefault(item.name, (file, item))
             todo += [base.id for base in definition.bases if isinstance(base, ast.Name)]
 
-    def calls(self, method: str, *, certain: bool = True, seen: frozenset[str] = frozenset()) -> Iterator[_Call]:
+    def calls(
+        self, method: str, *, certain: bool = True, released: bool = False, seen: frozenset[str] = frozenset()
+    ) -> Iterator[_Call]:
         """What a method awaits by `self.<attribute>.call(...)`, itself or in methods that it calls."""
         if method not in self._methods or method in seen:
             return
         file, function = self._methods[method]
-        leaves = _first_way_out(function)
+        leaves, free = _first_way_out(function), _released(function)
         for node, reached in _walk(function, True):
             always = reached and (leaves is None or getattr(node, "lineno", 0) < leaves)
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
@@ -273,9 +287,14 @@ class _Source:
             held = node.func.value
             if node.func.attr in ("call", "call_sync", "send", "send_goal") and _is_own(held):
                 assert isinstance(held, ast.Attribute)
-                yield _Call(held.attr, Place(file, node.lineno), certain and always)
+                yield _Call(held.attr, Place(file, node.lineno), certain and always, released or node in free)
             elif _is_own(node.func):
-                yield from self.calls(node.func.attr, certain=certain and always, seen=seen | {method})
+                yield from self.calls(
+                    node.func.attr,
+                    certain=certain and always,
+                    released=released or node in free,
+                    seen=seen | {method},
+                )
 
 
 def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
@@ -295,6 +314,18 @@ def _first_way_out(function: ast.AST) -> int | None:
     """The line of the first `return` or `raise` that only some runs take: what follows is not reached by all."""
     lines = [n.lineno for n, reached in _walk(function, True) if isinstance(n, (ast.Return, ast.Raise)) and not reached]
     return min(lines, default=None)
+
+
+def _released(function: ast.AST) -> set[ast.AST]:
+    """What stands inside of `async with self.group.released()`."""
+    blocks = [
+        node
+        for node in ast.walk(function)
+        if isinstance(node, ast.AsyncWith)
+        for item in node.items
+        if isinstance(item.context_expr, ast.Call) and _word(item.context_expr.func) == "released"
+    ]
+    return {node for block in blocks for statement in block.body for node in ast.walk(statement)}
 
 
 def _word(function: ast.AST) -> str:

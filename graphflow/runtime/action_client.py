@@ -272,11 +272,13 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             if not self.server_is_ready():
                 await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
             answer = await self._send.call(request, timeout=timeout)
-        except (CancelledError, CallTimeout):
+        except (CancelledError, CallTimeout) as error:
             # The server may have it by now.
             del self._goals[sent.goal_id]
             if self._cancel.is_open:
-                self._in_background(self._withdraw(sent))
+                withdrawing = self._in_background(self._withdraw(sent))
+                if isinstance(error, CancelledError):  # whoever is cancelled may end the node next
+                    await _seen_through(withdrawing)
             raise
         except BaseException:
             del self._goals[sent.goal_id]
@@ -302,16 +304,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
 
     async def _leave(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
         """Cancel a goal whose block is left, and wait a little for its end, also if the leaving itself is cancelled."""
-        leaving = self._in_background(self._cancel_and_wait(goal))
-        cancelled: CancelledError | None = None
-        while not leaving.done():
-            try:
-                await asyncio.shield(leaving)
-            except CancelledError as error:
-                if not leaving.cancelled():  # which happens when the client is closed
-                    cancelled = error
-        if cancelled is not None:
-            raise cancelled
+        await _seen_through(self._in_background(self._cancel_and_wait(goal)))
 
     async def _cancel_and_wait(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
         try:
@@ -325,7 +318,8 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         except TimeoutError:
             self.node.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
         except (CallError, ClosedError) as error:
-            self.node.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
+            if not goal.status.is_terminal:  # its end was told, and its server has gone since
+                self.node.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
 
     async def _withdraw(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
         with suppress(CallError, ClosedError):  # nobody waits for what becomes of it
@@ -384,7 +378,9 @@ class GoalClient(Generic[Goal, Result, Feedback]):
                 continue
             if not GoalStatus(entry.status).is_terminal:
                 goal.status = max(goal.status, GoalStatus(entry.status))  # what was told before may come after
-            elif not goal.is_asked_again:  # the end comes with the result, which may have been lost
+            elif (
+                not goal.is_asked_again and self.node.is_running
+            ):  # the end comes with the result, which may have been lost
                 goal.is_asked_again = True
                 self._in_background(self._ask_again(goal))
 
@@ -401,3 +397,16 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         self._followers.add(task)
         task.add_done_callback(self._followers.discard)
         return task
+
+
+async def _seen_through(task: asyncio.Task[None]) -> None:
+    """Wait for a task to its end, also if the waiting is cancelled meanwhile."""
+    cancelled: CancelledError | None = None
+    while not task.done():
+        try:
+            await asyncio.shield(task)
+        except CancelledError as error:
+            if not task.cancelled():  # which happens when the client is closed
+                cancelled = error
+    if cancelled is not None:
+        raise cancelled

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from inspect import isawaitable
 from typing import TYPE_CHECKING, Any, Generic
 
-from graphflow.errors import Abort
+from graphflow.errors import Abort, EncodeError
 from graphflow.interface import GoalPolicy, OnClientLoss
 from graphflow.machines import waits
 from graphflow.machines.goal import CancelCode, GoalBook, GoalEvent, GoalStatus
@@ -132,6 +132,7 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         self.policy = policy
         self.entry_class: type[Any] = registry.interface_class("action_msgs/msg/GoalStatus")
         self.result_class: type[Any] = registry.interface_class(f"{type_.NAME}_Result")
+        self._encode_result = registry.codec(f"{type_.NAME}_Result").encode
         self.book = GoalBook(to_ns(RESULT_KEPT), to_ns(STATUS_KEPT), RESULTS_KEPT)
         self.goals: dict[bytes, ServerGoal[Goal, Result, Feedback]] = {}
         self.runner: Runner | None = None
@@ -371,10 +372,13 @@ class GoalServer(Generic[Goal, Result, Feedback]):
         if error is None:
             if result is None and not self.result_class.SCHEMA.fields:
                 result = self.result_class()
-            if result.__class__ is self.result_class:
+            if result.__class__ is not self.result_class:
+                error = TypeError(
+                    f"the handler of {self.name} returned {result!r}, not {self.result_class.__qualname__}"
+                )
+            elif (error := self._why_unfit(result)) is None:
                 self._end(goal, GoalEvent.SUCCEED, result)
                 return
-            error = TypeError(f"the handler of {self.name} returned {result!r}, not {self.result_class.__qualname__}")
         if isinstance(error, CancelledError):
             self._end_cancelled(goal)
             return
@@ -395,7 +399,18 @@ class GoalServer(Generic[Goal, Result, Feedback]):
             self._step(goal, GoalEvent.EXECUTE)
         self._end(goal, GoalEvent.CANCELED if asked else GoalEvent.ABORT, goal.partial)
 
+    def _why_unfit(self, result: Any) -> Exception | None:
+        """Why a result cannot be sent."""
+        try:
+            self._encode_result(result)
+        except (EncodeError, AttributeError) as error:
+            return error
+        return None
+
     def _end(self, goal: ServerGoal[Goal, Result, Feedback], event: GoalEvent, result: Any) -> None:
+        if event is not GoalEvent.SUCCEED and (wrong := self._why_unfit(result)) is not None:
+            self.node.report_error(f"{self._label}, its partial result", wrong)
+            result = self.result_class()
         if goal.status is GoalStatus.ACCEPTED:
             self._step(goal, GoalEvent.EXECUTE)
         self._step(goal, event)

@@ -95,6 +95,34 @@ def setters(frames: list[FrameType], waiter: Any, node: Node, *, is_bounded: boo
         return None
 
 
+def cancellers(thing: Any, node: Node) -> Setters | None:
+    """Who can cancel a task or goal that the node keeps; None when nobody can, as far as its source tells.
+
+    Raises:
+        Unknown: Somebody may.
+    """
+    held = {name for name, value in vars(node).items() if value is thing or _holds(value, thing)}
+    if not held:
+        return None
+    source, methods = source_of(type(node)), set[str]()  # type: ignore[arg-type]  # a class can be hashed
+    for name in held:
+        uses = source.uses(name)
+        if getattr(node, name) is not thing or source.foreign(name) or any(use.kind == "given" for use in uses):
+            if any(use.method not in _BEGINNINGS for use in (*source.foreign("cancel"), *source.uses("cancel"))):
+                raise Unknown
+            continue
+        methods |= {use.method for use in uses if use.kind == "called" and use.name == "cancel"}
+    entries = entries_of(node)
+    what = " and ".join(f"self.{name}" for name in sorted(held))
+    found = frozenset(source.above(methods - _BEGINNINGS, entries) & entries)
+    return Setters(what, found) if found else None
+
+
+def entries_of(node: Node) -> set[str]:
+    """The methods of a node that graphflow runs: handlers and tasks."""
+    return {runner.handler for runner in node.runners} | {_coroutine_name(task) for task in node.tasks}
+
+
 @dataclass(frozen=True)
 class _Place:
     """A frame of one of the node's methods."""
@@ -272,7 +300,7 @@ class _Question:
 
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
         """The handlers and tasks that call those methods, if nobody else does."""
-        entries = {runner.handler for runner in self._node.runners} | {_coroutine_name(t) for t in self._node.tasks}
+        entries = entries_of(self._node)
         above = self._source.above(set(methods) - _BEGINNINGS, entries)
         if above & _hooks(type(self._node)):
             raise Unknown

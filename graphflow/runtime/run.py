@@ -7,6 +7,7 @@ import logging
 import os
 import signal
 import sys
+import time
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
@@ -18,6 +19,9 @@ from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
+
+SAME_SIGNAL = 0.1
+"""Seconds within which a second signal is the first once more."""
 
 
 @asynccontextmanager
@@ -100,15 +104,19 @@ async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> boo
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
     """Set `stop` on SIGINT or SIGTERM; a second one ends the process at once, also when the loop is blocked.
 
+    Signals that come together are one: who signals a process and then its group means it once.
+
     Returns:
         What puts the former handlers back.
     """
     loop = asyncio.get_running_loop()
-    came: list[int] = []
+    first = 0.0
 
-    def caught(number: int, _: object) -> None:
-        came.append(number)
-        if len(came) > 1:
+    def caught(*_: object) -> None:
+        nonlocal first
+        now = time.monotonic()
+        first = first or now
+        if now - first > SAME_SIGNAL:
             os.write(2, b"ended without cleanup: it was asked twice\n")
             os._exit(1)
         if not loop.is_closed():

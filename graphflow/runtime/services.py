@@ -143,6 +143,9 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
+        if not self.node.is_running:  # it has not waited for this run
+            request.reply_error(_STOPPING.to_payload())
+            return
         if error is None:
             try:
                 if result is None and not self._response.SCHEMA.fields:

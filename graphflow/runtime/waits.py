@@ -13,8 +13,10 @@ import queue
 import sys
 import threading
 from asyncio import Future
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from types import FrameType, MethodType
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -23,11 +25,13 @@ from graphflow.errors import DecodeError, Place
 from graphflow.machines import waits as picture_of
 from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot, call_id, goal_id
 from graphflow.runtime.clock import Clock
-from graphflow.runtime.closed_world import setters
+from graphflow.runtime.closed_world import Setters, cancellers, setters
 from graphflow.runtime.places import is_users
 from graphflow.runtime.scheduler import Activity, Run, Runner
+from graphflow.runtime.source import Unknown
 from graphflow.times import to_ns
 from graphflow.wire import attachment, chain
+from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
     from graphflow.runtime.context import Context
@@ -88,7 +92,7 @@ class Waits:
         group = runner.group
         if group is None and runner.is_serial:
             holders, limit = list(runner.active), 1
-        elif group is None or group.limit is None:
+        elif group is None or group.limit is None or group.when_full == "cancel_running":
             return []
         else:
             members = [m for m in group.members if isinstance(m, Runner)]
@@ -156,6 +160,11 @@ class _Camera:
         self._seen: set[tuple[str, Condition]] = set()
         self._limit_ns: int | None = None
         """When the activity that is looked at gives up waiting."""
+
+    @cached_property
+    def _servers(self) -> Counter[str]:
+        """How many servers there are, by service."""
+        return Counter(entity.name for entity in list(self._context.cache) if entity.kind is Kind.SERVICE)
 
     def shoot(self) -> Picture:
         arrived = self._arrived()
@@ -359,16 +368,18 @@ class _Camera:
             return self._closed_world(way, None) if asking is None else self._condition(asking, way)
         if future in waits.calls:
             gid, sequence, name, _, _ = waits.calls[future]
-            return Call(call_id(gid, sequence), name)
+            return Call(call_id(gid, sequence), name) if self._servers[name] < 2 else FREE  # another may answer
         if future in waits.goals:
             goal = waits.goals[future]
-            return Call(goal_id(goal.goal_id), goal.action)
+            if self._servers[f"{goal.action}/_action/send_goal"] > 1:
+                return FREE
+            return self._or_cancelled(Call(goal_id(goal.goal_id), goal.action), goal, way)
         if future in waits.served:
             return Call(waits.served[future], "")
         if isinstance(future, Activity) or asyncio.isfuture(future):
             if hasattr(future, "get_coro"):
                 known = self._known(future)
-                return known if known is not None else self._condition(future, way)
+                return known if known is not None else self._or_cancelled(self._condition(future, way), future, way)
             children = getattr(future, "_children", None)
             if children is not None:  # gather
                 if any(c.done() and _has_failed(c) for c in children) and not _returns_errors(children):
@@ -389,13 +400,26 @@ class _Camera:
 
     def _closed_world(self, way: _Way, waiter: Any) -> Condition:
         """A wait for something that, as far as the source code tells, only handlers of the node bring about."""
-        node = way.node
-        found = setters(list(way.frames), waiter, node, is_bounded=way.is_bounded)
+        found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or any(task.done() for task in found.tasks):
             return FREE
         ends = [self._of_future(task, way) for task in found.tasks]
-        if ends and not found.handlers:
-            return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
+        if found.handlers or not ends:
+            ends.insert(0, self._set_by(found, way))
+        return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
+
+    def _or_cancelled(self, condition: Condition, thing: Any, way: _Way) -> Condition:
+        """The wait for a task or goal of the node's, which others of its handlers may cancel."""
+        if condition is FREE:
+            return FREE
+        try:
+            found = cancellers(thing, way.node)
+        except Unknown:
+            return FREE
+        return condition if found is None else AnyOf((condition, self._set_by(found, way)))
+
+    def _set_by(self, found: Setters, way: _Way) -> Condition:
+        node = way.node
         runners = [r for n, r in self._runners if n is node and r.handler in found.handlers]
         # Runs under way count too, also those that have let go of their slot.
         others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
@@ -410,8 +434,7 @@ class _Camera:
             others += inside
         queues = sorted(self.queue_id(r) for r in runners)
         activities = sorted({self.task_id(other) for other in others})
-        change = SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
-        return AnyOf((change, *ends)) if ends else change
+        return SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
 
     def _inside(self, lock: Any) -> list[Any]:
         """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
@@ -439,9 +462,9 @@ class _Camera:
                 break
             if frame.f_code is Activity.step.__code__ and isinstance(frame.f_locals["self"], Run):
                 run = frame.f_locals["self"]
-                held = (run.runner, run, run.item)
+                held = (run.runner, run, getattr(run, "item", None))
                 break
-        if held is None:
+        if held is None or held[2] is None:  # nobody's, or a run that has ended and whose result is being sent
             return None
         runner, run, item = held
         node = next((n for n, r in self._runners if r is runner), None)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import signal
+import time
 from pathlib import Path
 
 import pytest
 
+from graphflow.runtime.run import SAME_SIGNAL
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -135,8 +137,18 @@ def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machin
     node.process.send_signal(signal.SIGINT)
     status = Path(f"/proc/{node.pid}/status")
     machine.until(lambda: "ShdPnd:\t0000000000000000" in status.read_text(), "the first signal has arrived")
+    time.sleep(2 * SAME_SIGNAL)
     assert node.end() == 1
     assert "asked twice" in node.text
+
+
+def test_signals_that_come_together_are_one(machine: Machine) -> None:
+    """As from `timeout`, which signals its child and then the whole group."""
+    node = machine.start("run", "nodes.talker:Talker")
+    node.wait_for("Publishing")
+    node.process.send_signal(signal.SIGTERM)
+    assert node.end() == 0
+    assert "asked twice" not in node.text
 
 
 def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:

@@ -104,6 +104,30 @@ class Alone(Base):
     @timer(1.0)
     async def tick(self):
         await self.ask()
+
+
+class LetsGo(Base):
+    @timer(1.0, group=Base.all)
+    async def tick(self):
+        async with self.all.released():
+            await self.ask()
+
+    @service(Trigger, "mine", group=Base.all)
+    async def answer(self, request):
+        return Trigger.Response()
+
+
+class PushesOut(Node):
+    latest = Group(1, "cancel_running")
+    mine = Client(Trigger, "mine")
+
+    @timer(1.0, group=latest)
+    async def tick(self):
+        await self.mine.call(Trigger.Request())
+
+    @service(Trigger, "mine", group=latest)
+    async def answer(self, request):
+        return Trigger.Response()
 """
 
 
@@ -112,6 +136,8 @@ class Alone(Base):
     [
         ("One", "static_cases.py:11: IF THIS BRANCH RUNS: timer tick of /n awaits /mine"),
         ("Beside", None),
+        ("LetsGo", None),
+        ("PushesOut", None),
         ("Computed", "static_cases.py:46: unresolved: timer tick of /n calls self.late, which is made at run time"),
         ("Alone", "static_cases.py:11: unresolved: timer tick of /n calls /mine, which no node of this graph declares"),
     ],
@@ -127,3 +153,11 @@ def test_what_can_be_followed(tmp_path: Path, cls: str, told: str | None) -> Non
         assert texts == []
     else:
         assert any(told in text for text in texts)
+
+
+def test_a_service_with_two_servers(tmp_path: Path) -> None:
+    """The other one may answer."""
+    (tmp_path / "static_cases.py").write_text(NODES)
+    (tmp_path / "g.yaml").write_text("nodes: {/n: {class: static_cases:One}, /other: {class: static_cases:Beside}}")
+
+    assert not any("IF THIS BRANCH RUNS" in text for text in found(tmp_path / "g.yaml"))

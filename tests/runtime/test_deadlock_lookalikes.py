@@ -17,6 +17,7 @@ from graphflow import (
     CallError,
     CallTimeout,
     Client,
+    GoalCanceled,
     Group,
     Node,
     Param,
@@ -43,6 +44,7 @@ from tests.runtime.deadlock_cast import (
     Dialler,
     Driver,
     DrivesByPose,
+    Planner,
     Promised,
     Robot,
     Waiter,
@@ -922,6 +924,73 @@ class PollsAndCancels(Dialler):
             await self.clock.sleep(0.1)
 
 
+class CancelsItsTaskFromOutside(Dialler):
+    """A handler in no group ends the wait."""
+
+    calling: asyncio.Task[Any] | None = None
+
+    async def go(self, _: String) -> None:
+        self.calling = asyncio.create_task(self.ping.call(Empty.Request()))
+        with suppress(asyncio.CancelledError):
+            await self.calling
+
+    @timer(3.0)
+    def lose_patience(self) -> None:
+        if self.calling is not None:
+            self.calling.cancel()
+
+
+class CancelsItsGoalFromOutside(Planner):
+    errand: Any = None
+
+    async def go(self, _: String) -> None:
+        self.errand = await self.plan.send_goal(Fibonacci.Goal(order=1))
+        with suppress(GoalCanceled):
+            await self.errand.result()
+
+    @timer(3.0)
+    async def lose_patience(self) -> None:
+        if self.errand is not None and not self.errand.done:
+            await self.errand.cancel()
+
+
+class CancelsWhateverItHasBegun(Dialler):
+    def __init__(self) -> None:
+        super().__init__()
+        self.calls: dict[int, asyncio.Task[Any]] = {}
+
+    async def go(self, _: String) -> None:
+        self.calls[1] = asyncio.create_task(self.ping.call(Empty.Request()))
+        with suppress(asyncio.CancelledError):
+            await self.calls[1]
+
+    @timer(3.0)
+    def lose_patience(self) -> None:
+        for call in self.calls.values():
+            call.cancel()
+
+
+class PushesItselfOut(Robot):
+    """The call that comes back is newer work of a group that cancels for it."""
+
+    latest = Group(1, "cancel_running")
+    there = Client(Empty, "there")
+    back = Client(Empty, "back")
+
+    @subscription(String, "go", group=latest)
+    async def go(self, _: String) -> None:
+        await self.there.call(Empty.Request(), timeout=None)
+
+    @service(Empty, "there")
+    async def on_there(self, request: Empty.Request) -> Empty.Response:
+        await self.clock.sleep(3.0)
+        return await self.back.call(Empty.Request(), timeout=None)
+
+    @service(Empty, "back", group=latest)
+    async def on_back(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+
 def legal(program: type[Robot]) -> Any:
     return pytest.param(program, id=program.__name__)
 
@@ -973,6 +1042,9 @@ def legal(program: type[Robot]) -> Any:
         legal(PollsWhatTakesItsTime),
         legal(PollsTheFirstOfTwo),
         legal(PollsAndCancels),
+        legal(CancelsItsTaskFromOutside),
+        legal(CancelsItsGoalFromOutside),
+        legal(CancelsWhateverItHasBegun),
         legal(EndsAtATimeByImport),
         legal(EndsAfterTurns),
         legal(EndsAfterTurnsCounted),
@@ -1221,3 +1293,43 @@ async def test_what_is_about_to_go_on(graph: Graph, program: type[TakesTheFirstF
         assert explained(picture, deadlocked(picture)) == []
         await asyncio.sleep(0)
     assert robot.motion.running == 0
+
+
+async def test_a_call_that_comes_back_and_cancels_who_waits_for_it(graph: Graph, caplog: Caplog) -> None:
+    """With the policy that fails hopeless calls: this one is not."""
+    graph.deadlock = "raise"
+    robot = PushesItselfOut()
+    await graph.start(robot)
+    await say(graph, "/go")
+    await graph.clock.advance(4.0)
+
+    assert reports(caplog) == []
+    assert not any(runner.active for runner in robot.runners)
+
+
+class AlsoServes(Node):
+    """Another server of the service."""
+
+    @service(Empty, "ping")
+    async def on_ping(self, request: Empty.Request) -> Empty.Response:
+        await self.clock.sleep(2.0)
+        return Empty.Response()
+
+
+class CallsOneOfTwo(Dialler):
+    async def go(self, _: String) -> None:
+        await self.ping.call(Empty.Request())
+
+
+@pytest.mark.parametrize("policy", ["raise", "report"])
+async def test_a_call_that_another_server_answers(graph: Graph, caplog: Caplog, policy: DeadlockPolicy) -> None:
+    """One of the two needs a slot that the caller holds."""
+    graph.deadlock = policy
+    robot = CallsOneOfTwo()
+    await graph.start(robot, AlsoServes("other"))
+    await say(graph, "/go")
+    await graph.clock.advance(3.0)
+
+    assert reports(caplog) == []
+    assert "Error" not in caplog.text
+    assert not robot.motion.running
