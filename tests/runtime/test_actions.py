@@ -536,3 +536,29 @@ async def test_a_parallel_action_that_is_moved(graph: Graph) -> None:
     runner.move(server.groups.named("none"))
     await graph.settle()
     assert server.bodies == 4
+
+
+class Careless(Node):
+    """Its results cannot be sent."""
+
+    @action(Fibonacci, "fibonacci")
+    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        wrong = Fibonacci.Result()
+        wrong.sequence = [2**40]  # type: ignore[assignment]
+        if goal.request.order:
+            goal.partial = wrong
+            raise Abort("it got too large")
+        return wrong
+
+
+@pytest.mark.parametrize("order", [0, 1])
+async def test_a_result_that_cannot_be_sent(graph: Graph, caplog: pytest.LogCaptureFixture, order: int) -> None:
+    """The goal is aborted, and the server says what is wrong with the result."""
+    _, asker = await pair(graph, Careless())
+    goal = await asker.order(order)
+    await graph.clock.advance(0.1)
+
+    with pytest.raises(GoalAborted):
+        await goal.result()
+    assert "sequence" in caplog.text
+    assert str(2**40) in caplog.text

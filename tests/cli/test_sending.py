@@ -1,0 +1,48 @@
+"""`action send_goal` and Ctrl-C."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+HESITANT = """
+from graphflow import Node, action
+from graphflow.msgs.example_interfaces.action import Fibonacci
+
+class Hesitant(Node):
+    async def on_start(self):
+        self.log.info("starts")
+
+    async def ponder(self, goal):
+        self.log.info("ponders %d", goal.order)
+        await self.clock.sleep(goal.order / 10)
+        return True
+
+    @action(Fibonacci, "compute", accept=ponder)
+    async def compute(self, goal):
+        self.log.info("begins %d", goal.request.order)
+        return Fibonacci.Result()
+"""
+
+
+def test_ctrl_c_before_the_goal_is_accepted_withdraws_it(machine: Machine, tmp_path: Path) -> None:
+    """It says so, and the goal is never begun."""
+    (tmp_path / "hesitant.py").write_text(HESITANT)
+    server = machine.start("run", "hesitant:Hesitant", cwd=tmp_path)
+    server.wait_for("starts")
+    goal = ("action", "send_goal", "/compute", "example_interfaces/action/Fibonacci")
+    sending = machine.start(*goal, "{order: 8}")
+    server.wait_for("ponders 8")
+    assert sending.end(signal.SIGINT) == 0
+    assert "Goal withdrawn before it was accepted.\n" in sending.text
+
+    machine.run(*goal, "{order: 9}")
+    assert "begins 9" in server.wait_for("begins 9")
+    assert "begins 8" not in server.text
+    assert server.end() == 0
