@@ -21,6 +21,8 @@ from dataclasses import dataclass
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from graphflow.msgs.base import Message
 from graphflow.runtime import declared
 from graphflow.runtime.conditions import (
@@ -61,6 +63,9 @@ _BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
 _MAKERS = {*(tool.__name__ for tool in TOOLS), "create_future", "Lock", "Semaphore", "BoundedSemaphore", "Condition"}
 _MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
 _CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
+_ARRAYS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
+_ARRAYS |= {"fill", "sort", "put", "partition"}
+"""Methods of arrays that give nobody another view of them."""
 _CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
 
 
@@ -282,6 +287,8 @@ class _Question:
         for use in self._source.uses(name):
             if known and (use.kind in ("given", "invoked") or not _is_new(use, _CONTAINER_MAKERS)):
                 raise Unknown
+            if isinstance(value, (np.ndarray, Message)) and _has_second_name(use, value):
+                raise Unknown
             if not self._changes_nothing(use, value):
                 if use.is_nested:
                     raise Unknown
@@ -362,6 +369,27 @@ def _is_new(use: Use, makers: set[str]) -> bool:
         return ast.unparse(use.value.func).split(".")[-1] in makers
     made = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp, ast.Constant, ast.BinOp)
     return isinstance(use.value, made)
+
+
+def _has_second_name(use: Use, value: Any) -> bool:
+    """Whether a part of an array or message, through which it can be changed, is handed on."""
+    if use.kind == "called" and isinstance(value, np.ndarray):
+        return use.name not in LOOKING | _ARRAYS
+    if use.part is None:
+        return False
+    path: list[ast.expr] = []
+    node: ast.expr = use.part
+    while isinstance(node, (ast.Attribute, ast.Subscript)) and node is not use.syntax:
+        path.append(node)
+        node = node.value
+    for step in reversed(path):
+        if isinstance(step, ast.Attribute):
+            value = getattr(value, step.attr, None)
+        elif not isinstance(step, ast.Subscript) or isinstance(step.slice, (ast.Slice, ast.Tuple)) or not len(value):
+            return True
+        else:
+            value = value[0]  # any part will do
+    return not isinstance(value, (*PLAIN, tuple, np.generic, np.dtype))
 
 
 def _sets_fields(function: FunctionNode) -> bool:

@@ -26,6 +26,10 @@ _LOOKS = (
 _LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozenset", "hash", "id", "int", "isinstance"}
 _LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
 _LOOKING |= {"super", "tuple", "type", "zip"}
+_SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
+_SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
+_SAME |= {"diagonal", "copyto"}
+"""Functions of numpy that may give back another view of the same array, or write to it."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
 
 
@@ -54,6 +58,7 @@ class Use:
         is_nested: In a function or lambda inside of the method, which runs nobody knows when.
         is_started: The call of an `async def` that is not awaited on the spot, and runs on its own.
         is_registered: Given to one of the node's `create_...`, as a handler is.
+        part: The whole of what is looked at, where it is handed on: `self.x.y[2:]`.
     """
 
     method: str
@@ -64,6 +69,7 @@ class Use:
     is_nested: bool = False
     is_started: bool = False
     is_registered: bool = False
+    part: ast.expr | None = None
 
 
 @dataclass
@@ -200,10 +206,21 @@ class Source:
             for node, parents in walk(module):
                 if isinstance(node, ast.Global):
                     self.rebound.update(node.names)
+                if isinstance(node, ast.Call) and _word(node.func) in ("setattr", "delattr") and node not in inside:
+                    self._set_by_name(node)
                 if not isinstance(node, ast.Attribute) or node in inside or is_own(node) or _is_super(node.value):
                     continue
                 if not (isinstance(node.value, ast.Name) and node.value.id in imported):
                     self._foreign.setdefault(node.attr, []).append(_use("", node, parents))
+
+    def _set_by_name(self, call: ast.Call) -> None:
+        """`setattr(other, "ready", True)`."""
+        match call:
+            case ast.Call(args=[owner, ast.Constant(value=str(name)), *_]):
+                syntax = ast.copy_location(ast.Attribute(owner, name, ast.Store()), call)
+                self._foreign.setdefault(name, []).append(Use("", syntax, "assigned"))
+            case _:
+                self._is_known = False
 
     def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
         use = _use(method, node, parents)
@@ -279,7 +296,8 @@ def _use(method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> Use:
             kind = "called" if whole is above else "changed"
         else:
             kind = "part"
-        return Use(method, node, kind, name, is_nested=nested)
+        handed = whole if isinstance(whole, ast.expr) and kind == "part" and not looks(whole, around) else None
+        return Use(method, node, kind, name, is_nested=nested, part=handed)
     if isinstance(above, ast.withitem) and above.context_expr is node:
         return Use(method, node, "entered", is_nested=nested)
     return Use(
@@ -296,7 +314,9 @@ def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
         return above.test is node
     if isinstance(above, ast.Call):
         function = ast.unparse(above.func)
-        return function in _LOOKING or function.startswith(("self.log.", "asyncio.", "math.", "np."))
+        if function.startswith("np."):
+            return function.removeprefix("np.") not in _SAME
+        return function in _LOOKING or function.startswith(("self.log.", "asyncio.", "math."))
     return isinstance(above, _LOOKS)
 
 
@@ -306,6 +326,10 @@ def _only_looked_at(name: str, function: ast.AST) -> bool:
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
         for node, parents in walk(function)
     )
+
+
+def _word(function: ast.expr) -> str:
+    return function.id if isinstance(function, ast.Name) else ""
 
 
 def _registers(above: ast.AST) -> bool:

@@ -10,6 +10,7 @@ from functools import partial
 from time import monotonic_ns
 from typing import Any
 
+import numpy as np
 import pytest
 
 from graphflow import (
@@ -33,6 +34,7 @@ from graphflow.interface import DeadlockPolicy, GroupChange, WhenFull
 from graphflow.machines.reduction import deadlocked
 from graphflow.machines.rings import explained
 from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.msgs.turtlesim.msg import Pose
@@ -924,6 +926,85 @@ class PollsAndCancels(Dialler):
             await self.clock.sleep(0.1)
 
 
+class FilledThroughAView(Robot):
+    """A task in no group writes to the same array by another name."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.ranges = np.zeros(8)
+        self.middle = self.view_of_it()
+
+    def view_of_it(self) -> Any:
+        return self.ranges[2:6]
+
+    async def go(self, _: String) -> None:
+        while self.ranges.max() < 0.5:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, _: String) -> None:
+        self.ranges[:] = 1.0
+
+    @timer(3.0)
+    def fill(self) -> None:
+        self.middle[0] = 1.0
+
+
+class FilledThroughAShape(FilledThroughAView):
+    def view_of_it(self) -> Any:
+        return self.ranges.reshape(2, 4)[0]
+
+
+class FilledThroughAFunction(FilledThroughAView):
+    def view_of_it(self) -> Any:
+        return np.asarray(self.ranges)
+
+
+class SetThroughAPart(Robot):
+    """The same with a message."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.speed = Twist()
+        self.ahead = self.speed.linear
+
+    async def go(self, _: String) -> None:
+        while self.speed.linear.x < 0.5:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, _: String) -> None:
+        self.speed.linear.x = 1.0
+
+    @timer(3.0)
+    def push(self) -> None:
+        self.ahead.x = 1.0
+
+
+class SetByName(Robot):
+    """By another class, which finds the attribute by a string."""
+
+    is_clear = False
+
+    async def go(self, _: String) -> None:
+        while not self.is_clear:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, _: String) -> None:
+        self.is_clear = True
+
+    def others(self) -> Sequence[Node]:
+        return [Clears(self)]
+
+
+class Clears(Node):
+    def __init__(self, robot: Robot) -> None:
+        super().__init__("clears")
+        self.robot = robot
+
+    @timer(3.0)
+    def clear(self) -> None:
+        setattr(self.robot, "is_clear", True)  # noqa: B010
+
+
 class CancelsItsTaskFromOutside(Dialler):
     """A handler in no group ends the wait."""
 
@@ -1042,6 +1123,11 @@ def legal(program: type[Robot]) -> Any:
         legal(PollsWhatTakesItsTime),
         legal(PollsTheFirstOfTwo),
         legal(PollsAndCancels),
+        legal(FilledThroughAView),
+        legal(FilledThroughAShape),
+        legal(FilledThroughAFunction),
+        legal(SetThroughAPart),
+        legal(SetByName),
         legal(CancelsItsTaskFromOutside),
         legal(CancelsItsGoalFromOutside),
         legal(CancelsWhateverItHasBegun),
