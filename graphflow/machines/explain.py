@@ -43,8 +43,8 @@ def stall(group: Group, holders: list[Activity], waiting: list[Queue], dropped: 
         lost = queue.dropped - dropped.get(queue.id, 0)
         lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
     held = {_method(a.label) for a in holders}
-    handlers = [name for queue in waiting if (name := _method(queue.label)) not in held]
-    return "\n".join([*lines, "If that is too long:", *(_own_group(waiting[0].node, name) for name in handlers[:1])])
+    others = [queue for queue in waiting if _method(queue.label) not in held]
+    return "\n".join([*lines, "If that is too long:", *(_own_group(queue) for queue in others[:1])])
 
 
 def _headline(deadlock: Deadlock) -> str:
@@ -177,36 +177,47 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
     handler = _method(queue.label)
     if queue.label.startswith("reply "):
         yield f"  let replies pass: declare the client of {handler} without group="
-        queue, handler = replace(queue, node=activity.node), _method(activity.label)
-    own = f"{handler}_group"
+        queue, handler = replace(queue, node=activity.node, is_declared=True), _method(activity.label)
     if group.name and (queue.node, handler) != (activity.node, _method(activity.label)):
-        yield _own_group(queue.node, handler)
+        yield _own_group(replace(queue, label=handler))
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
-            holders = sum(group.id in a.holds for a in picture.activities.values())
-            yield (
-                f"  allow more runs, if its handlers share no state\n"
-                f"      {queue.node}: {{concurrency: {{{group.name}: {{limit: {holders + 1}}}}}}}\n"
-                f"    or in the class: {group.name} = Group({holders + 1})"
-            )
+            yield _larger(group, sum(group.id in a.holds for a in picture.activities.values()) + 1)
     elif queue.label.startswith("action "):
         yield f"  let several goals be under way: policy='parallel' where {handler} is declared"
     elif not isinstance(edge.via, SetBy):
-        yield f"  let several runs of {handler} be under way: {own} = Group(None), and group={own} where it is declared"
+        own = f"{handler}_group"
+        made = f"{own} = Group(None), and group={own} where it is declared"
+        made = made if queue.is_declared else "group=Group(None) where it is made"
+        yield f"  let several runs of {handler} be under way: {made}"
 
 
 def _release(activity: Activity, wanted: Group | None) -> Iterator[str]:
     """To let go of a slot helps where the one before in the ring wants it."""
-    if wanted is not None and wanted.name:
+    if wanted is not None and wanted.name and activity.is_async:
         place = Place(PurePath(activity.place.file).name, activity.place.line)
         yield f"  release the slot while waiting, in {place}: async with self.group.released(): ..."
 
 
-def _own_group(node: str, handler: str) -> str:
+def _larger(group: Group, limit: int) -> str:
+    made = f"Group({limit}{', thread=True' if group.is_threaded else ''})"
+    text = "  allow more runs, if its handlers share no state"
+    if not group.is_declared:
+        return f"{text}: {made} where the group of {group.node} is made that is called {group.name} here"
+    return (
+        f"{text}\n      {group.node}: {{concurrency: {{{group.name}: {{limit: {limit}}}}}}}\n"
+        f"    or in the class: {group.name} = {made}"
+    )
+
+
+def _own_group(queue: Queue) -> str:
+    handler = _method(queue.label)
     own = f"{handler}_group"
+    if not queue.is_declared:
+        return f"  give {handler} of {queue.node} a group of its own: group=Group(1) where it is made"
     return (
         f"  give {handler} a group of its own, in the graph file\n"
-        f"      {node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
+        f"      {queue.node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
         f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
     )
 

@@ -24,7 +24,7 @@ from graphflow.machines.waits import (
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 2
+VERSION = 3
 DEEPEST = 50
 """Conditions inside each other, at most: what comes from the network must not exhaust the stack."""
 
@@ -36,7 +36,7 @@ def to_json(picture: Picture) -> dict[str, Json]:
         "activities": [_activity(a) for a in picture.activities.values()],
         "groups": [list(astuple(g)) for g in picture.groups.values()],
         "queues": [
-            [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped, q.process]
+            [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped, q.process, q.is_declared]
             for q in picture.queues.values()
         ],
         "blocked": dict(picture.blocked),
@@ -45,7 +45,7 @@ def to_json(picture: Picture) -> dict[str, Json]:
 
 def _activity(a: Activity) -> Json:
     head: list[Json] = [a.id, a.label, a.node, list(a.holds), _condition(a.wait), a.serves, list(a.place), a.function]
-    return [*head, a.age, a.left, a.process, a.is_inner]
+    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async]
 
 
 def _condition(condition: Condition, depth: int = 0) -> Json:
@@ -77,7 +77,7 @@ def from_json(data: Mapping[str, object]) -> Picture:
     if data["v"] != VERSION:
         raise ValueError(f"a picture of version {data['v']!r}")
     activities = [_read_activity(row) for row in _rows(data["activities"])]
-    groups = [Group(_text(i), _text(name), _text(n), _limit(most)) for i, name, n, most in _rows(data["groups"])]
+    groups = [_read_group(row) for row in _rows(data["groups"])]
     queues = [_read_queue(row) for row in _rows(data["queues"])]
     blocked = data["blocked"]
     if not isinstance(blocked, dict):
@@ -90,14 +90,19 @@ def from_json(data: Mapping[str, object]) -> Picture:
     )
 
 
+def _read_group(row: list[object]) -> Group:
+    id_, name, node, limit, is_declared, is_threaded = row
+    return Group(_text(id_), _text(name), _text(node), _limit(limit), _bool(is_declared), _bool(is_threaded))
+
+
 def _read_queue(row: list[object]) -> Queue:
-    id_, label, node, needs, calls, waiting, dropped, process = row
-    counts = _int(waiting), _int(dropped)
-    return Queue(_text(id_), _text(label), _text(node), _texts(needs), _texts(calls), *counts, _text(process))
+    id_, label, node, needs, calls, waiting, dropped, process, is_declared = row
+    head = _text(id_), _text(label), _text(node), _texts(needs), _texts(calls)
+    return Queue(*head, _int(waiting), _int(dropped), _text(process), _bool(is_declared))
 
 
 def _read_activity(row: list[object]) -> Activity:
-    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner = row
+    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async = row
     file, line, column = _list(place)
     return Activity(
         _text(id_),
@@ -112,6 +117,7 @@ def _read_activity(row: list[object]) -> Activity:
         None if left is None else _number(left),
         _text(process),
         _bool(is_inner),
+        _bool(is_async),
     )
 
 

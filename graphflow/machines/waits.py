@@ -105,6 +105,8 @@ class Activity:
     process: str = ""
     is_inner: bool = False
     """Whether it is graphflow's, and nothing that users have written."""
+    is_async: bool = True
+    """Whether `await` can stand where it waits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +118,9 @@ class Group:
     """Empty for a handler's own queue."""
     node: str
     limit: int | None = 1
+    is_declared: bool = True
+    """Whether the class or a graph file names it, and not only what makes handlers while the node runs."""
+    is_threaded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +138,8 @@ class Queue:
     """Items that wait, of whatever kind."""
     dropped: int = 0
     process: str = ""
+    is_declared: bool = True
+    """Whether the handler stands in the class, so that a graph file can move it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ import numpy as np
 
 from graphflow.msgs.base import Message
 from graphflow.runtime import declared
+from graphflow.runtime.action_client import ClientGoal
 from graphflow.runtime.conditions import (
     CONTAINERS,
     FUTURE,
@@ -280,6 +281,9 @@ class _Question:
                 if (use.kind == "assigned" and not is_begun) or (use.kind == "called" and use.name in changes):
                     yield use
             return
+        if isinstance(value, ClientGoal):
+            yield from self._ends_of_goal(name)
+            return
         known = isinstance(value, CONTAINERS)
         for use in self._source.foreign(name):
             if use.kind in ("assigned", "changed") or (known and use.kind not in ("read", "part")):
@@ -292,6 +296,16 @@ class _Question:
             if not self._changes_nothing(use, value):
                 if use.is_nested:
                     raise Unknown
+                yield use
+
+    def _ends_of_goal(self, name: str) -> Iterator[Use]:
+        if self._source.foreign(name):
+            raise Unknown
+        for use in self._source.uses(name):
+            if use.kind == "given" or use.is_nested:
+                raise Unknown
+            is_begun = use.value is not None and makes_task(use.value)
+            if (use.kind == "assigned" and not is_begun) or (use.kind == "called" and use.name == "cancel"):
                 yield use
 
     def _changes_nothing(self, use: Use, value: Any) -> bool:

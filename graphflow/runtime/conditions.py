@@ -136,13 +136,21 @@ class Conditions:
         """Raises `Unknown` when it depends on something else."""
         if isinstance(self._loop, ast.While):
             self._read(self._loop.test, self._scope)
-        for node, parents in walk(self._loop):
+        nodes = list(walk(self._loop))
+        turns = [
+            parent.test
+            for node, parents in nodes
+            if isinstance(node, ast.Continue) and not _is_of_inner_loop(parents)
+            for parent in parents
+            if isinstance(parent, ast.If)
+        ]
+        for node, parents in nodes:
             if isinstance(node, ast.Assert):
                 self._read(node.test, self._scope)
             if isinstance(node, (ast.Break, ast.Return, ast.Raise)):
                 if isinstance(node, ast.Break) and _is_of_inner_loop(parents):
                     continue
-                guards = [p.test for p in parents if isinstance(p, ast.If)]
+                guards = [p.test for p in parents if isinstance(p, ast.If)] or turns
                 odd = (ast.Match, ast.ExceptHandler, ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
                 if not guards or any(isinstance(p, odd) for p in parents):
                     raise Unknown
@@ -173,6 +181,11 @@ class Conditions:
                 self._attribute(name, seen)
             case ast.Attribute(value=ast.Name(id=name), attr="done") if scope.tasks.get(name):
                 self.tasks += scope.tasks[name]
+            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr="done") if isinstance(
+                goal := getattr(self._node, name, None), ClientGoal
+            ):
+                self._found.add(name)
+                self.tasks.append(goal.ended)
             case ast.Attribute(value=ast.Name(), attr="request" | "is_cancel_requested"):
                 return  # a goal's: to cancel it ends any wait
             case ast.Attribute(value=value):
@@ -299,8 +312,10 @@ def _bindings(function: FunctionNode) -> dict[str, list[tuple[ast.AST, ast.expr 
 
 
 def makes_task(value: ast.expr) -> bool:
-    """Whether it makes a task, or several."""
+    """Whether it makes a task, or several, or a goal."""
     match value:
+        case ast.Await(value=ast.Call(func=ast.Attribute(attr="send_goal"))):
+            return True
         case ast.Call(func=function):
             return ast.unparse(function).split(".")[-1] in _TASK_MAKERS
         case ast.ListComp(elt=element):

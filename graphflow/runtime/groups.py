@@ -148,6 +148,8 @@ class Groups:
         """Group names by handler, where a graph file has chosen."""
         self._placed: list[str] = []
         self._unnamed = 0
+        self.known = {*declared, *changes}
+        """Names that a graph file can speak of."""
         for name, group in declared.items():
             self._of[group] = self.by_name.setdefault(name, _made(group, name))
         for name, change in changes.items():
@@ -169,7 +171,7 @@ class Groups:
                 )
             self._chosen[handler] = name
 
-    def place(self, handler: str, declared: Group | None) -> Placement:
+    def place(self, handler: str, declared: Group | HandlerGroup | None) -> Placement:
         """Where a handler runs, by name: as a graph file says, else as declared, else in the default group."""
         self._placed.append(handler)
         if handler in self._chosen:
@@ -179,8 +181,10 @@ class Groups:
             group = None if wanted is None else self.at_work(wanted)
         return Placement(group, group is not None and group.is_threaded)
 
-    def at_work(self, group: Group) -> HandlerGroup:
-        """What a declaration has become on this node."""
+    def at_work(self, group: Group | HandlerGroup) -> HandlerGroup:
+        """What a declaration has become on this node; `self.motion` is that already."""
+        if isinstance(group, HandlerGroup):
+            return group
         if group not in self._of:
             name = group.name
             if not name or name in self.by_name:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import concurrent.futures
 import inspect
 from asyncio import CancelledError
 from collections import deque
@@ -565,9 +566,9 @@ class Node:
         Args:
             on_error: What it means for the node; None where a caller has it, so that it is only logged.
         """
-        if isinstance(error, CancelledError):
+        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
             return
-        if on_error is None:
+        if on_error is None or not self.is_running:  # it has not waited for this run
             self.report_error(label, error)
         else:
             self._failures.failed(label, error, on_error)

@@ -321,7 +321,7 @@ class Runner:
     @property
     def label(self) -> str:
         """Handler and kind, for people: `service add`."""
-        return f"{self.kind} {self.handler}".strip()
+        return self.handler if self.handler.startswith(f"{self.kind} ") else f"{self.kind} {self.handler}".strip()
 
     @property
     def is_serial(self) -> bool:

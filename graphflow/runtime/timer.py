@@ -112,6 +112,8 @@ class Timer:
         if self._due or self.runner.active:
             self.skipped += 1
             self._missed += 1
+            if not self._due:
+                self.runner.stalled()  # its own run is in the way
             return
         self._due.append(TimerInfo(due, now, self._missed))
         self._missed = 0

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import inspect
 import queue
 import sys
 import threading
@@ -24,6 +25,7 @@ from weakref import WeakKeyDictionary
 from graphflow.errors import DecodeError, Place
 from graphflow.machines import waits as picture_of
 from graphflow.machines.waits import FREE, All, AnyOf, Call, Condition, Join, Picture, SetBy, Slot, call_id, goal_id
+from graphflow.runtime import declared
 from graphflow.runtime.clock import Clock
 from graphflow.runtime.closed_world import Setters, cancellers, setters
 from graphflow.runtime.places import is_users
@@ -182,6 +184,7 @@ class _Camera:
                 waiting,
                 runner.dropped(),
                 self._zid,
+                runner.handler in declared.handlers(type(node)),
             )
             for run in sorted(runner.active, key=lambda run: run.number):
                 self._add_run(node, runner, run)
@@ -225,7 +228,8 @@ class _Camera:
         # A group that cancels what runs is never full for good.
         limit = None if group.when_full == "cancel_running" else group.limit
         known = group.name if group in node.groups.by_name.values() else ""  # it is the runtime's own
-        self._groups[name] = picture_of.Group(name, known, node.full_name, limit)
+        is_declared = known in node.groups.known
+        self._groups[name] = picture_of.Group(name, known, node.full_name, limit, is_declared, group.is_threaded)
         return name
 
     def _call_of(self, runner: Runner, item: Any) -> str:
@@ -284,6 +288,7 @@ class _Camera:
         frame = _users(frames)
         place = Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno)
         function = "" if frame is None else frame.f_code.co_name
+        is_async = frame is not None and bool(frame.f_code.co_flags & inspect.CO_COROUTINE)
         started, deadline = self._bounds(wait)
         if wait is not FREE and self._limit_ns is not None:
             deadline = min(self._limit_ns, deadline or self._limit_ns)
@@ -293,7 +298,7 @@ class _Camera:
             age = (self._now_ns - started) / 1e9
         left = None if deadline is None else (deadline - self._now_ns) / 1e9
         self._activities[id_] = picture_of.Activity(
-            id_, label, node.full_name, holds, wait, serves, place, function, age, left, self._zid, is_inner
+            id_, label, node.full_name, holds, wait, serves, place, function, age, left, self._zid, is_inner, is_async
         )
 
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
@@ -350,8 +355,8 @@ class _Camera:
         for coroutine in _coroutines(task.get_coro()):
             frame = _frame_of(coroutine)
             if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
-                handle = frame.f_locals.get("timeout_handle")
-                found += [handle.when()] if isinstance(handle, asyncio.TimerHandle) else []
+                when = getattr(frame.f_locals.get("timeout_handle"), "when", None)  # uvloop's has one too
+                found += [when()] if when is not None else []
             for context in _entered(coroutine):
                 if isinstance(context, asyncio.Timeout) and (when := context.when()) is not None:
                     found.append(when)
@@ -427,14 +432,16 @@ class _Camera:
         known = {r.handler for r in runners} | {_method(t) for t in list(node.tasks)}
         if not found.handlers <= known:  # one of them is not there to be waited for
             return FREE
+        is_held = False
         if found.lock is not None:
             inside = self._inside(found.lock)
-            if len(inside) != found.places:  # somebody else is in it
+            is_held = len(inside) == found.places
+            if not is_held and not found.handlers:  # somebody else is in it, and nobody is seen to release it by hand
                 return FREE
             others += inside
         queues = sorted(self.queue_id(r) for r in runners)
         activities = sorted({self.task_id(other) for other in others})
-        return SetBy(found.what, tuple(queues), tuple(activities), found.lock is not None)
+        return SetBy(found.what, tuple(queues), tuple(activities), is_held)
 
     def _inside(self, lock: Any) -> list[Any]:
         """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
@@ -493,6 +500,7 @@ class _Camera:
             age,
             None,
             self._zid,
+            is_async=False,
         )
         return id_
 

@@ -112,6 +112,20 @@ class EventPolled(Waiter):
             await self.clock.sleep(0.05)  # stuck: EventPolled
 
 
+class TurnsUntilItIsReady(Robot):
+    is_ready_now = False
+
+    async def go(self, _: String) -> None:
+        while True:
+            await self.clock.sleep(0.05)  # stuck: TurnsUntilItIsReady
+            if not self.is_ready_now:
+                continue
+            break
+
+    async def arrive(self, _: String) -> None:
+        self.is_ready_now = True
+
+
 class EventOfTheNextMessage(Waiter):
     """The handler sets it itself, at its second message, which its first run does not let in."""
 
@@ -531,6 +545,15 @@ class PollsItsPlan(Planner):
                 await self.clock.sleep(0.05)  # stuck: PollsItsPlan
 
 
+class PollsThePlanItKeeps(Planner):
+    errand: Any = None
+
+    async def go(self, _: String) -> None:
+        self.errand = await self.plan.send_goal(Fibonacci.Goal(order=1))
+        while not self.errand.done:
+            await self.clock.sleep(0.05)  # stuck: PollsThePlanItKeeps
+
+
 class FollowsItsPlan(Planner):
     async def go(self, _: String) -> None:
         async with self.plan.send(Fibonacci.Goal(order=1)) as goal:
@@ -809,6 +832,7 @@ def dead_call(program: type[Node], *expected: str) -> Any:
         stuck(EventWaitedFor, "self.arrived"),
         stuck(EventGathered, "self.arrived"),
         stuck(EventPolled, "self.arrived"),
+        stuck(TurnsUntilItIsReady, "self.is_ready_now"),
         stuck(EventOfTheNextMessage, "self.arrived", holder="subscription arrive"),
         stuck(DropsNews, "self.arrived", group="latest"),
         stuck(Eater, "self.words"),
@@ -874,6 +898,7 @@ def dead_call(program: type[Node], *expected: str) -> Any:
         ),
         dead_call(AwaitsItsPlan, PLANNED, "action on_plan"),
         dead_call(PollsItsPlan, PLANNED, "action on_plan"),
+        dead_call(PollsThePlanItKeeps, PLANNED, "action on_plan"),
         dead_call(FollowsItsPlan, PLANNED, "action on_plan"),
         dead_call(PlansWithinPlans, PLANNED, "action on_plan", "action on_plan", ""),
         dead_call(
@@ -904,6 +929,67 @@ async def test_a_program_that_cannot_go_on(graph: Graph, caplog: Caplog, case: S
     await graph.clock.advance(8.0)
     assert reports(caplog) == [text]
     assert not cleared(caplog) or case.program is EventWithin
+
+
+class LocksByHand(Dialler):
+    """One releases what another takes by `with`."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.bolt = asyncio.Lock()
+
+    async def go(self, _: String) -> None:
+        await self.bolt.acquire()
+        await self.ping.call(Empty.Request())
+        self.bolt.release()
+
+    @service(Empty, "ping")
+    async def on_ping(self, request: Empty.Request) -> Empty.Response:
+        async with self.bolt:  # stuck: LocksByHand
+            return Empty.Response()
+
+
+async def test_a_lock_that_is_released_by_hand(graph: Graph, caplog: Caplog) -> None:
+    """Who has taken it is known by who will release it."""
+    graph.deadlock = "report"
+    await graph.start(LocksByHand())
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+
+    assert at("stuck: LocksByHand") in the_report(caplog)
+
+
+class OnlyTimers(Node):
+    """In no group, and nothing is queued; but periods are skipped."""
+
+    node_name = "robot"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.left_hand, self.right_hand = asyncio.Lock(), asyncio.Lock()
+
+    @timer(1.0)
+    async def juggle(self) -> None:
+        async with self.left_hand:
+            await self.clock.sleep(0.3)
+            async with self.right_hand:  # stuck: OnlyTimers
+                self.log.info("juggled")
+
+    @timer(1.0)
+    async def clap(self) -> None:
+        async with self.right_hand:
+            await self.clock.sleep(0.3)
+            async with self.left_hand:
+                self.log.info("clapped")
+
+
+async def test_timers_that_wait_for_each_other(graph: Graph, caplog: Caplog) -> None:
+    """The next period makes somebody look."""
+    graph.deadlock = "report"
+    await graph.start(OnlyTimers())
+    await graph.clock.advance(3.0)
+
+    assert at("stuck: OnlyTimers") in the_report(caplog)
 
 
 class OnlyTasks(Node):
