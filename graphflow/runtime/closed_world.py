@@ -18,6 +18,7 @@ import threading
 from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -94,7 +95,7 @@ def setters(frames: list[FrameType], waiter: Any, node: Node, *, is_bounded: boo
     """
     try:
         question = _Question(frames, node)
-        if (is_bounded or question.is_bounded) and question.is_in_loop:  # what matters is when it stops to try again
+        if (is_bounded or question.is_bounded) and question.is_repeated:  # what matters is when it stops to try again
             return question.of_loop()
         return question.of_object(waiter) or question.of_loop()
     except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
@@ -136,14 +137,12 @@ class _Place:
     frame: FrameType
     function: Function
 
-    @property
-    def loop(self) -> Loop | None:
-        """The innermost loop that it is in."""
-        found = None
-        for node in ast.walk(self.function.syntax):
-            if isinstance(node, (ast.While, ast.AsyncFor, ast.For)) and _spans(node, self.frame.f_lineno):
-                found = node  # walked by depth: the last is the innermost
-        return found
+    @cached_property
+    def loops(self) -> list[Loop]:
+        """The loops that it is in, the outermost first."""
+        around = (ast.While, ast.AsyncFor, ast.For)
+        nodes = ast.walk(self.function.syntax)  # by depth
+        return [node for node in nodes if isinstance(node, around) and _spans(node, self.frame.f_lineno)]
 
 
 def _spans(node: ast.stmt, line: int) -> bool:
@@ -170,8 +169,9 @@ class _Question:
             raise Unknown
 
     @property
-    def is_in_loop(self) -> bool:
-        return any(place.loop is not None for place in self._places)
+    def is_repeated(self) -> bool:
+        """Whether it waits again and again, for as long as something holds."""
+        return any(isinstance(loop, (ast.While, ast.AsyncFor)) for place in self._places for loop in place.loops)
 
     # something that is waited for
 
@@ -245,10 +245,10 @@ class _Question:
 
     def of_loop(self) -> Setters | None:
         """Who changes what a loop looks at, in which the handler only waits and looks again."""
-        loops = [(place, loop) for place in reversed(self._places) if (loop := place.loop) is not None]
-        if not loops:
+        place = next((place for place in reversed(self._places) if place.loops), None)
+        if place is None:
             return None
-        place, loop = loops[0]
+        loop = place.loops[-1]
         endless = isinstance(loop, ast.AsyncFor) and ast.unparse(loop.iter).startswith("self.clock.every(")
         if not (isinstance(loop, ast.While) or endless):
             return None

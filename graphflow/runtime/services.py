@@ -143,8 +143,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
-        if not self.node.is_running:  # it has not waited for this run
-            request.reply_error(_STOPPING.to_payload())
+        if not self.node.is_running:  # it has not waited for this run, and its clients know that it has gone
             return
         if error is None:
             try:

@@ -101,6 +101,13 @@ class EventWaitedFor(Waiter):
         await asyncio.wait_for(self.arrived.wait(), 60.0)  # stuck: EventWaitedFor
 
 
+class EventTriedFor(Waiter):
+    async def go(self, _: String) -> None:
+        for _attempt in range(3):
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self.arrived.wait(), 30.0)  # stuck: EventTriedFor
+
+
 class EventGathered(Waiter):
     async def go(self, _: String) -> None:
         await asyncio.gather(self.arrived.wait(), self.clock.sleep(60.0))  # stuck: EventGathered
@@ -830,6 +837,7 @@ def dead_call(program: type[Node], *expected: str) -> Any:
         stuck(Waiter, "self.arrived"),
         stuck(EventWithin, "self.arrived"),
         stuck(EventWaitedFor, "self.arrived"),
+        stuck(EventTriedFor, "self.arrived"),
         stuck(EventGathered, "self.arrived"),
         stuck(EventPolled, "self.arrived"),
         stuck(TurnsUntilItIsReady, "self.is_ready_now"),
