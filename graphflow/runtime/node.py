@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager, AsyncExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, ClassVar, Protocol, TypeVar
@@ -41,13 +42,16 @@ from graphflow.runtime.services import ServiceClient, ServiceServer
 from graphflow.runtime.sim_time import SimClock
 from graphflow.runtime.timer import Timer, TimerInfo
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
-from graphflow.times import NANOSECONDS
+from graphflow.runtime.waits import place_of
+from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
 T = TypeVar("T")
 
+SLOW_START = 5.0
+"""Seconds that `on_start` may take until it is said where it waits."""
 STOP_LIMIT = 2.0
 """Seconds that cancelled handlers and tasks get for their cleanup."""
 
@@ -464,7 +468,12 @@ class Node:
                 openable.open()
             if self.parameters.get("use_sim_time"):
                 self._follow_sim_time()
-            await self.on_start()
+            due_ns = context.clock.monotonic_ns() + to_ns(SLOW_START)
+            slow = context.clock.call_at(due_ns, partial(self._say_slow_start, asyncio.current_task()))
+            try:
+                await self.on_start()
+            finally:
+                slow.cancel()
             self.groups.refuse_strays()
             late, self._late = self._late, None
             for openable in sorted(late, key=lambda o: isinstance(o, Timer)):
@@ -476,6 +485,14 @@ class Node:
         for attribute, handler in declared.handlers(type(self)).items():
             if handler.kind == "task":
                 self.spawn(getattr(self, attribute))
+
+    def _say_slow_start(self, task: Any) -> None:
+        self.log.warning(
+            "on_start has not returned for %.0f s %s; this node's handlers begin when it has: what waits for them, or "
+            "for nodes that wait for this one, belongs into a @task",
+            SLOW_START,
+            place_of(task),
+        )
 
     def warn_unused_remaps(self) -> None:
         """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""

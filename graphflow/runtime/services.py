@@ -293,6 +293,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             offered = [e.type for e in self.node.context.cache.endpoints(Kind.SERVICE, self.name)]
             if offered and self.type_name not in offered:
                 return f"service {self.name} is a {offered[0]}, not a {self.type_name}"
+        if any(isinstance(mine, ServiceServer) and mine.name == self.name for mine in self.node.endpoints):
+            return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
         offers = {e.name for e in self.node.context.cache.endpoints(Kind.SERVICE)}
         return f"nobody offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
 

@@ -25,7 +25,7 @@ import sys
 import time
 from typing import Any
 
-PROBE_LIMIT = 5.0
+PROBE_LIMIT = 20.0
 """Seconds that importing all classes of a project may take."""
 _FRESH = ("PYTHON", "LD_", "MALLOC_")
 """Variables with these prefixes act only on a fresh interpreter."""

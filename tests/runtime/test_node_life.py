@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from graphflow import Client, Node, Publisher, service, subscription, task, timer
+from graphflow.errors import ServiceUnavailable
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime import node as node_module
@@ -74,6 +75,40 @@ async def test_no_handler_runs_before_on_start_has_returned(graph: Graph) -> Non
     publisher.publish(Int32(data=2))
     await graph.clock.advance(1.0)
     assert robot.story == ["preparing", "prepared", "working", "heard 2", "tick"]
+
+
+class AsksItself(Node):
+    home = Client(Empty, "~/home")
+
+    async def on_start(self) -> None:
+        await self.home.call(Empty.Request())
+
+    @service(Empty, "~/home")
+    async def go_home(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+
+async def test_a_service_of_its_own_is_not_there_in_on_start(graph: Graph) -> None:
+    """It is said why nobody answers."""
+    starting = asyncio.ensure_future(graph.start(AsksItself("lonely")))
+    await graph.clock.advance(2.0)
+
+    with pytest.raises(ServiceUnavailable, match="is this node's own, and opens when on_start has returned"):
+        await starting
+
+
+async def test_an_on_start_that_takes_long_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """With the line in which it waits."""
+    robot = Robot()
+    starting = asyncio.ensure_future(graph.start(robot))
+    await graph.clock.advance(4.0)
+    assert "has not returned" not in caplog.text
+    await graph.clock.advance(2.0)
+    robot.go_on.set()
+    await starting
+    await graph.clock.advance(20.0)
+
+    assert caplog.text.count("on_start has not returned for 5 s (test_node_life.py:") == 1
 
 
 async def test_publishers_and_clients_work_in_on_start(graph: Graph) -> None:
