@@ -103,7 +103,10 @@ def setters(frames: list[FrameType], waiter: Any, node: Node, *, is_bounded: boo
 
 
 def cancellers(thing: Any, node: Node) -> Setters | None:
-    """Who can cancel a task or goal that the node keeps; None when nobody can, as far as its source tells.
+    """Who of themselves, as timers and tasks do, cancel a task or goal that the node keeps; None when nobody does.
+
+    Those who do it when they are told to, by a message or a request, are like the world outside: a ring that needs them
+    does not end.
 
     Raises:
         Unknown: Somebody may.
@@ -120,8 +123,10 @@ def cancellers(thing: Any, node: Node) -> Setters | None:
             continue
         methods |= {use.method for use in uses if use.kind == "called" and use.name == "cancel"}
     entries = entries_of(node)
+    alone = {runner.handler for runner in node.runners if runner.kind == "timer"}
+    alone |= {_coroutine_name(task) for task in node.tasks}
     what = " and ".join(f"self.{name}" for name in sorted(held))
-    found = frozenset(source.above(methods - _BEGINNINGS, entries) & entries)
+    found = frozenset(source.above(methods - _BEGINNINGS, entries) & alone)
     return Setters(what, found) if found else None
 
 

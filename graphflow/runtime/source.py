@@ -216,6 +216,8 @@ class Source:
     def _set_by_name(self, call: ast.Call) -> None:
         """`setattr(other, "ready", True)`."""
         match call:
+            case ast.Call(args=[ast.Name(id="self"), *_]):
+                pass  # of another class
             case ast.Call(args=[owner, ast.Constant(value=str(name)), *_]):
                 syntax = ast.copy_location(ast.Attribute(owner, name, ast.Store()), call)
                 self._foreign.setdefault(name, []).append(Use("", syntax, "assigned"))
@@ -312,6 +314,9 @@ def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
         return looks(above, parents[:-1])
     if isinstance(above, ast.IfExp):
         return above.test is node
+    if isinstance(above, (ast.List, ast.Tuple, ast.Set)):  # asyncio.wait([self.x])
+        call = parents[-2] if len(parents) > 1 else None
+        return isinstance(call, ast.Call) and ast.unparse(call.func).startswith("asyncio.")
     if isinstance(above, ast.Call):
         function = ast.unparse(above.func)
         if function.startswith("np."):

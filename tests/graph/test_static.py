@@ -158,6 +158,6 @@ def test_what_can_be_followed(tmp_path: Path, cls: str, told: str | None) -> Non
 def test_a_service_with_two_servers(tmp_path: Path) -> None:
     """The other one may answer."""
     (tmp_path / "static_cases.py").write_text(NODES)
-    (tmp_path / "g.yaml").write_text("nodes: {/n: {class: static_cases:One}, /other: {class: static_cases:Beside}}")
+    (tmp_path / "g.yaml").write_text("nodes: {/other: {class: static_cases:Beside}, /n: {class: static_cases:One}}")
 
     assert not any("IF THIS BRANCH RUNS" in text for text in found(tmp_path / "g.yaml"))

@@ -106,6 +106,7 @@ async def test_an_on_start_that_takes_long_is_told(graph: Graph, caplog: pytest.
     await graph.clock.advance(2.0)
     robot.go_on.set()
     await starting
+    await graph.start(Node("quick"))
     await graph.clock.advance(20.0)
 
     assert caplog.text.count("on_start has not returned for 5 s (test_node_life.py:") == 1
