@@ -17,7 +17,7 @@ from asyncio import Future
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from types import FrameType, MethodType
 from typing import TYPE_CHECKING, Any
@@ -193,7 +193,7 @@ class _Camera:
                 waiting,
                 runner.dropped(),
                 self._zid,
-                runner.handler in declared.handlers(type(node)),
+                runner.handler in _declared(type(node)),  # type: ignore[arg-type]  # a class can be hashed
             )
             for run in sorted(runner.active, key=lambda run: run.number):
                 self._add_run(node, runner, run)
@@ -512,6 +512,12 @@ class _Camera:
             is_async=False,
         )
         return id_
+
+
+@cache
+def _declared(cls: type) -> frozenset[str]:
+    """The handlers that stand in a class."""
+    return frozenset(declared.handlers(cls))
 
 
 def _call_ids(condition: Condition) -> Iterator[str]:
