@@ -378,9 +378,8 @@ class GoalClient(Generic[Goal, Result, Feedback]):
                 continue
             if not GoalStatus(entry.status).is_terminal:
                 goal.status = max(goal.status, GoalStatus(entry.status))  # what was told before may come after
-            elif (
-                not goal.is_asked_again and self.node.is_running
-            ):  # the end comes with the result, which may have been lost
+            elif not goal.is_asked_again and self.node.is_running:
+                # The end comes with the result, which may have been lost.
                 goal.is_asked_again = True
                 self._in_background(self._ask_again(goal))
 
