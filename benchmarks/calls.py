@@ -36,6 +36,7 @@ from benchmarks.rounds import compare, goal
 from graphflow import Node
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.context import Context
+from graphflow.runtime.node import core_of
 
 CALLS = 600
 TOGETHER = 32
@@ -63,7 +64,7 @@ def node_server(pipe: Connection, loop: str) -> None:
 
         node = Node(f"server_{loop}", enable_rosout=False)
         node.create_service(AddTwoInts, f"/{loop}/add", add)
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await stay_on_loop(pipe)
 
     run_on(loop, main())
@@ -110,7 +111,7 @@ def node_caller(kind: str) -> Callable[[int], float]:
     client = node.create_client(AddTwoInts, f"/{kind}/add")
 
     async def begin() -> None:
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await client.wait_ready(LIMIT)
 
     async def one(calls: int) -> None:

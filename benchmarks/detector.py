@@ -25,6 +25,7 @@ from graphflow import DeadlockError, Group, Node
 from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.context import Context
+from graphflow.runtime.node import core_of
 
 keep: list[Any] = []
 
@@ -43,7 +44,7 @@ def handler_caller(policy: DeadlockPolicy, loop: asyncio.AbstractEventLoop) -> C
         done.set_result((time.perf_counter() - began) / CALLS * 1e6)
 
     async def begin() -> None:
-        await node.start(await Context.open(deadlock=policy))
+        await core_of(node).start(await Context.open(deadlock=policy))
         await client.wait_ready(LIMIT)
         node.create_timer(0.001, work, group=Group(1))
 
@@ -89,7 +90,7 @@ def neighbour(pipe: Connection, name: str, other: str) -> None:
             await client.call(REQUEST, timeout=3.0)
 
         node.create_service(AddTwoInts, f"/{name}/f", f, group=everything)
-        await node.start(await Context.open(deadlock="report"))
+        await core_of(node).start(await Context.open(deadlock="report"))
         node.create_timer(0.01, cross, group=everything, on_error="log")
 
         def answer(word: str) -> Any:
@@ -139,12 +140,12 @@ def milliseconds_to_error(loop: asyncio.AbstractEventLoop, rounds: int) -> list[
     async def run() -> None:
         logging.disable()
         node.create_service(AddTwoInts, "/narcissus/f", f, group=everything)
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await client.wait_ready(LIMIT)
         node.create_timer(0.05, call, group=everything)
         while len(found) < rounds:
             await asyncio.sleep(0.05)
-        await node.stop()
+        await core_of(node).stop()
         logging.disable(logging.NOTSET)
 
     loop.run_until_complete(run())

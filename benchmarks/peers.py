@@ -13,8 +13,9 @@ from typing import Any
 
 import zenoh
 
+from graphflow.executor.ledger import Ledger
+from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.qos import Qos
-from graphflow.runtime.scheduler import Runner
 from graphflow.transport.base import Inbox
 from graphflow.transport.config import config, open_session, rendezvous_endpoint
 from graphflow.transport.loop import LOOP_VARIABLE, new_event_loop
@@ -113,7 +114,7 @@ async def open_transport(out: str, back: str, handler: Callable[[Any], Any]) -> 
     loop = asyncio.get_running_loop()
     session = ZenohSession(loop)
     inbox = Inbox(session.bell, 100, lambda: None)
-    runner = Runner(loop, "handler", None, inbox.items, handler, lambda *_: None)
+    runner = Runner(Ledger(loop), RunnerSpec("handler", handler, lambda *_: None), inbox.items)
     inbox.ready = runner.wake
     receiver = session.open_receiver(back, Qos(), inbox)
     return session, receiver, session.open_sender(out, Qos())

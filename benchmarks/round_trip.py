@@ -38,6 +38,7 @@ from benchmarks.rounds import compare, goal
 from graphflow import Node
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.runtime.context import Context
+from graphflow.runtime.node import core_of
 
 PAYLOAD = bytes(64)
 PINGS = 1000
@@ -81,7 +82,7 @@ def node_ponger(pipe: Connection, loop: str) -> None:
             pong.publish(message)
 
         node.create_subscription(Twist, f"/{loop}/ping", handler)
-        await node.start(context)
+        await core_of(node).start(context)
         await stay_on_loop(pipe)
 
     run_on(loop, main())
@@ -177,7 +178,7 @@ def node_pinger(loop: str) -> Callable[[], float]:
     pong = node.create_subscription(Twist, f"/{loop}/pong", pinger.handler)
 
     async def begin() -> None:
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await ping.wait_matched()
         await pong.wait_matched()
         await asyncio.sleep(0.2)

@@ -34,6 +34,7 @@ from graphflow import Node, Qos
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.runtime.context import Context
+from graphflow.runtime.node import core_of
 
 SECONDS = 0.5
 LOOP = "asyncio"
@@ -69,7 +70,7 @@ def node_listener(pipe: Connection, topic: str, name: str, picture: bool) -> Non
 
         node = Node(name, enable_rosout=False)
         node.create_subscription(Image if picture else Twist, topic, heard, Qos(depth=1000))
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await stay_on_loop(pipe, lambda _: counts[0])
 
     run_on(LOOP, main())
@@ -124,7 +125,7 @@ def node_sender(topic: str, message: Any, listeners: int) -> Callable[[], int]:
     publisher = node.create_publisher(type(message), topic)
 
     async def begin() -> None:
-        await node.start(await Context.open())
+        await core_of(node).start(await Context.open())
         await publisher.wait_matched(listeners)
 
     async def flood() -> int:

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
         Abort,
         CallError,
         CallTimeout,
+        ClosedError,
         DeadlockError,
         DeclarationError,
         DecodeError,
@@ -18,16 +19,34 @@ if TYPE_CHECKING:
         GoalError,
         GoalLost,
         GoalRejected,
+        GraphFileError,
         GraphflowError,
+        InterfaceError,
+        InvalidName,
         LoopBlockedError,
         ParameterError,
         RemoteError,
         ServerBusy,
         ServerLost,
         ServiceUnavailable,
+        SupervisorError,
+        TooManyErrors,
+        TransportError,
+        UnknownInterface,
     )
+    from graphflow.executor.clock import Clock
+    from graphflow.executor.groups import HandlerGroup
     from graphflow.machines.goal import GoalStatus
-    from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
+    from graphflow.msgs.base import ServerGoalHandle
+    from graphflow.qos import (
+        Durability,
+        History,
+        Liveliness,
+        Qos,
+        Reliability,
+    )
+    from graphflow.runtime.action_client import ClientGoalHandle, GoalClient
+    from graphflow.runtime.actions import ActionServer
     from graphflow.runtime.context import Context
     from graphflow.runtime.declare import (
         ActionClient,
@@ -36,17 +55,22 @@ if TYPE_CHECKING:
         Param,
         Publisher,
         Subscription,
+    )
+    from graphflow.runtime.events import QosEvent
+    from graphflow.runtime.failures import ErrorBudget
+    from graphflow.runtime.handlers import (
         action,
         service,
         subscription,
         task,
         timer,
     )
-    from graphflow.runtime.events import QosEvent
-    from graphflow.runtime.failures import ErrorBudget
     from graphflow.runtime.node import Node
     from graphflow.runtime.run import run, running
-    from graphflow.runtime.timer import TimerInfo
+    from graphflow.runtime.service_client import ServiceClient
+    from graphflow.runtime.services import ServiceServer
+    from graphflow.runtime.timer import Timer, TimerInfo
+    from graphflow.runtime.topics import TopicPublisher, TopicSubscription
     from graphflow.times import Duration, Time
     from graphflow.wire.attachment import MessageInfo
 
@@ -58,6 +82,7 @@ _HOMES = {
         "Abort",
         "CallError",
         "CallTimeout",
+        "ClosedError",
         "DeadlockError",
         "DeclarationError",
         "DecodeError",
@@ -67,16 +92,37 @@ _HOMES = {
         "GoalError",
         "GoalLost",
         "GoalRejected",
+        "GraphFileError",
         "GraphflowError",
+        "InterfaceError",
+        "InvalidName",
         "LoopBlockedError",
         "ParameterError",
         "RemoteError",
         "ServerBusy",
         "ServerLost",
         "ServiceUnavailable",
+        "SupervisorError",
+        "TooManyErrors",
+        "TransportError",
+        "UnknownInterface",
     ),
+    "graphflow.executor.clock": ("Clock",),
+    "graphflow.executor.groups": ("HandlerGroup",),
     "graphflow.machines.goal": ("GoalStatus",),
-    "graphflow.qos": ("Durability", "History", "Liveliness", "Qos", "Reliability"),
+    "graphflow.msgs.base": ("ServerGoalHandle",),
+    "graphflow.qos": (
+        "Durability",
+        "History",
+        "Liveliness",
+        "Qos",
+        "Reliability",
+    ),
+    "graphflow.runtime.action_client": (
+        "ClientGoalHandle",
+        "GoalClient",
+    ),
+    "graphflow.runtime.actions": ("ActionServer",),
     "graphflow.runtime.context": ("Context",),
     "graphflow.runtime.declare": (
         "ActionClient",
@@ -85,27 +131,48 @@ _HOMES = {
         "Param",
         "Publisher",
         "Subscription",
+    ),
+    "graphflow.runtime.events": ("QosEvent",),
+    "graphflow.runtime.failures": ("ErrorBudget",),
+    "graphflow.runtime.handlers": (
         "action",
         "service",
         "subscription",
         "task",
         "timer",
     ),
-    "graphflow.runtime.events": ("QosEvent",),
-    "graphflow.runtime.failures": ("ErrorBudget",),
-    "graphflow.runtime.timer": ("TimerInfo",),
-    "graphflow.wire.attachment": ("MessageInfo",),
     "graphflow.runtime.node": ("Node",),
-    "graphflow.runtime.run": ("run", "running"),
-    "graphflow.times": ("Duration", "Time"),
+    "graphflow.runtime.run": (
+        "run",
+        "running",
+    ),
+    "graphflow.runtime.service_client": ("ServiceClient",),
+    "graphflow.runtime.services": ("ServiceServer",),
+    "graphflow.runtime.timer": (
+        "Timer",
+        "TimerInfo",
+    ),
+    "graphflow.runtime.topics": (
+        "TopicPublisher",
+        "TopicSubscription",
+    ),
+    "graphflow.times": (
+        "Duration",
+        "Time",
+    ),
+    "graphflow.wire.attachment": ("MessageInfo",),
 }
 
 __all__ = [
     "Abort",
     "ActionClient",
+    "ActionServer",
     "CallError",
     "CallTimeout",
     "Client",
+    "ClientGoalHandle",
+    "Clock",
+    "ClosedError",
     "Context",
     "DeadlockError",
     "DeclarationError",
@@ -116,13 +183,18 @@ __all__ = [
     "ErrorBudget",
     "GoalAborted",
     "GoalCanceled",
+    "GoalClient",
     "GoalError",
     "GoalLost",
     "GoalRejected",
     "GoalStatus",
+    "GraphFileError",
     "GraphflowError",
     "Group",
+    "HandlerGroup",
     "History",
+    "InterfaceError",
+    "InvalidName",
     "Liveliness",
     "LoopBlockedError",
     "MessageInfo",
@@ -135,11 +207,21 @@ __all__ = [
     "Reliability",
     "RemoteError",
     "ServerBusy",
+    "ServerGoalHandle",
     "ServerLost",
+    "ServiceClient",
+    "ServiceServer",
     "ServiceUnavailable",
     "Subscription",
+    "SupervisorError",
     "Time",
+    "Timer",
     "TimerInfo",
+    "TooManyErrors",
+    "TopicPublisher",
+    "TopicSubscription",
+    "TransportError",
+    "UnknownInterface",
     "action",
     "run",
     "running",

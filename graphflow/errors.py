@@ -11,6 +11,7 @@ GraphflowError
 |-- GraphFileError            a graph file is wrong; holds every problem with its place
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
 |-- ClosedError               you closed it and then used it
+|-- TooManyErrors             a node's handlers have failed too often; it ends
 |-- SupervisorError           a graph could not be started, or is not running
 |-- Abort                     what an action's handler raises to end its goal as aborted
 |-- GoalError                 a goal ended without success
@@ -74,6 +75,10 @@ class ClosedError(GraphflowError):
     """The node, session or endpoint was closed before this use."""
 
 
+class TooManyErrors(GraphflowError):
+    """A node's error budget is spent."""
+
+
 class SupervisorError(GraphflowError):
     """A graph could not be started, reached or stopped.
 
@@ -113,6 +118,15 @@ class GraphFileError(GraphflowError):
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(sorted(problems))
         super().__init__("\n".join(str(p) for p in self.problems))
+
+
+LONGEST_TEXT = 4_000
+"""Characters of a text from another process that an error repeats."""
+
+
+def printable(text: str) -> str:
+    """A text from another process as it may stand in an error: nothing in it that a terminal would obey."""
+    return "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in text[:LONGEST_TEXT])
 
 
 class Abort(GraphflowError):
@@ -205,9 +219,9 @@ class RemoteError(CallError):
 
         try:
             data = json.loads(payload)
-            return cls(str(data["type"]), str(data["message"]), service)
+            return cls(printable(str(data["type"])), printable(str(data["message"])), service)
         except (ValueError, KeyError, TypeError):
-            return cls("Error", payload[:200].decode(errors="replace"), service)
+            return cls("Error", printable(payload[:200].decode(errors="replace")), service)
 
 
 class DeadlockError(CallError):

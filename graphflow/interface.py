@@ -39,7 +39,7 @@ _INT64 = range(-(2**63), 2**63)
 
 
 @dataclass(frozen=True, slots=True)
-class Endpoint:
+class EndpointInfo:
     """A topic or service that the class uses under `name`."""
 
     kind: EndpointKind
@@ -175,6 +175,12 @@ new one begins when that has ended. `parallel`: they run beside each other, as f
 OnClientLoss = Literal["continue", "cancel"]
 """What becomes of a goal whose client has gone."""
 
+OnError = Literal["budget", "log", "end"]
+"""What an error of a timer or subscription means for its node.
+
+`budget`: it is logged and counted, and too many end the node. `log`: it is logged. `end`: it ends the node.
+"""
+
 CALL_TIMEOUT = 10.0
 """Seconds that a call waits for its answer, unless somebody says otherwise."""
 NO_GROUP = "none"
@@ -210,7 +216,7 @@ HandlerKind = Literal["subscription", "timer", "service", "action", "task"]
 
 
 @dataclass(frozen=True, slots=True)
-class Handler:
+class HandlerInfo:
     """A method that is called: by a timer, a message, a request or a goal."""
 
     name: str
@@ -232,9 +238,9 @@ class Interface:
     """The name a node gets when no other is given."""
     place: Place
     doc: str = ""
-    endpoints: tuple[Endpoint, ...] = ()
+    endpoints: tuple[EndpointInfo, ...] = ()
     params: tuple[Parameter, ...] = ()
-    handlers: tuple[Handler, ...] = ()
+    handlers: tuple[HandlerInfo, ...] = ()
     groups: dict[str, GroupInfo] = field(default_factory=dict)
     dynamic_names: bool | tuple[str, ...] = False
     """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
@@ -257,9 +263,9 @@ class Interface:
         return cls(
             **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc")},
             place=Place(*data["place"]),
-            endpoints=tuple(Endpoint(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
+            endpoints=tuple(EndpointInfo(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
             params=tuple(_parameter(p) for p in data["params"]),
-            handlers=tuple(Handler(**{**h, "place": Place(*h["place"])}) for h in data["handlers"]),
+            handlers=tuple(HandlerInfo(**{**h, "place": Place(*h["place"])}) for h in data["handlers"]),
             groups={name: GroupInfo(**group) for name, group in data["groups"].items()},
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
         )

@@ -1,9 +1,10 @@
-"""The house: which room may import which, and who knows which library."""
+"""The house: which room may import which, who knows which library, and that no files import each other in a circle."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "graphflow"
 
 CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "system", "wire", "msgs", "machines", "graph")
-FLOORS = ("transport", "runtime", "introspect", "bag", "supervisor", "testing")
+FLOORS = ("transport", "executor", "deadlock", "runtime", "introspect", "bag", "supervisor", "testing")
 DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)
 """From the bottom up: a room imports itself and the rooms before it. No door imports another."""
@@ -114,6 +115,82 @@ def test_every_room_there_is_has_its_place() -> None:
     """The table names every module and folder of the package, so that none escapes the rules."""
     there = {p.stem for p in PACKAGE.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()}
     assert there - {"__init__"} <= set(ROOMS)
+
+
+LONGEST_FILE = 500
+"""Lines of a file of the package, at most."""
+
+
+def import_graph(files: Mapping[str, str]) -> dict[str, set[str]]:
+    """Which modules each module imports, type-only imports and those inside functions included.
+
+    Args:
+        files: The text of each module by its name, as in `graphflow.wire.cdr`.
+    """
+    found: dict[str, set[str]] = {}
+    for module, text in files.items():
+        package = module if any(other.startswith(f"{module}.") for other in files) else module.rpartition(".")[0]
+        named = {i.module for i in imports(ast.parse(text), package)}
+        # `from graphflow.wire import cdr` names a module, `from graphflow.wire.cdr import decode` something in one.
+        found[module] = {name if name in files else name.rpartition(".")[0] for name in named} & set(files) - {module}
+    return found
+
+
+def shortest_circle(graph: Mapping[str, set[str]]) -> list[str]:
+    """The modules of the shortest circle of imports, in order; empty if there is none."""
+    circles = []
+    for start in sorted(graph):
+        came_from: dict[str, str] = {}
+        todo = deque([start])
+        while todo and start not in came_from:
+            module = todo.popleft()
+            for other in sorted(graph[module]):
+                if other not in came_from:
+                    came_from[other] = module
+                    todo.append(other)
+        if start in came_from:
+            circle = [start]
+            while (before := came_from[circle[-1]]) != start:
+                circle.append(before)
+            circles.append(circle[::-1])
+    return min(circles, key=len, default=[])
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    """Nowhere in the package, whichever way the import is written."""
+    files = {}
+    for path in PACKAGE.rglob("*.py"):
+        module = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+        files[module] = path.read_text(encoding="utf-8")
+    circle = shortest_circle(import_graph(files))
+    assert not circle, "a circle of imports: " + " -> ".join([*circle, circle[0]])
+
+
+@pytest.mark.parametrize(
+    ("files", "circle"),
+    [
+        ({"p": "", "p.a": "import p.b", "p.b": ""}, []),
+        ({"p": "", "p.a": "import p.b", "p.b": "import p.a"}, ["p.b", "p.a"]),
+        ({"p": "", "p.a": "from p.b import x", "p.b": "from p import a"}, ["p.b", "p.a"]),
+        ({"p": "", "p.a": "def f():\n    from .b import x", "p.b": "from .a import y"}, ["p.b", "p.a"]),
+        ({"p": "", "p.a": "if TYPE_CHECKING:\n    from p.b import x", "p.b": "from p.a import y"}, ["p.b", "p.a"]),
+        ({"p": "", "p.a": "import_module('p.b')", "p.b": "from p.a import y"}, ["p.b", "p.a"]),
+        ({"p": "from p.a import x", "p.a": "from p import y"}, ["p.a", "p"]),
+        (
+            {"p.a": "import p.b", "p.b": "import p.c", "p.c": "import p.a\nimport p.d", "p.d": "import p.c"},
+            ["p.d", "p.c"],
+        ),
+    ],
+)
+def test_a_planted_circle_is_found(files: dict[str, str], circle: list[str]) -> None:
+    """Of several, the shortest; in whichever way it is hidden."""
+    assert shortest_circle(import_graph(files)) == circle
+
+
+def test_no_file_is_too_long() -> None:
+    """One idea a file; one that needs more lines has two."""
+    lengths = {p.relative_to(PACKAGE).as_posix(): len(p.read_text("utf-8").splitlines()) for p in PACKAGE.rglob("*.py")}
+    assert not {file: n for file, n in lengths.items() if n > LONGEST_FILE}
 
 
 @pytest.mark.parametrize(

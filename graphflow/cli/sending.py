@@ -12,7 +12,7 @@ from graphflow.cli.visiting import visit
 from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected
 from graphflow.introspect.echo import block, plain
 from graphflow.msgs.base import Message
-from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.node import Node
 
 STRAGGLERS = 0.1
@@ -37,7 +37,7 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
 
 
 async def _follow(sending: Any, show_feedback: bool) -> int:
-    sent: ClientGoal[Any, Any, Any] | None = None
+    sent: ClientGoalHandle[Any, Any, Any] | None = None
     try:
         async with sending as sent:
             assert sent is not None
@@ -61,12 +61,12 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
         raise
 
 
-async def _show_feedback(sent: ClientGoal[Any, Any, Any]) -> None:
+async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any]) -> None:
     async for feedback in sent.feedback():
         output.data(f"Feedback:\n{_shown(feedback)}")
 
 
-async def _result(sent: ClientGoal[Any, Any, Any]) -> int:
+async def _result(sent: ClientGoalHandle[Any, Any, Any]) -> int:
     code = exits.FAILED
     try:
         result = await sent.result()

@@ -14,7 +14,7 @@ from typing import Any
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.supervisor.control import ControlClient
-from graphflow.supervisor.rundir import Run
+from graphflow.supervisor.rundir import GraphRun
 
 _POLL = 0.1
 """Seconds between two looks at the log files."""
@@ -66,7 +66,7 @@ def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int
         client.send(do="follow", lifeline=not detach)
         code = _Stream(run, classes, nodes, client, detach, interrupts).run()
     if not detach:
-        Run(**run).wait_gone(_GONE_LIMIT)
+        GraphRun(**run).wait_gone(_GONE_LIMIT)
     return code
 
 

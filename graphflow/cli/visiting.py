@@ -7,7 +7,7 @@ import os
 from collections.abc import Awaitable, Callable
 
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node
+from graphflow.runtime.node import Node, core_of
 from graphflow.runtime.run import catch_signals
 from graphflow.transport import loop
 
@@ -23,7 +23,7 @@ async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
     context = await Context.open()
     node = Node(name, start_parameter_services=False, enable_rosout=False)
     try:
-        await node.start(context)
+        await core_of(node).start(context)
         task = asyncio.ensure_future(work(node))
         stopped = asyncio.ensure_future(stop.wait())
         await asyncio.wait([task, stopped], return_when=asyncio.FIRST_COMPLETED)
@@ -34,5 +34,5 @@ async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
         await asyncio.wait([task])
         return 0 if task.cancelled() else task.result()
     finally:
-        await node.stop()
+        await core_of(node).stop()
         await context.close()

@@ -10,7 +10,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.errors import CallTimeout, RemoteError
-from graphflow.introspect import waits as found
+from graphflow.introspect import concurrency as found
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
 
@@ -18,7 +18,7 @@ ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph get to answer."""
 
 
-def _read(view: View) -> found.Waits:
+def _read(view: View) -> found.ConcurrencyReport:
     return found.read(view.reports(f"@graphflow/{view.domain}/waits/*", ANSWER_LIMIT))
 
 
@@ -91,7 +91,7 @@ def show(node: str, as_json: bool) -> None:
     _show(full, _groups_of(read, full), as_json=as_json)
 
 
-def _groups_of(read: found.Waits, node: str) -> list[dict[str, Any]]:
+def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
     if node not in read.nodes:
         raise exits.UsageFault(f"{node} is not graphflow's, so that nothing is known of its groups")
     return read.nodes[node]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.interface import COMMON_PARAMETERS, Endpoint, Interface, may_make
+from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, Interface, may_make
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
@@ -145,7 +145,7 @@ def offered_services(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
     return found
 
 
-def _services(interface: Interface) -> list[Endpoint]:
+def _services(interface: Interface) -> list[EndpointInfo]:
     return [e for e in interface.endpoints if e.kind == "service"]
 
 

@@ -7,21 +7,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
-
-from graphflow.errors import GraphFileError, InvalidName, Place, Problem
+from graphflow.errors import GraphFileError, InvalidName, Place
 from graphflow.graph import params_file, source
+from graphflow.graph.faults import Problems, example, validated
 from graphflow.graph.include import merged
-from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, StepSpec, keys_of
+from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, keys_of
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import SubstitutionError, Substitutions
 from graphflow.interface import CALL_TIMEOUT, GroupChange
-from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
-
-_MODELS: dict[str, type[BaseModel]] = {"args": Arg, "nodes": NodeSpec, "steps": StepSpec}
+from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
 
 def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
@@ -38,37 +35,18 @@ def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = 
     return resolve(source.read_file(path, shown(path)), path, given, env)
 
 
-class _Problems(list[Problem]):
-    def __init__(self) -> None:
-        super().__init__()
-        self._unknown: set[Place] = set()
-
-    def add(self, place: Place, message: str) -> None:
-        if place not in self._unknown:
-            self.append(Problem(place, message))
-
-    def add_unknown(self, place: Place, message: str) -> None:
-        """Add a problem that leaves the value unknown: more complaints about it would only confuse."""
-        self.add(place, message)
-        self._unknown.add(place)
-
-    def raise_any(self) -> None:
-        if self:
-            raise GraphFileError(self)
-
-
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
     """Resolve what `source.read` found. Arguments and errors as `load`."""
-    problems = _Problems()
+    problems = Problems()
     if not isinstance(src.data, dict):
         what = "the file is empty; " if src.data is None else ""
-        problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{_example('nodes')}")
+        problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{example('nodes')}")
         problems.raise_any()
     src, folders = merged(src, path, problems.add)
     args = _arguments(src, given, problems)
     substitutions = {file: Substitutions(args, str(folder), env) for file, folder in folders.items()}
     src = _substituted(src, substitutions, problems)
-    model = _validated(src, problems)
+    model = validated(src, problems)
     if model is None:
         problems.raise_any()
     assert model is not None
@@ -92,7 +70,7 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     )
 
 
-def _arguments(src: Source, given: Sequence[str], problems: _Problems) -> dict[str, Any]:
+def _arguments(src: Source, given: Sequence[str], problems: Problems) -> dict[str, Any]:
     declared = src.data.get("args") or {}
     if not isinstance(declared, dict):
         return {}
@@ -134,7 +112,7 @@ def _given(text: str, spec: Any) -> Any:
     return text if wants_text and not isinstance(value, str) else value
 
 
-def _substituted(src: Source, substitutions: Mapping[str, Substitutions], problems: _Problems) -> Source:
+def _substituted(src: Source, substitutions: Mapping[str, Substitutions], problems: Problems) -> Source:
     """The same source with every substitution made, in keys too; places follow the values."""
     places, keys = {}, {}
 
@@ -173,111 +151,6 @@ def _substituted(src: Source, substitutions: Mapping[str, Substitutions], proble
     return Source(data, places, keys)
 
 
-def _validated(src: Source, problems: _Problems) -> GraphFile | None:
-    try:
-        return GraphFile.model_validate(src.data)
-    except ValidationError as error:
-        faults = [(_written_path(src, fault), fault) for fault in error.errors()]
-    wanted: dict[source.Path, list[str]] = {}
-    paths = [path for path, _ in faults]
-    for path, fault in faults:
-        # Alternatives of a union report once each; the one that got furthest was meant.
-        if not any(other[: len(path)] == path and other != path for other in paths):
-            wanted.setdefault(path, []).append(_wanted(fault))
-    for path, fault in faults:
-        if fault["type"] == "missing":
-            if not _misspelt(str(path[-1]), path[:-1], faults):
-                problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing")
-        elif fault["type"] == "extra_forbidden":
-            problems.add(src.key_place(path), _unknown_key(path))
-        elif fault["type"] == "value_error":
-            problems.add(src.place(path), str(fault["ctx"]["error"]))
-        elif path in wanted:
-            problems.add(src.place(path), _wrong_type(path, wanted.pop(path), fault["input"]))
-    return None
-
-
-def _written_path(src: Source, fault: Any) -> source.Path:
-    """Where in the file a fault is, without the parts that name an alternative of a union."""
-    path: source.Path = ()
-    for part in fault["loc"]:
-        if (*path, part) in src.places or (*path, part) in src.keys:
-            path = (*path, part)
-    return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
-
-
-def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
-    """Whether a missing key is there after all, with a typo that is reported anyway."""
-    unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
-    return any(nearest(word, _known_keys((*above, word))) == key for word in unknown)
-
-
-def _known_keys(path: source.Path) -> list[str]:
-    if len(path) == 5 and path[2] == "concurrency":
-        return keys_of(GroupSpec)
-    return keys_of(_MODELS[str(path[0])]) if len(path) == 3 and path[0] in _MODELS else keys_of(GraphFile)
-
-
-def _unknown_key(path: source.Path) -> str:
-    key, known = str(path[-1]), _known_keys(path)
-    head = key.partition(":")[0]
-    if head in known and head != key:
-        return f"unknown key {key!r}; write a space after '{head}:'"
-    return f"unknown key {key!r}{did_you_mean(key, known)}"
-
-
-def _wanted(fault: Any) -> str:
-    limits = fault.get("ctx", {})
-    words = {
-        "dict_type": "a mapping",
-        "model_type": "a mapping",
-        "string_type": "text",
-        "list_type": "a list",
-        "int_type": "a whole number",
-        "float_type": "a number",
-        "bool_type": "true or false",
-        "greater_than": f"more than {limits.get('gt', 0):g}",
-        "greater_than_equal": f"{limits.get('ge', 0):g} or more",
-        "finite_number": "a finite number",
-    }
-    return words.get(fault["type"], str(fault["msg"]))
-
-
-def _wrong_type(path: source.Path, wanted: list[str], value: Any) -> str:
-    if "a number" in wanted:
-        wanted = [w for w in wanted if w != "a whole number"]
-    where = ".".join(str(p) for p in path)
-    text = " or ".join(dict.fromkeys(wanted))
-    got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
-    if len(path) == 2 and ":" in str(path[1]):
-        return f"the name {path[1]!r} has a colon in it; write a space after the colon behind a key"
-    return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{_example(*path)}"
-
-
-_SHOWN = {None: "nothing", True: "true", False: "false"}
-_EXAMPLES: dict[source.Path, str] = {
-    ("args",): "args: {rate: {default: 1.0}}",
-    ("args", ""): "{default: 1.0}",
-    ("nodes",): "nodes: {/talker: {class: nodes.talker:Talker}}",
-    ("nodes", ""): "{class: nodes.talker:Talker}",
-    ("nodes", "", "params"): "params: {rate: 2.0}",
-    ("nodes", "", "params_file"): "params_file: params.yaml",
-    ("nodes", "", "remap"): "remap: {goal: /turtle1/pose}",
-    ("nodes", "", "env"): "env: {LANG: C}",
-    ("nodes", "", "after"): "after: /talker",
-    ("nodes", "", "concurrency"): "concurrency: {motion: [control]}",
-    ("nodes", "", "concurrency", ""): "motion: [control], or motion: {handlers: [control], limit: 2}",
-    ("steps",): "steps: {spawn: {call: /spawn}}",
-    ("steps", ""): "{call: /spawn}",
-    ("steps", "", "request"): "request: {x: 1.0}",
-}
-
-
-def _example(*path: str | int) -> str:
-    shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
-    return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""
-
-
 class _ParamsFiles:
     """The parameter files of a graph; each is read once.
 
@@ -285,7 +158,7 @@ class _ParamsFiles:
         folders: Where relative paths begin, by the file that they are written in.
     """
 
-    def __init__(self, src: Source, folders: Mapping[str, Path], problems: _Problems) -> None:
+    def __init__(self, src: Source, folders: Mapping[str, Path], problems: Problems) -> None:
         self._src, self._folders, self._problems = src, folders, problems
         self._files: dict[Path, list[Section]] = {}
 
@@ -322,7 +195,7 @@ class _ParamsFiles:
             self._problems += params_file.strays(sections, nodes)
 
 
-def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: _Problems) -> dict[str, PlannedNode]:
+def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: Problems) -> dict[str, PlannedNode]:
     """The nodes by their keys in the file."""
     nodes: dict[str, PlannedNode] = {}
     taken: dict[str, Place] = {}
@@ -354,7 +227,7 @@ def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: _Proble
 
 
 def _concurrency(
-    src: Source, groups: Mapping[str, GroupSpec], path: source.Path, problems: _Problems
+    src: Source, groups: Mapping[str, GroupSpec], path: source.Path, problems: Problems
 ) -> dict[str, PlannedGroup]:
     found: dict[str, PlannedGroup] = {}
     taken: dict[str, str] = {}
@@ -373,7 +246,7 @@ def _concurrency(
     return found
 
 
-def _node_name(src: Source, key: str, spec: NodeSpec, problems: _Problems) -> str | None:
+def _node_name(src: Source, key: str, spec: NodeSpec, problems: Problems) -> str | None:
     """The full name of a node; None when it has none."""
     place = src.key_place(("nodes", key))
     try:
@@ -393,7 +266,7 @@ def _node_name(src: Source, key: str, spec: NodeSpec, problems: _Problems) -> st
         return None
 
 
-def _check_env(nodes: Iterable[PlannedNode], problems: _Problems) -> None:
+def _check_env(nodes: Iterable[PlannedNode], problems: Problems) -> None:
     """A process has one environment: nodes that share it must not contradict each other."""
     seen: dict[tuple[str, str], tuple[str, str]] = {}
     for node in nodes:
@@ -405,7 +278,7 @@ def _check_env(nodes: Iterable[PlannedNode], problems: _Problems) -> None:
 
 
 def _remaps(
-    src: Source, remap: Mapping[str, str], path: source.Path, node: str, problems: _Problems
+    src: Source, remap: Mapping[str, str], path: source.Path, node: str, problems: Problems
 ) -> tuple[Rule, ...]:
     rules = []
     namespace, name = split(node)
@@ -425,7 +298,7 @@ def _remaps(
     return tuple(rules)
 
 
-def _steps(src: Source, model: GraphFile, problems: _Problems) -> list[PlannedStep]:
+def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedStep]:
     steps = []
     for name, spec in model.steps.items():
         call_place = src.place(("steps", name, "call"))
@@ -460,7 +333,7 @@ def _order(
     model: GraphFile,
     nodes: dict[str, PlannedNode],
     steps: list[PlannedStep],
-    problems: _Problems,
+    problems: Problems,
 ) -> tuple[list[PlannedNode], list[PlannedStep]]:
     """Replace keys by full names in every `after`; check that each names something and none waits for itself."""
     known = {*(n.name for n in nodes.values()), *(s.name for s in steps)}

@@ -25,7 +25,7 @@ from typing import Literal
 from graphflow.errors import Place
 from graphflow.graph.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
-from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, Handler, Interface
+from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
@@ -233,7 +233,7 @@ def _remedy(server: _Actor, actor: _Actor) -> str:
     return f"Give {server.handler} a group of its own: {server.node}: {{concurrency: {{{own}: [{server.handler}]}}}}"
 
 
-def _slot(node: PlannedNode, interface: Interface, handler: Handler) -> _Slot:
+def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slot:
     """Whose slot a handler's runs take: as the graph file says, else as the class does."""
     name = handler.group
     for group, planned in node.concurrency.items():

@@ -15,7 +15,7 @@ ACTION_FEEDBACK = "/_action/feedback"
 ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
 
 
-class Change(NamedTuple):
+class GraphChange(NamedTuple):
     """An entity that came (`alive`) or went."""
 
     entity: Entity
@@ -33,7 +33,7 @@ class GraphCache:
     def __repr__(self) -> str:
         return f"<GraphCache {len(self.nodes())} nodes, {len(self._entities)} tokens>"
 
-    def apply(self, token: str, *, alive: bool) -> list[Change]:
+    def apply(self, token: str, *, alive: bool) -> list[GraphChange]:
         """Take in one token event; returns what it changed, nothing for a repeated or unknown token.
 
         The end of a node's token ends its endpoints too.
@@ -42,10 +42,10 @@ class GraphCache:
             gone = self._entities.pop(token, None)
             if gone is None:
                 return []
-            changes = [Change(gone, False)]
+            changes = [GraphChange(gone, False)]
             if gone.kind is Kind.NODE:
                 rest = [t for t, e in self._entities.items() if (e.zid, e.nid) == (gone.zid, gone.nid)]
-                changes += [Change(self._entities.pop(t), False) for t in rest]
+                changes += [GraphChange(self._entities.pop(t), False) for t in rest]
             return changes
         if token in self._entities:
             return []
@@ -53,7 +53,7 @@ class GraphCache:
         if entity is None:
             return []
         self._entities[token] = entity
-        return [Change(entity, True)]
+        return [GraphChange(entity, True)]
 
     def __iter__(self) -> Iterator[Entity]:
         return iter(self._entities.values())

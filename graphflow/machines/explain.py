@@ -8,30 +8,30 @@ from pathlib import PurePath
 
 from graphflow.errors import Place
 from graphflow.machines.rings import Deadlock, Edge
-from graphflow.machines.waits import Activity, Call, Free, Group, Picture, Queue, SetBy, Slot
+from graphflow.machines.wait_graph import ActivityView, Call, Free, GroupView, QueueView, SetBy, Slot, WaitGraph
 
 
-def explanation(deadlock: Deadlock, picture: Picture) -> str:
+def explanation(deadlock: Deadlock, graph: WaitGraph) -> str:
     """The whole report."""
     return "\n".join(
-        [_headline(deadlock), *_ring(deadlock, picture), *_victims(deadlock, picture), *_fixes(deadlock, picture)]
+        [_headline(deadlock), *_ring(deadlock, graph), *_victims(deadlock, graph), *_fixes(deadlock, graph)]
     )
 
 
-def hopeless(service: str, queue: Queue, holders: list[Activity], picture: Picture) -> str:
+def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph: WaitGraph) -> str:
     """Why a call of `service` can never be answered: all slots are held by activities that wait for it."""
-    [group] = [picture.groups[name] for name in queue.needs if picture.groups[name].name] or [
-        picture.groups[queue.needs[0]]
-    ]
+    [group] = [graph.groups[name] for name in queue.needs if graph.groups[name].name] or [graph.groups[queue.needs[0]]]
     held = " and ".join(f"{title(a)}{where(a)}" for a in holders)
     edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
     head = f"{service} can never answer: {queue.label} of {queue.node} waits for {_slot(group)}, held by {held}"
     head = f"{head}, which waits for this very call"
-    fixes = [*_fix(holders[0], edge, picture), *_release(holders[0], group)] if holders else []
+    fixes = [*_fix(holders[0], edge, graph), *_release(holders[0], group)] if holders else []
     return "\n".join([head, "Any one of these ends it:", *fixes] if fixes else [head])
 
 
-def stall(group: Group, holders: list[Activity], waiting: list[Queue], dropped: dict[str, int], seconds: float) -> str:
+def stall(
+    group: GroupView, holders: list[ActivityView], waiting: list[QueueView], dropped: dict[str, int], seconds: float
+) -> str:
     """What is said of a group that the same runs keep for long.
 
     Args:
@@ -56,30 +56,30 @@ def _headline(deadlock: Deadlock) -> str:
     return f"{word}: {who}{condition}{behind}"
 
 
-def _ring(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
+def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-        activity = picture.activities[name]
-        holding = _holding(activity, picture)
+        activity = graph.activities[name]
+        holding = _holding(activity, graph)
         if edge.loop and edge.to == name:
             holding = f"{holding} blocks the event loop and" if not holding else f"{holding} blocks the event loop,"
         yield f"  {title(activity)}{holding} waits for {wanted(edge)}{where(activity)}"
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
-        yield f"    -> {_reason(edge, picture)}{back}"
+        yield f"    -> {_reason(edge, graph)}{back}"
 
 
-def title(activity: Activity) -> str:
+def title(activity: ActivityView) -> str:
     """What an activity is called: `timer tick of /arm`."""
     return f"{activity.label} of {activity.node}"
 
 
-def _holding(activity: Activity, picture: Picture) -> str:
-    name = group_of(activity, picture)
+def _holding(activity: ActivityView, graph: WaitGraph) -> str:
+    name = group_of(activity, graph)
     return f" holds group '{name}' and" if name else ""
 
 
-def group_of(activity: Activity, picture: Picture) -> str:
+def group_of(activity: ActivityView, graph: WaitGraph) -> str:
     """The name of the group whose slot it holds; empty for none."""
-    return next((picture.groups[g].name for g in activity.holds if g in picture.groups and picture.groups[g].name), "")
+    return next((graph.groups[g].name for g in activity.holds if g in graph.groups and graph.groups[g].name), "")
 
 
 def wanted(edge: Edge) -> str:
@@ -97,7 +97,7 @@ def wanted(edge: Edge) -> str:
             return "another task"
 
 
-def where(activity: Activity) -> str:
+def where(activity: ActivityView) -> str:
     """Where it waits, and since when."""
     words = [*_place(activity), f"since {activity.age:.2f} s"]
     if activity.left is not None:
@@ -105,29 +105,29 @@ def where(activity: Activity) -> str:
     return f"   ({', '.join(words)})"
 
 
-def _place(activity: Activity) -> Iterator[str]:
+def _place(activity: ActivityView) -> Iterator[str]:
     if activity.place.file:
         yield f"{Place(PurePath(activity.place.file).name, activity.place.line)} in {activity.function}"
 
 
-def _reason(edge: Edge, picture: Picture) -> str:
-    other = picture.activities[edge.to]
+def _reason(edge: Edge, graph: WaitGraph) -> str:
+    other = graph.activities[edge.to]
     if edge.loop:
         return f"nothing can arrive while the event loop is blocked by {title(other)}"
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
         return f"which {title(other)} holds"
     if not edge.group:
         return f"which {title(other)} is to give"
-    queue = picture.queues.get(edge.queue)
+    queue = graph.queues.get(edge.queue)
     who = "that" if queue is None else f"{queue.label} of {queue.node}"
     verb = "sets it, and needs" if isinstance(edge.via, SetBy) else "waits for"
     more = ""
     if queue is not None and isinstance(edge.via, SetBy):
         more = f"; {queue.waiting} queued, {queue.dropped} dropped meanwhile"
-    return f"{who} {verb} {_slot(picture.groups[edge.group])}, which {title(other)} holds{more}"
+    return f"{who} {verb} {_slot(graph.groups[edge.group])}, which {title(other)} holds{more}"
 
 
-def _slot(group: Group) -> str:
+def _slot(group: GroupView) -> str:
     if not group.name:
         return "its turn"
     if group.limit == 1:
@@ -135,17 +135,17 @@ def _slot(group: Group) -> str:
     return f"one of the {group.limit} slots of group '{group.name}' of {group.node}"
 
 
-def _victims(deadlock: Deadlock, picture: Picture) -> Iterator[str]:
+def _victims(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
     for name in deadlock.victims:
-        activity = picture.activities[name]
+        activity = graph.activities[name]
         yield f"  behind them: {title(activity)}{where(activity)}"
 
 
-def _fixes(deadlock: Deadlock, picture: Picture) -> list[str]:
+def _fixes(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     found: list[str] = []
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-        activity, wanted_of_it = picture.activities[name], picture.groups.get(deadlock.edges[i - 1].group)
-        for fix in (*_fix(activity, edge, picture), *_release(activity, wanted_of_it)):
+        activity, wanted_of_it = graph.activities[name], graph.groups.get(deadlock.edges[i - 1].group)
+        for fix in (*_fix(activity, edge, graph), *_release(activity, wanted_of_it)):
             if fix not in found:
                 found.append(fix)
     # The same advice for every member of a ring is one advice: to follow it once is enough.
@@ -155,9 +155,9 @@ def _fixes(deadlock: Deadlock, picture: Picture) -> list[str]:
     return ["Any one of these ends it:", *kinds.values()] if kinds else []
 
 
-def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
+def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
     if edge.loop:
-        other = picture.activities[edge.to]
+        other = graph.activities[edge.to]
         at = Place(PurePath(other.place.file).name, other.place.line)
         wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
         yield f"  {wait} in {at}"
@@ -167,9 +167,9 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
             f"    or in the class: thread=True where {_method(other.label)} is declared"
         )
         return
-    queue, group = picture.queues.get(edge.queue), picture.groups.get(edge.group)
+    queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
     if isinstance(edge.via, SetBy) and edge.via.is_held:
-        other = picture.activities[edge.to]
+        other = graph.activities[edge.to]
         at = Place(PurePath(other.place.file).name, other.place.line)
         yield f"  leave {edge.via.what} before what is awaited in {at}"
     if queue is None or group is None:
@@ -182,7 +182,7 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         yield _own_group(replace(queue, label=handler))
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
-            yield _larger(group, sum(group.id in a.holds for a in picture.activities.values()) + 1)
+            yield _larger(group, sum(group.id in a.holds for a in graph.activities.values()) + 1)
     elif queue.label.startswith("action "):
         yield f"  let several goals be under way: policy='parallel' where {handler} is declared"
     elif not isinstance(edge.via, SetBy):
@@ -192,14 +192,14 @@ def _fix(activity: Activity, edge: Edge, picture: Picture) -> Iterator[str]:
         yield f"  let several runs of {handler} be under way: {made}"
 
 
-def _release(activity: Activity, wanted: Group | None) -> Iterator[str]:
+def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
     """To let go of a slot helps where the one before in the ring wants it."""
     if wanted is not None and wanted.name and activity.is_async:
         place = Place(PurePath(activity.place.file).name, activity.place.line)
         yield f"  release the slot while waiting, in {place}: async with self.group.released(): ..."
 
 
-def _larger(group: Group, limit: int) -> str:
+def _larger(group: GroupView, limit: int) -> str:
     made = f"Group({limit}{', thread=True' if group.is_threaded else ''})"
     text = "  allow more runs, if its handlers share no state"
     if not group.is_declared:
@@ -210,7 +210,7 @@ def _larger(group: Group, limit: int) -> str:
     )
 
 
-def _own_group(queue: Queue) -> str:
+def _own_group(queue: QueueView) -> str:
     handler = _method(queue.label)
     own = f"{handler}_group"
     if not queue.is_declared:

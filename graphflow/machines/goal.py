@@ -1,13 +1,19 @@
-"""The life of an action's goals, as ROS 2's state machine, and the book that a server keeps of them.
+"""The life of an action's goals at their server, as one table, and the book that a server keeps of them.
 
-    ACCEPTED --execute--> EXECUTING --succeed--> SUCCEEDED
-        |                     |------abort-----> ABORTED
-        `----cancel_goal------|
-                              v
-                          CANCELING --canceled-> CANCELED     (it may still succeed or abort)
+A goal is in one *phase* at a time; to clients each phase shows as one of ROS 2's states:
 
-A goal that was accepted ends once, in one of the three terminal states. A client's cancelling makes it CANCELING, and
-its body decides what comes of that. What the server ends by itself, for a newer goal say, is ABORTED.
+    phase       state        what goes on
+    DECIDING    -            whether the goal is accepted is being decided
+    ANSWERING   ACCEPTED     it is, and the answer goes out before anything else happens
+    QUEUED      ACCEPTED     it waits for its turn, and for a slot of its group
+    RUNNING     EXECUTING    its body runs
+    CANCELING   CANCELING    a client has cancelled it; its body cleans up
+    PREEMPTED   EXECUTING    the server ends it for a newer goal; its body cleans up
+    REJECTED, SUCCEEDED, CANCELED, ABORTED                it is over
+
+`STEPS` says, for each phase and each event, which phase follows and what the server is to do. What only some servers
+do, by their `GoalRules`, is left out by `step`. A goal that is over stays what it is, whatever comes late. One that a
+client has cancelled ends as its body decides; what the server ends by itself ends as ABORTED.
 
 Source: rcl_action goal_state_machine.c; action_msgs/srv/CancelGoal.
 """
@@ -16,7 +22,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import Enum, IntEnum, auto
+
+from graphflow.interface import GoalPolicy, OnClientLoss
 
 
 class GoalStatus(IntEnum):
@@ -43,38 +51,183 @@ class GoalStatus(IntEnum):
 _TERMINAL = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED, GoalStatus.LOST)
 
 
-class GoalEvent(Enum):
-    """What can happen to a goal."""
+class Phase(Enum):
+    """Where a goal stands; see the table above."""
 
-    EXECUTE = "execute"
-    CANCEL_GOAL = "cancel_goal"
-    SUCCEED = "succeed"
-    ABORT = "abort"
-    CANCELED = "canceled"
+    DECIDING = auto()
+    ANSWERING = auto()
+    QUEUED = auto()
+    RUNNING = auto()
+    CANCELING = auto()
+    PREEMPTED = auto()
+    REJECTED = auto()
+    SUCCEEDED = auto()
+    CANCELED = auto()
+    ABORTED = auto()
+
+    @property
+    def is_over(self) -> bool:
+        return self in (Phase.REJECTED, Phase.SUCCEEDED, Phase.CANCELED, Phase.ABORTED)
+
+    @property
+    def status(self) -> GoalStatus:
+        """What clients are told."""
+        return _STATUS.get(self, GoalStatus.UNKNOWN)
 
 
-TRANSITIONS: Mapping[tuple[GoalStatus, GoalEvent], GoalStatus] = {
-    (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
-    (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
-    (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
-    (GoalStatus.EXECUTING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
-    (GoalStatus.EXECUTING, GoalEvent.ABORT): GoalStatus.ABORTED,
-    (GoalStatus.CANCELING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
-    (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
-    (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
+_STATUS = {
+    Phase.ANSWERING: GoalStatus.ACCEPTED,
+    Phase.QUEUED: GoalStatus.ACCEPTED,
+    Phase.RUNNING: GoalStatus.EXECUTING,
+    Phase.CANCELING: GoalStatus.CANCELING,
+    Phase.PREEMPTED: GoalStatus.EXECUTING,
+    Phase.SUCCEEDED: GoalStatus.SUCCEEDED,
+    Phase.CANCELED: GoalStatus.CANCELED,
+    Phase.ABORTED: GoalStatus.ABORTED,
 }
 
 
-def step(status: GoalStatus, event: GoalEvent) -> GoalStatus:
-    """The state after `event`.
+class GoalEvent(Enum):
+    """What can happen to a goal."""
+
+    ACCEPTED = "it was decided to accept it"
+    REFUSED = "it was decided not to"
+    ANSWERED = "the answer has gone out"
+    BEGUN = "its turn has come, and there is a slot"
+    CANCEL = "a client cancels it, and may"
+    NEWER = "a newer goal takes its place"
+    CLIENT_LOST = "its client has gone"
+    CLIENT_AWAY = "its client has not come back in time"
+    RETURNED = "its body has returned a result"
+    FAILED = "its body has raised, or returned what is no result"
+    UNWOUND = "its body has ended by being cancelled"
+    OUTSTAYED = "its body still runs long after it was cancelled"
+    DROPPED = "its group drops work that finds it full"
+    STOPPING = "the server stops"
+
+
+class Do(Enum):
+    """What a server is to do about it."""
+
+    PREEMPT_OTHERS = "tell every other goal that has not ended of a newer one"
+    ENQUEUE = "put it into the queue of its runner"
+    DEQUEUE = "take it out again"
+    CANCEL_BODY = "cancel its body"
+    LIMIT_CLEANUP = "say OUTSTAYED when `cleanup_timeout` has passed"
+    AWAIT_CLIENT = "say CLIENT_AWAY when `client_grace` has passed and its client has not come back"
+    DEGRADE = "say that a body has outstayed its cancellation"
+
+
+@dataclass(frozen=True, slots=True)
+class GoalRules:
+    """How a server treats its goals.
+
+    Attributes:
+        policy: What becomes of a goal that comes while another is under way.
+        on_client_loss: What becomes of a goal whose client has gone.
+        queue_depth: Goals that wait for their turn under the policy `queue`; more are rejected.
+        accept_limit: Seconds that the decision may take; then the goal is rejected.
+        client_grace: Seconds that a client may be gone before `on_client_loss` acts.
+        cleanup_timeout: Seconds that a cancelled body gets; then its goal is aborted, and its slot stays taken.
+    """
+
+    policy: GoalPolicy = "reject"
+    on_client_loss: OnClientLoss = "continue"
+    queue_depth: int = 16
+    accept_limit: float = 1.0
+    client_grace: float = 5.0
+    cleanup_timeout: float = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What follows from an event.
+
+    Attributes:
+        through: The state that ROS 2 has between the former and the new one, which clients are told too.
+    """
+
+    phase: Phase
+    do: tuple[Do, ...] = ()
+    through: GoalStatus | None = None
+
+
+_CANCELED_UNBEGUN = Step(Phase.CANCELED, (), GoalStatus.CANCELING)
+_ABORTED_UNBEGUN = Step(Phase.ABORTED, (), GoalStatus.EXECUTING)
+_STOP_BODY = (Do.CANCEL_BODY, Do.LIMIT_CLEANUP)
+
+STEPS: Mapping[tuple[Phase, GoalEvent], Step] = {
+    (Phase.DECIDING, GoalEvent.ACCEPTED): Step(Phase.ANSWERING),
+    (Phase.DECIDING, GoalEvent.REFUSED): Step(Phase.REJECTED),
+    (Phase.DECIDING, GoalEvent.CANCEL): Step(Phase.REJECTED),  # its client has given up
+    (Phase.DECIDING, GoalEvent.CLIENT_LOST): Step(Phase.DECIDING, (Do.AWAIT_CLIENT,)),
+    (Phase.DECIDING, GoalEvent.CLIENT_AWAY): Step(Phase.REJECTED),
+    (Phase.DECIDING, GoalEvent.STOPPING): Step(Phase.REJECTED),
+    #
+    (Phase.ANSWERING, GoalEvent.ANSWERED): Step(Phase.QUEUED, (Do.PREEMPT_OTHERS, Do.ENQUEUE)),
+    (Phase.ANSWERING, GoalEvent.CANCEL): _CANCELED_UNBEGUN,
+    (Phase.ANSWERING, GoalEvent.NEWER): _ABORTED_UNBEGUN,
+    (Phase.ANSWERING, GoalEvent.CLIENT_LOST): Step(Phase.ANSWERING, (Do.AWAIT_CLIENT,)),
+    (Phase.ANSWERING, GoalEvent.CLIENT_AWAY): _CANCELED_UNBEGUN,
+    (Phase.ANSWERING, GoalEvent.STOPPING): _ABORTED_UNBEGUN,
+    #
+    (Phase.QUEUED, GoalEvent.BEGUN): Step(Phase.RUNNING),
+    (Phase.QUEUED, GoalEvent.CANCEL): Step(Phase.CANCELED, (Do.DEQUEUE,), GoalStatus.CANCELING),
+    (Phase.QUEUED, GoalEvent.NEWER): Step(Phase.ABORTED, (Do.DEQUEUE,), GoalStatus.EXECUTING),
+    (Phase.QUEUED, GoalEvent.CLIENT_LOST): Step(Phase.QUEUED, (Do.AWAIT_CLIENT,)),
+    (Phase.QUEUED, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELED, (Do.DEQUEUE,), GoalStatus.CANCELING),
+    (Phase.QUEUED, GoalEvent.DROPPED): _ABORTED_UNBEGUN,
+    (Phase.QUEUED, GoalEvent.STOPPING): Step(Phase.ABORTED, (Do.DEQUEUE,), GoalStatus.EXECUTING),
+    #
+    (Phase.RUNNING, GoalEvent.CANCEL): Step(Phase.CANCELING, _STOP_BODY),
+    (Phase.RUNNING, GoalEvent.NEWER): Step(Phase.PREEMPTED, _STOP_BODY),
+    (Phase.RUNNING, GoalEvent.CLIENT_LOST): Step(Phase.RUNNING, (Do.AWAIT_CLIENT,)),
+    (Phase.RUNNING, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELING, _STOP_BODY),
+    (Phase.RUNNING, GoalEvent.RETURNED): Step(Phase.SUCCEEDED),
+    (Phase.RUNNING, GoalEvent.FAILED): Step(Phase.ABORTED),
+    (Phase.RUNNING, GoalEvent.UNWOUND): Step(Phase.ABORTED),
+    (Phase.RUNNING, GoalEvent.STOPPING): Step(Phase.RUNNING),  # the node cancels all bodies
+    #
+    (Phase.CANCELING, GoalEvent.NEWER): Step(Phase.CANCELING),
+    (Phase.CANCELING, GoalEvent.CLIENT_LOST): Step(Phase.CANCELING),
+    (Phase.CANCELING, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELING),
+    (Phase.CANCELING, GoalEvent.RETURNED): Step(Phase.SUCCEEDED),
+    (Phase.CANCELING, GoalEvent.FAILED): Step(Phase.ABORTED),
+    (Phase.CANCELING, GoalEvent.UNWOUND): Step(Phase.CANCELED),
+    (Phase.CANCELING, GoalEvent.OUTSTAYED): Step(Phase.ABORTED, (Do.DEGRADE,)),
+    (Phase.CANCELING, GoalEvent.STOPPING): Step(Phase.CANCELING),
+    #
+    (Phase.PREEMPTED, GoalEvent.CANCEL): Step(Phase.CANCELING),  # its body is being cancelled as it is
+    (Phase.PREEMPTED, GoalEvent.NEWER): Step(Phase.PREEMPTED),
+    (Phase.PREEMPTED, GoalEvent.CLIENT_LOST): Step(Phase.PREEMPTED, (Do.AWAIT_CLIENT,)),
+    (Phase.PREEMPTED, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELING),
+    (Phase.PREEMPTED, GoalEvent.RETURNED): Step(Phase.SUCCEEDED),
+    (Phase.PREEMPTED, GoalEvent.FAILED): Step(Phase.ABORTED),
+    (Phase.PREEMPTED, GoalEvent.UNWOUND): Step(Phase.ABORTED),
+    (Phase.PREEMPTED, GoalEvent.OUTSTAYED): Step(Phase.ABORTED, (Do.DEGRADE,)),
+    (Phase.PREEMPTED, GoalEvent.STOPPING): Step(Phase.PREEMPTED),
+}
+"""What follows from an event in a phase, by rules under which everything is done."""
+
+
+def step(phase: Phase, event: GoalEvent, rules: GoalRules) -> Step:
+    """What follows from an event, by the rules of one server.
 
     Raises:
-        ValueError: The event cannot happen in this state.
+        ValueError: The event cannot happen in this phase.
     """
+    if phase.is_over:
+        return Step(phase)
     try:
-        return TRANSITIONS[status, event]
+        following = STEPS[phase, event]
     except KeyError:
-        raise ValueError(f"a goal that is {status.name} cannot {event.value}") from None
+        raise ValueError(f"a goal that is {phase.name} cannot have {event.name}") from None
+    not_done = set()
+    if rules.policy != "preempt":
+        not_done.add(Do.PREEMPT_OTHERS)
+    if rules.on_client_loss != "cancel":
+        not_done.add(Do.AWAIT_CLIENT)
+    return Step(following.phase, tuple(do for do in following.do if do not in not_done), following.through)
 
 
 class CancelCode(IntEnum):
@@ -94,9 +247,29 @@ ALL_GOALS = bytes(16)
 class GoalRecord:
     """What the server's book says of one goal."""
 
-    accepted_ns: int
-    status: GoalStatus = GoalStatus.ACCEPTED
+    client: bytes = bytes(16)
+    """The GID of the client that sent it."""
+    phase: Phase = Phase.DECIDING
+    accepted_ns: int = 0
     ended_ns: int | None = None
+    is_preempted: bool = False
+    """Whether a newer goal has come, whatever has become of this one."""
+
+    @property
+    def status(self) -> GoalStatus:
+        """What clients are told."""
+        return self.phase.status
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What has followed from an event."""
+
+    record: GoalRecord
+    do: tuple[Do, ...]
+    """What the server is to do, in order."""
+    told: tuple[GoalStatus, ...]
+    """The states that clients are to be told, in order: none if nothing has changed for them."""
 
 
 class GoalBook:
@@ -108,28 +281,56 @@ class GoalBook:
         keep_most: The oldest results go when there are more.
     """
 
-    def __init__(self, keep_ns: int, show_ns: int, keep_most: int) -> None:
+    def __init__(self, rules: GoalRules, keep_ns: int, show_ns: int, keep_most: int) -> None:
+        self.rules = rules
         self._keep_ns, self._show_ns, self._keep_most = keep_ns, show_ns, keep_most
         self.goals: dict[bytes, GoalRecord] = {}
+        """Those that were accepted, in that order."""
+        self.deciding: dict[bytes, GoalRecord] = {}
 
-    def accept(self, goal_id: bytes, now_ns: int) -> GoalRecord:
-        """Enter a goal.
+    def has_room(self) -> bool:
+        """Whether one more goal may be accepted now."""
+        if self.rules.policy == "reject":
+            return self.active() == 0
+        waiting = sum(record.phase in (Phase.ANSWERING, Phase.QUEUED) for record in self.goals.values())
+        return self.rules.policy != "queue" or waiting < self.rules.queue_depth
+
+    def ask(self, goal_id: bytes, client: bytes) -> GoalRecord:
+        """Enter a goal, to be decided.
 
         Raises:
             ValueError: It is known already.
         """
-        if goal_id in self.goals:
+        if goal_id in self.goals or goal_id in self.deciding:
             raise ValueError(f"goal {goal_id.hex()} is known already")
-        self.goals[goal_id] = record = GoalRecord(now_ns)
+        self.deciding[goal_id] = record = GoalRecord(client)
         return record
 
-    def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> GoalStatus:
-        """Something happened to a goal; returns its new state. Errors as `step`."""
-        record = self.goals[goal_id]
-        record.status = step(record.status, event)
-        if record.status.is_terminal:
+    def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> Outcome:
+        """Something has happened to a goal; errors as the function `step`.
+
+        Args:
+            now_ns: For ACCEPTED the time of day, otherwise that by which results are kept.
+        """
+        record = self.goals.get(goal_id) or self.deciding[goal_id]
+        before = record.phase
+        following = step(before, event, self.rules)
+        record.phase = following.phase
+        record.is_preempted |= event is GoalEvent.NEWER and not before.is_over
+        if before is Phase.DECIDING and record.phase is not Phase.DECIDING:
+            del self.deciding[goal_id]
+            if record.phase is Phase.ANSWERING:
+                record.accepted_ns = now_ns
+                self.goals[goal_id] = record
+        if record.phase.is_over and not before.is_over:
             record.ended_ns = now_ns
-        return record.status
+        told = (*([following.through] if following.through else []), record.status)
+        return Outcome(record, following.do, told if record.status is not before.status else ())
+
+    def of_client(self, client: bytes) -> list[bytes]:
+        """The goals of a client that are not over."""
+        known = {**self.deciding, **self.goals}
+        return [goal_id for goal_id, record in known.items() if record.client == client and not record.phase.is_over]
 
     def active(self) -> int:
         """Goals that have not ended."""

@@ -15,18 +15,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from graphflow.machines.waits import (
+from graphflow.machines.wait_graph import (
     FREE,
-    Activity,
+    ActivityView,
     All,
     AnyOf,
     Call,
     Condition,
     Join,
-    Picture,
-    Queue,
+    QueueView,
     SetBy,
     Slot,
+    WaitGraph,
 )
 
 Lacking = tuple[str, ...]
@@ -42,35 +42,35 @@ class Index:
         may_guess: Whether to believe that nobody brings about what is waited for but those whom the source code shows.
     """
 
-    def __init__(self, picture: Picture, *, may_fail: bool = False, may_guess: bool = True) -> None:
-        self.picture = picture
+    def __init__(self, graph: WaitGraph, *, may_fail: bool = False, may_guess: bool = True) -> None:
+        self.graph = graph
         self.holders: dict[str, list[str]] = {}
         """Activities by the group of which they hold a slot."""
         self.serving: dict[str, str] = {}
         """Activities by the call that they answer."""
-        for activity in picture.activities.values():
+        for activity in graph.activities.values():
             for group in activity.holds:
                 self.holders.setdefault(group, []).append(activity.id)
             if activity.serves:
                 self.serving[activity.serves] = activity.id
-        self.queued = {call: queue for queue in picture.queues.values() for call in queue.calls}
+        self.queued = {call: queue for queue in graph.queues.values() for call in queue.calls}
         """Queues by the calls that wait in them."""
         self._all_of = _one_of if may_fail else _each_of
         self._may_guess = may_guess
 
     def is_full(self, group: str) -> bool:
         """Whether all slots of a group are held."""
-        known = self.picture.groups.get(group)
+        known = self.graph.groups.get(group)
         return known is not None and known.limit is not None and len(self.holders.get(group, ())) >= known.limit
 
-    def loop_of(self, activity: Activity) -> str | None:
+    def loop_of(self, activity: ActivityView) -> str | None:
         """The activity that blocks this one's event loop, if another does."""
-        blocker = self.picture.blocked.get(activity.process)
+        blocker = self.graph.blocked.get(activity.process)
         return None if blocker == activity.id else blocker
 
-    def lacking(self, activity: Activity, dead: Dead) -> Lacking:
+    def lacking(self, activity: ActivityView, dead: Dead) -> Lacking:
         """What keeps an activity from going on."""
-        blocker = self.picture.blocked.get(activity.process)
+        blocker = self.graph.blocked.get(activity.process)
         if blocker == activity.id:
             return () if self._is_met_outside(activity.wait) else (activity.id,)
         return self._of(blocker, dead) or self.lacking_for(activity.wait, dead)
@@ -87,7 +87,7 @@ class Index:
             case Join(activity=other):
                 return self._of(other, dead)
             case SetBy(queues=names, activities=activities) if self._may_guess:
-                queues = [self.picture.queues.get(name) for name in names]
+                queues = [self.graph.queues.get(name) for name in names]
                 ways = [() if queue is None else self.lacking_to_run(queue, dead) for queue in queues]
                 return _one_of([*ways, *(self._of(other, dead) for other in activities)])
             case All(of=conditions):
@@ -97,9 +97,9 @@ class Index:
             case _:
                 return ()
 
-    def lacking_to_run(self, queue: Queue, dead: Dead) -> Lacking:
+    def lacking_to_run(self, queue: QueueView, dead: Dead) -> Lacking:
         """What keeps the next run of a handler from being begun."""
-        blocker = self._of(self.picture.blocked.get(queue.process), dead)
+        blocker = self._of(self.graph.blocked.get(queue.process), dead)
         return blocker or next(((group,) for group in queue.needs if group in dead.groups), ())
 
     def _of(self, activity: str | None, dead: Dead) -> Lacking:
@@ -137,10 +137,10 @@ class Dead:
 
     def __init__(self, index: Index, activities: Iterable[str]) -> None:
         self.activities = set(activities)
-        held = Counter(group for i in self.activities for group in index.picture.activities[i].holds)
+        held = Counter(group for i in self.activities for group in index.graph.activities[i].holds)
         self.groups = {g for g, count in held.items() if count == len(index.holders[g]) and index.is_full(g)}
 
-    def lose(self, activity: Activity) -> Iterable[str]:
+    def lose(self, activity: ActivityView) -> Iterable[str]:
         """One of them goes on; what that changes for others."""
         self.activities.discard(activity.id)
         freed = self.groups.intersection(activity.holds)
@@ -148,26 +148,26 @@ class Dead:
         return activity.id, *freed
 
 
-def deadlocked(picture: Picture, before: Picture | None = None) -> set[str]:
+def deadlocked(graph: WaitGraph, before: WaitGraph | None = None) -> set[str]:
     """The activities that can never take another step, whatever happens outside of the picture.
 
     Args:
         before: A picture that was complete before this one was begun; None when this one was taken at one moment.
     """
-    index = Index(picture)
-    suspects = [a for a in picture.activities.values() if a.wait is not FREE or index.loop_of(a)]
+    index = Index(graph)
+    suspects = [a for a in graph.activities.values() if a.wait is not FREE or index.loop_of(a)]
     if before is not None:
         suspects = [a for a in suspects if _is_same(a, before.activities.get(a.id))]
     return reduced(index, (a.id for a in suspects))
 
 
-def _is_same(now: Activity, then: Activity | None) -> bool:
+def _is_same(now: ActivityView, then: ActivityView | None) -> bool:
     return then is not None and (now.wait, now.holds, now.serves) == (then.wait, then.holds, then.serves)
 
 
 def reduced(index: Index, suspects: Iterable[str]) -> set[str]:
     """Those of the suspects who cannot go on, however the others do."""
-    activities, dead = index.picture.activities, Dead(index, suspects)
+    activities, dead = index.graph.activities, Dead(index, suspects)
     watching: dict[str, set[str]] = {}
     """By what they lack: those who are to be looked at again when it changes."""
     todo = list(dead.activities)

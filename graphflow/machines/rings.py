@@ -9,7 +9,19 @@ from functools import cached_property
 from itertools import islice
 
 from graphflow.machines.reduction import Dead, Index, reduced
-from graphflow.machines.waits import FREE, Activity, All, AnyOf, Call, Condition, Join, Picture, Queue, SetBy, Slot
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Join,
+    QueueView,
+    SetBy,
+    Slot,
+    WaitGraph,
+)
 
 STARTS = 32
 """Activities of one deadlock from which a ring is looked for, at most."""
@@ -46,15 +58,15 @@ class Deadlock:
     """The failure of something alive, one of several things that are waited for, could still end it."""
 
 
-def explained(picture: Picture, dead: Iterable[str]) -> list[Deadlock]:
+def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
     """The deadlocks among dead activities, those that have lasted longest first, and who waits for each.
 
     Each is one that would stay if all the others were mended.
     """
-    index = Index(picture)
-    guess_free = Index(picture, may_guess=False)
+    index = Index(graph)
+    guess_free = Index(graph, may_guess=False)
     waits = _Waits(index, dead)
-    firm = reduced(Index(picture, may_fail=True), waits.dead.activities)
+    firm = reduced(Index(graph, may_fail=True), waits.dead.activities)
     knots = [reduced(index, knot & waits.dead.activities) for knot in _knots(waits.dead.activities, waits.after)]
     alone = set[str]().union(*knots)
     found: list[tuple[float, Deadlock]] = []
@@ -63,16 +75,16 @@ def explained(picture: Picture, dead: Iterable[str]) -> list[Deadlock]:
         ring = _Waits(guess_free, certain).ring() if certain else _Waits(index, stuck).ring()
         members = {name for name, _ in ring}
         behind = sorted(waits.behind(stuck, alone) - members)
-        victims = tuple(name for name in behind if not picture.activities[name].is_inner)
+        victims = tuple(name for name in behind if not graph.activities[name].is_inner)
         names, edges = tuple(name for name, _ in ring), tuple(edge for _, edge in ring)
-        age = max(picture.activities[name].age for name in members)
+        age = max(graph.activities[name].age for name in members)
         found.append((age, Deadlock(names, edges, victims, not certain, not members <= firm)))
     return [deadlock for _, deadlock in sorted(found, key=lambda pair: (-pair[0], pair[1].ring))]
 
 
-def is_ring(names: Sequence[str], picture: Picture, dead: Iterable[str]) -> bool:
+def is_ring(names: Sequence[str], graph: WaitGraph, dead: Iterable[str]) -> bool:
     """Whether each of these waits for the next, and the last for the first, for whatever reason; and all are dead."""
-    waits = _Waits(Index(picture), dead)
+    waits = _Waits(Index(graph), dead)
     return all(waits.leads(here, there) for here, there in zip(names, [*names[1:], names[0]], strict=True))
 
 
@@ -84,7 +96,7 @@ class _Waits:
 
     def __init__(self, index: Index, dead: Iterable[str]) -> None:
         self._index, self.dead = index, Dead(index, dead)
-        self._activities = index.picture.activities
+        self._activities = index.graph.activities
         self._edges = {name: list(self._of(self._activities[name])) for name in self.dead.activities}
 
     @cached_property
@@ -146,8 +158,8 @@ class _Waits:
             ring.append(came[ring[-1][0] if ring else start])
         return ring[::-1]
 
-    def _of(self, activity: Activity) -> Iterator[Edge]:
-        blocker = self._index.picture.blocked.get(activity.process)
+    def _of(self, activity: ActivityView) -> Iterator[Edge]:
+        blocker = self._index.graph.blocked.get(activity.process)
         if blocker in self.dead.activities and (blocker != activity.id or activity.wait is not FREE):
             yield Edge(blocker, activity.wait, loop=True)
         yield from self._of_condition(activity.wait)
@@ -169,14 +181,14 @@ class _Waits:
                 yield Edge(other, condition)
             case SetBy(queues=queues, activities=activities):
                 for name in queues:
-                    yield from self._of_queue(index.picture.queues[name], condition)
+                    yield from self._of_queue(index.graph.queues[name], condition)
                 yield from (Edge(other, condition) for other in activities)
             case All(of=conditions) | AnyOf(of=conditions):
                 for inner in conditions:
                     yield from self._of_condition(inner)
 
-    def _of_queue(self, queue: Queue, via: Condition) -> Iterator[Edge]:
-        blocker = self._index.picture.blocked.get(queue.process)
+    def _of_queue(self, queue: QueueView, via: Condition) -> Iterator[Edge]:
+        blocker = self._index.graph.blocked.get(queue.process)
         if blocker in self.dead.activities:
             yield Edge(blocker, via, queue.id, loop=True)
         for group in queue.needs:

@@ -104,23 +104,26 @@ class Service(Generic[Request, Response]):
     Event: ClassVar[type[Message]]
 
 
-class Handle(ABC, Generic[Goal, Result, Feedback]):
+class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
     """A goal as the handler of an action has it.
 
     Attributes:
         request: What the client asked for.
         partial: The result so far: what the client gets if the goal is cancelled or aborted.
-        is_preempted: Whether it is to end because a newer goal has come.
     """
 
     request: Goal
     partial: Result
-    is_preempted: bool
 
     @property
     @abstractmethod
     def goal_id(self) -> bytes:
         """16 bytes, made by the client."""
+
+    @property
+    @abstractmethod
+    def is_preempted(self) -> bool:
+        """Whether it is to end because a newer goal has come."""
 
     @property
     @abstractmethod
@@ -133,6 +136,6 @@ class Handle(ABC, Generic[Goal, Result, Feedback]):
 
 
 class Action(Generic[Goal, Result, Feedback]):
-    """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes; handlers take a `Handle`."""
+    """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes, `Handle` its `ServerGoalHandle`."""
 
     NAME: ClassVar[str]

@@ -75,7 +75,7 @@ def action_class(action: schema.Action, classes: Classes) -> type[base.Action[An
         {
             "__module__": f"graphflow.msgs.{package}.{kind}",
             "NAME": action.name,
-            "Handle": base.Handle,
+            "Handle": base.ServerGoalHandle,
             **{word: classes(part.name) for word, part in parts.items()},
         },
     )

@@ -91,7 +91,7 @@ def _classes(full_name: str) -> list[str]:
             parts = (action.goal, action.result, action.feedback, action.feedback_message)
             carriers = [text for service in action.services for text in _service_messages(service)]
             holder = _holder(name, "Action", ("Goal", "Result", "Feedback"))
-            handle = "    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]"
+            handle = "    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]"
             return [*map(_message, parts), *carriers, f"{holder}\n{handle}"]
 
 

@@ -8,7 +8,7 @@ from asyncio import CancelledError, Future
 from collections import deque
 from collections.abc import AsyncGenerator, AsyncIterator, Coroutine
 from contextlib import asynccontextmanager, suppress
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 
 from graphflow.errors import (
     CallError,
@@ -24,18 +24,17 @@ from graphflow.errors import (
     ServerLost,
     ServiceUnavailable,
 )
+from graphflow.executor.ledger import PendingGoal
 from graphflow.interface import CALL_TIMEOUT
 from graphflow.machines.goal import CancelCode, GoalStatus
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.names import did_you_mean
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
-from graphflow.runtime.services import DISCOVERY_GRACE, ServiceClient
+from graphflow.runtime.host import Host, Part
+from graphflow.runtime.service_client import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.topics import TopicSubscription
 from graphflow.times import to_ns
-
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
 
 CANCEL_TIMEOUT = 2.0
 """Seconds that leaving a goal's block waits for the goal's end."""
@@ -47,7 +46,7 @@ FEEDBACK_KEPT = 100
 """Feedback messages that wait for a slow reader; the oldest go."""
 
 
-class ClientGoal(Generic[Goal, Result, Feedback]):
+class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
     """A goal at its client."""
 
     def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
@@ -60,7 +59,7 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         self.is_asked_again = False
         self.dropped = 0
         """Feedback messages that nobody read in time."""
-        loop = client.node.context.loop
+        loop = client.host.context.loop
         self.ended: Future[Result] = loop.create_future()
         self._client = client
         self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
@@ -68,7 +67,7 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
         """What came while nobody iterated."""
         self.action = client.name
-        self.began_ns = client.node.context.clock.monotonic_ns()
+        self.began_ns = client.host.context.clock.monotonic_ns()
 
     def __repr__(self) -> str:
         return f"<goal {self.goal_id.hex()[:8]} to {self._client.name}: {self.status.name}>"
@@ -80,7 +79,7 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
 
     async def feedback(self) -> AsyncIterator[Feedback]:
         """Every feedback, until the goal ends; the first iteration begins with what has come before it."""
-        waits, loop = self._client.node.context.waits, self._client.node.context.loop
+        ledger, loop = self._client.host.context.ledger, self._client.host.context.loop
         queue: deque[Feedback] = deque(self._unread, FEEDBACK_KEPT)
         self._unread.clear()
         reader: tuple[deque[Feedback], list[Future[None]]] = (queue, [])
@@ -92,11 +91,8 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
                 if self.done:
                     return
                 reader[1][:] = [news := loop.create_future()]
-                waits.goals[news] = self
-                try:
+                with ledger.goal(news, self):
                     await news
-                finally:
-                    del waits.goals[news]
         finally:
             self._readers.remove(reader)
 
@@ -113,15 +109,10 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
             TimeoutError: It has not ended in time, and goes on.
         """
         if timeout is not None:
-            async with self._client.node.clock.timeout(timeout):
+            async with self._client.host.clock.timeout(timeout):
                 return await self.result()
-        goals = self._client.node.context.waits.goals
-        ended = asyncio.shield(self.ended)
-        goals[ended] = self
-        try:
+        with self._client.host.context.ledger.goal(ended := asyncio.shield(self.ended), self):
             return await ended
-        finally:
-            del goals[ended]
 
     async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
         """Ask the server to cancel it; whether it agrees. The goal ends a little later, or not as cancelled at all.
@@ -144,7 +135,6 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
         if self.done:
             return
         self.status = status
-        self._client.node.context.waits.goals.pop(self.ended, None)
         if not self.ended.done():
             if error is None:
                 self.ended.set_result(result)
@@ -160,13 +150,13 @@ class ClientGoal(Generic[Goal, Result, Feedback]):
                     news.set_result(None)
 
 
-class GoalClient(Generic[Goal, Result, Feedback]):
+class GoalClient(Part, Generic[Goal, Result, Feedback]):
     """A client of an action, at work."""
 
-    def __init__(self, node: Node, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
-        self.node, self.type, self.name = node, type_, name
+    def __init__(self, host: Host, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
+        self.host, self.type, self.name = host, type_, name
         self._goal_class: type[Any] = registry.interface_class(f"{type_.NAME}_Goal")
-        self._goals: dict[bytes, ClientGoal[Goal, Result, Feedback]] = {}
+        self._goals: dict[bytes, ClientGoalHandle[Goal, Result, Feedback]] = {}
         self._followers: set[asyncio.Task[None]] = set()
         self._send: ServiceClient[Any, Any] = self._service("send_goal", f"{type_.NAME}_SendGoal")
         self._cancel: ServiceClient[Any, Any] = self._service("cancel_goal", "action_msgs/srv/CancelGoal")
@@ -174,16 +164,19 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         feedback: Any = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         status: Any = registry.interface_class("action_msgs/msg/GoalStatusArray")
         at = f"{name}/_action"
-        self._feedback = TopicSubscription[Any](node, feedback, f"{at}/feedback", Qos(), self._heard)
-        self._status = TopicSubscription[Any](node, status, f"{at}/status", ACTION_STATUS, self._told)
-        self.endpoints = (self._feedback, self._status, self._get, self._cancel, self._send)
+        self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._heard)
+        self._status = TopicSubscription[Any](host, status, f"{at}/status", ACTION_STATUS, self._told)
 
     def __repr__(self) -> str:
         return f"<GoalClient {self.name} [{self.type.NAME}]>"
 
     def _service(self, part: str, type_name: str) -> ServiceClient[Any, Any]:
         type_: Any = registry.interface_class(type_name)
-        return ServiceClient(self.node, type_, f"{self.name}/_action/{part}", SERVICES)
+        return ServiceClient(self.host, type_, f"{self.name}/_action/{part}", SERVICES)
+
+    @property
+    def endpoints(self) -> tuple[TopicSubscription[Any] | ServiceClient[Any, Any], ...]:
+        return (self._feedback, self._status, self._get, self._cancel, self._send)
 
     def open(self) -> None:
         for endpoint in self.endpoints:
@@ -197,7 +190,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             goal.end(GoalStatus.LOST, None, GoalLost(f"the client of {self.name} was closed before the goal ended"))
         for endpoint in reversed(self.endpoints):
             endpoint.close()
-        self.node.forget(self)
+        self.host.forget(self)
 
     def server_is_ready(self) -> bool:
         """Whether an action server of this name and type is in the graph, all five parts of it."""
@@ -216,7 +209,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
         if self.server_is_ready():
             return
         try:
-            async with self.node.clock.timeout(timeout if timeout is not None else 1e9):
+            async with self.host.clock.timeout(timeout if timeout is not None else 1e9):
                 for service in (self._send, self._cancel, self._get):
                     await service.wait_ready()
                 for topic in (self._feedback, self._status):
@@ -225,7 +218,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             raise ServiceUnavailable(self._nobody()) from None
 
     def _nobody(self) -> str:
-        actions = self.node.context.cache.actions()
+        actions = self.host.context.cache.actions()
         offered = [type_ for type_ in actions.get(self.name, ()) if type_ != self.type.NAME]
         if offered:
             return f"action {self.name} is a {offered[0]}, not a {self.type.NAME}"
@@ -235,7 +228,7 @@ class GoalClient(Generic[Goal, Result, Feedback]):
     @asynccontextmanager
     async def send(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
-    ) -> AsyncGenerator[ClientGoal[Goal, Result, Feedback], None]:
+    ) -> AsyncGenerator[ClientGoalHandle[Goal, Result, Feedback], None]:
         """Send a goal for the length of a block: leaving it before the goal has ended cancels the goal.
 
             async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
@@ -261,11 +254,11 @@ class GoalClient(Generic[Goal, Result, Feedback]):
 
     async def send_goal(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
-    ) -> ClientGoal[Goal, Result, Feedback]:
+    ) -> ClientGoalHandle[Goal, Result, Feedback]:
         """Send a goal that goes on whatever becomes of the caller. Arguments and errors as `send`."""
         if goal.__class__ is not self._goal_class:
             raise EncodeError(f"{self.name} takes {self._goal_class.__qualname__}, not {goal!r}")
-        sent = ClientGoal(self, goal)
+        sent = ClientGoalHandle(self, goal)
         self._goals[sent.goal_id] = sent  # before it is sent: what is told of it may come before the answer
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         try:
@@ -288,78 +281,90 @@ class GoalClient(Generic[Goal, Result, Feedback]):
             raise GoalRejected(f"{self.name} has rejected the goal")
         if sent.status is GoalStatus.UNKNOWN:
             sent.status = GoalStatus.ACCEPTED
-        self.node.context.waits.goals[sent.ended] = sent
         self._in_background(self._follow(sent))
         return sent
 
-    async def cancel(self, goal: ClientGoal[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT) -> bool:
-        """As `ClientGoal.cancel`."""
+    async def cancel(
+        self, goal: ClientGoalHandle[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT
+    ) -> bool:
+        """As `ClientGoalHandle.cancel`."""
         answer = await self._cancel.call(self._cancel_request(goal), timeout=timeout)
         granted = [bytes(info.goal_id.uuid) for info in answer.goals_canceling]
         # rclpy's servers answer NONE with an empty list when they refuse.
         return answer.return_code == CancelCode.NONE and goal.goal_id in granted
 
-    def _cancel_request(self, goal: ClientGoal[Goal, Result, Feedback]) -> Any:
+    def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
         return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
 
-    async def _leave(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         """Cancel a goal whose block is left, and wait a little for its end, also if the leaving itself is cancelled."""
         await _seen_through(self._in_background(self._cancel_and_wait(goal)))
 
-    async def _cancel_and_wait(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _cancel_and_wait(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         try:
-            async with self.node.clock.timeout(CANCEL_TIMEOUT):
+            async with self.host.clock.timeout(CANCEL_TIMEOUT):
                 answer = await self._cancel.call(self._cancel_request(goal), timeout=None)
                 if answer.return_code == CancelCode.REJECTED:
-                    self.node.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
+                    self.host.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
                     return
                 with suppress(GoalError):  # its end is all that is waited for
                     await asyncio.shield(goal.ended)
         except TimeoutError:
-            self.node.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
+            self.host.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
         except (CallError, ClosedError) as error:
             if not goal.status.is_terminal:  # its end was told, and its server has gone since
-                self.node.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
+                self.host.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
 
-    async def _withdraw(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _withdraw(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         with suppress(CallError, ClosedError):  # nobody waits for what becomes of it
             await self._cancel.call(self._cancel_request(goal), timeout=CANCEL_TIMEOUT)
 
-    async def _follow(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _follow(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         """Wait for a goal's end."""
-        clock = self.node.context.clock
-        request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
-        patience = RESULT_PATIENCE
+        context = self.host.context
         try:
-            while True:
-                try:
-                    answer = await self._get.call(request, timeout=patience)
-                    break
-                except ServerBusy:
-                    await clock.sleep(RESULT_PATIENCE)
-                except CallTimeout:  # it takes long, or the network has lost the request or the answer
-                    patience = min(2 * patience, RESULT_LONGEST)
-                except ServerLost:
-                    # The connection may have been lost and not the server, which then still knows the goal.
-                    await self._get.wait_ready(LOST_GRACE)
-            self._end(goal, GoalStatus(answer.status), answer.result)
+            with context.ledger.goal(goal.ended, goal):
+                answer, reason = await self._result_of(goal)
+            self._end(goal, GoalStatus(answer.status), answer.result, reason)
         except (CallError, ClosedError, ValueError) as error:
             known = f"last known as {goal.status.name}"
             if isinstance(error, (ServerLost, ServiceUnavailable, ClosedError)):
                 lost = f"{self.name}: the server has gone, and with it the goal, {known}"
             else:
-                lost = f"{self.name}: the goal's result is not to be had, {known}: {error}"
+                lost = f"{self.name}: the goal's result cannot be had, {known}: {error}"
             goal.end(GoalStatus.LOST, None, GoalLost(lost))
         finally:
+            clock = context.clock
             clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
 
-    def _forget(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> tuple[Any, str]:
+        """The answer that tells a goal's end, however long that takes, and the reason that comes with it."""
+        request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+        patience = RESULT_PATIENCE
+        while True:
+            try:
+                return await self._get.call_noted(request, timeout=patience)
+            except ServerBusy:
+                await self.host.context.clock.sleep(RESULT_PATIENCE)
+            except CallTimeout:  # it takes long, or the network has lost the request or the answer
+                patience = min(2 * patience, RESULT_LONGEST)
+            except ServerLost:
+                # The connection may have been lost and not the server, which then still knows the goal.
+                await self._get.wait_ready(LOST_GRACE)
+
+    def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         self._goals.pop(goal.goal_id, None)
 
-    def _end(self, goal: ClientGoal[Goal, Result, Feedback], status: GoalStatus, result: Any) -> None:
+    def _end(
+        self, goal: ClientGoalHandle[Goal, Result, Feedback], status: GoalStatus, result: Any, reason: str
+    ) -> None:
         error: GoalError | None = None
+        if goal.done:
+            return
         if status is GoalStatus.ABORTED:
-            error = GoalAborted(f"{self.name} has aborted the goal", result)
+            error = GoalAborted(f"{self.name} has aborted the goal{f': {reason}' if reason else ''}", result)
+            if reason:
+                self.host.log.warning("%s: %r was aborted: %s", self.name, goal, reason)
         elif status is GoalStatus.CANCELED:
             error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
         elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name knows nothing of it
@@ -378,21 +383,22 @@ class GoalClient(Generic[Goal, Result, Feedback]):
                 continue
             if not GoalStatus(entry.status).is_terminal:
                 goal.status = max(goal.status, GoalStatus(entry.status))  # what was told before may come after
-            elif not goal.is_asked_again and self.node.is_running:
+            elif not goal.is_asked_again and self.host.is_running:
                 # The end comes with the result, which may have been lost.
                 goal.is_asked_again = True
                 self._in_background(self._ask_again(goal))
 
-    async def _ask_again(self, goal: ClientGoal[Goal, Result, Feedback]) -> None:
+    async def _ask_again(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         """Ask for the result of a goal that has ended, if it does not come by itself."""
-        await self.node.clock.sleep(LOST_GRACE)
+        await self.host.clock.sleep(LOST_GRACE)
         if not goal.done:
             with suppress(CallError, ClosedError):  # whoever follows the goal asks on
-                answer = await self._get.call(self._get._request(goal_id={"uuid": list(goal.goal_id)}))
-                self._end(goal, GoalStatus(answer.status), answer.result)
+                request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
+                answer, reason = await self._get.call_noted(request)
+                self._end(goal, GoalStatus(answer.status), answer.result, reason)
 
     def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
-        task = self.node.context.loop.create_task(work, name=f"{self.node.full_name}: {self.name}")
+        task = self.host.context.loop.create_task(work, name=f"{self.host.full_name}: {self.name}")
         self._followers.add(task)
         task.add_done_callback(self._followers.discard)
         return task

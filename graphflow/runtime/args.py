@@ -9,15 +9,13 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
 from graphflow.graph import params_file
 from graphflow.graph.source import parse_value
+from graphflow.interface import Interface
 from graphflow.names import Remap, Resolver, did_you_mean
-
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
 
 logger = logging.getLogger("graphflow")
 
@@ -36,13 +34,12 @@ class RosArgs:
     rest: list[str] = field(default_factory=list)
     """Words that are not for ROS."""
 
-    def params_for(self, cls: type[Node]) -> dict[str, tuple[Any, str]]:
-        """Values for a node of the class, by parameter, each with where it was written.
+    def params_for(self, interface: Interface) -> dict[str, tuple[Any, str]]:
+        """Values for a node of a class, by parameter, each with where it was written.
 
         Raises:
             GraphFileError: A parameter file is wrong, or has nothing for this node.
         """
-        interface = cls.interface()
         full_name = Resolver(interface.node_name, "/", self.remaps).full_name
         found: dict[str, tuple[Any, str]] = {}
         for file in self.params_files:

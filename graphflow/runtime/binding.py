@@ -5,17 +5,42 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from graphflow.errors import ParameterError
+from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import COMMON_PARAMETERS
-from graphflow.runtime import declare, declared
-from graphflow.runtime.params import Change
-from graphflow.runtime.scheduler import Runner
+from graphflow.runtime import declared
+from graphflow.runtime.declare import ActionClient, Client, Held, Param, Publisher, Subscription
+from graphflow.runtime.handlers import Handler, Rate
+from graphflow.runtime.host import Host
+from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.timer import Timer
 
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
+
+class Creator(Protocol):
+    """The methods of a node that make what is declared."""
+
+    @property
+    def create_publisher(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_subscription(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_service(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_client(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_action_server(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_action_client(self) -> Callable[..., Any]: ...
+
+    @property
+    def create_timer(self) -> Callable[..., Any]: ...
 
 
 class Binding:
@@ -25,45 +50,62 @@ class Binding:
         held: What the node holds, by attribute.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Creator, host: Host, parameters: Parameters) -> None:
         self.held: dict[str, Any] = {}
-        self._node = node
+        self._node, self._host, self._parameters = node, host, parameters
         self._class = type(node)
-        self._timers: list[tuple[declare.Rate, Timer]] = []
+        self._timers: list[tuple[Rate, Timer]] = []
         self._hooks = declared.param_hooks(self._class)
         self._followers: dict[str, _Follower] = {}
 
     def bind_parameters(self) -> None:
         """Declare the parameters: names and periods of everything else may come from them."""
         for parameter in COMMON_PARAMETERS.values():
-            self._node.parameters.declare(parameter)
+            self._parameters.declare(parameter)
         for attribute, item in declared.held(self._class).items():
-            if isinstance(item, declare.Param):
-                self.held[attribute] = item.bind(self._node)
-        self._node.parameters.check(self._check)
-        self._node.parameters.observe(self._changed)
+            if isinstance(item, Param):
+                self.held[attribute] = self._parameters.declare(item.parameter)
+        self._parameters.check(self._check)
+        self._parameters.observe(self._changed)
 
     def bind(self) -> None:
         """Make endpoints, handlers and timers."""
         for attribute, item in declared.held(self._class).items():
-            if not isinstance(item, declare.Param):
-                self.held[attribute] = item.bind(self._node)
+            if not isinstance(item, Param):
+                self.held[attribute] = self._made(item)
         for attribute, handler in declared.handlers(self._class).items():
             self._bind_handler(getattr(self._node, attribute), handler)
 
-    def _bind_handler(self, method: Callable[..., Any], handler: declare.Handler) -> None:
+    def _made(self, item: Held) -> Any:
+        node = self._node
+        match item:
+            case Publisher():
+                return node.create_publisher(item.type, item.name, item.qos, on_event=self._method(item.on_event))
+            case Subscription():
+                options = {"ignore_local": item.ignore_local, "on_event": self._method(item.on_event)}
+                return node.create_subscription(item.type, item.name, None, item.qos, **options)
+            case Client():
+                return node.create_client(item.type, item.name, introspection=item.introspection, group=item.group)
+            case ActionClient():
+                return node.create_action_client(item.type, item.name)
+        raise TypeError(f"{item!r} cannot be made")
+
+    def _method(self, fn: Any) -> Any:
+        """A function of the class body, as a method of the node; a child class may have another of the name."""
+        return getattr(self._node, fn.__name__) if inspect.isfunction(fn) else fn
+
+    def _bind_handler(self, method: Callable[..., Any], handler: Handler) -> None:
         node = self._node
         options: dict[str, Any] = {"group": handler.group, "thread": handler.thread}
         if handler.kind == "subscription":
             options |= {"takes_info": handler.takes_info, "ignore_local": handler.ignore_local}
-            options |= {"on_event": node.bound(handler.on_event), "on_error": handler.on_error}
+            options |= {"on_event": self._method(handler.on_event), "on_error": handler.on_error}
             node.create_subscription(handler.type, handler.name, method, handler.qos, **options)
         elif handler.kind == "service":
             node.create_service(handler.type, handler.name, method, introspection=handler.introspection, **options)
         elif handler.action is not None:
-            options |= {"accept": node.bound(handler.action.accept), "policy": handler.action.policy}
-            cancellable = handler.action.cancellable
-            options["cancellable"] = cancellable if isinstance(cancellable, bool) else node.bound(cancellable)
+            options |= {"accept": self._method(handler.action.accept), "policy": handler.action.policy}
+            options["cancellable"] = self._method(handler.action.cancellable)
             options["on_client_loss"] = handler.action.on_client_loss
             options["cleanup_timeout"] = handler.action.cleanup_timeout
             node.create_action_server(handler.type, handler.name, method, **options)
@@ -73,8 +115,8 @@ class Binding:
             timer = node.create_timer(period, method, **options)
             self._timers.append((handler.rate, timer))
 
-    def _period_ns(self, rate: declare.Rate, values: Mapping[str, Any]) -> int:
-        get = self._node.parameters.get
+    def _period_ns(self, rate: Rate, values: Mapping[str, Any]) -> int:
+        get = self._parameters.get
         used = {name: values[name] if name in values else get(name) for name in rate.parameters()}
         try:
             return rate.period_ns(used)
@@ -95,18 +137,18 @@ class Binding:
                 except ValueError as error:
                     raise ParameterError(f"parameter {name!r} = {values[name]!r}: {error}") from None
 
-    def _changed(self, changes: Mapping[str, Change]) -> None:
+    def _changed(self, changes: Mapping[str, ParameterChange]) -> None:
         for rate, timer in self._timers:
             if changes.keys() & rate.parameters():
                 timer.period = self._period_ns(rate, {}) / 1e9
         for attribute, hook in self._hooks.items():
             change = changes.get(hook.param.parameter.name)
-            if hook.kind == "on_change" and change is not None and self._node.is_running:
+            if hook.kind == "on_change" and change is not None and self._host.is_running:
                 if attribute not in self._followers:
-                    self._followers[attribute] = _Follower(self._node, getattr(self._node, attribute))
+                    self._followers[attribute] = _Follower(self._host, getattr(self._node, attribute))
                 self._followers[attribute].follow(change)
 
-    def stop(self) -> list[Runner]:
+    def runners(self) -> list[Runner]:
         """The runners of methods that follow parameters, for the node to end."""
         return [follower.runner for follower in self._followers.values()]
 
@@ -114,22 +156,23 @@ class Binding:
 class _Follower:
     """Calls a method with the changes of a parameter, one after the other."""
 
-    def __init__(self, node: Node, method: Callable[[Any, Any], Any]) -> None:
-        self._node, self._method = node, method
-        self._changes: deque[Change] = deque()
-        self.runner = node.runner(method.__name__, None, self._changes, self._invoke, self._finished)
+    def __init__(self, host: Host, method: Callable[[Any, Any], Any]) -> None:
+        self._host, self._method = host, method
+        self._changes: deque[ParameterChange] = deque()
+        spec = RunnerSpec(method.__name__, self._invoke, self._finished, host.full_name)
+        self.runner = host.runner(spec, self._changes)
 
-    def follow(self, change: Change) -> None:
+    def follow(self, change: ParameterChange) -> None:
         self._changes.append(change)
         if inspect.iscoroutinefunction(self._method):
             # Its first step must not run inside whoever set the parameter, which may be a handler itself.
-            self._node.context.loop.call_soon(self.runner.wake)
+            self._host.context.loop.call_soon(self.runner.wake)
         else:
             self.runner.wake()
 
-    def _invoke(self, change: Change) -> Any:
+    def _invoke(self, change: ParameterChange) -> Any:
         return self._method(change.old, change.new)
 
-    def _finished(self, change: Change, result: Any, error: BaseException | None) -> None:
+    def _finished(self, change: ParameterChange, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self._node.handler_failed(self._method.__name__, error)
+            self._host.handler_failed(self._method.__name__, error)

@@ -10,15 +10,16 @@ from collections.abc import Callable
 from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from graphflow.deadlock.inspection import Inspection
+from graphflow.deadlock.protocols import Subject
+from graphflow.deadlock.search import Search
 from graphflow.domain import domain_id
+from graphflow.executor.clock import Clock, WallClock
+from graphflow.executor.ledger import Ledger
+from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
-from graphflow.machines.cache import Change, GraphCache
-from graphflow.runtime.clock import Clock, WallClock
-from graphflow.runtime.detector import Detector
+from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.direct import Switchboard
-from graphflow.runtime.inspection import Inspection
-from graphflow.runtime.waits import Waits
-from graphflow.runtime.watchdog import Watchdog
 from graphflow.transport.base import Closable, Session
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
@@ -61,19 +62,20 @@ class Context:
         """Which distribution's definitions this process offers."""
         self.cache = GraphCache()
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
-        self.switchboard = Switchboard(self)
+        self.switchboard = Switchboard(session, domain, self.loop)
         """Calls to and from other graphflow processes."""
         self.call_timeout = call_timeout
-        self.waits = Waits(self)
+        self.nodes: list[Subject] = []
+        """Those that run here."""
+        self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
-        self.detector = Detector(self, deadlock)
-        self.watchdog = Watchdog(self, self.detector.probe_blocked)
-        self.inspection = Inspection(self)
+        self.search = Search(self, deadlock)
+        self._inspection = Inspection(self, self.search)
         self._ids = itertools.count()
         self._takeover: Takeover | None = None
         self._link: Link | None = None
-        self._listeners: list[Callable[[Change], None]] = []
-        self._by_name: dict[str, list[Callable[[Change], None]]] = {}
+        self._listeners: list[Callable[[GraphChange], None]] = []
+        self._by_name: dict[str, list[Callable[[GraphChange], None]]] = {}
         self._advised = False
         self._declared: list[Closable] = [session.watch(watch_key(domain), self._token)]
 
@@ -114,7 +116,7 @@ class Context:
             raise
         context = cls(session, domain=domain, deadlock=deadlock, call_timeout=call_timeout)
         context._takeover = takeover
-        context.watchdog.start()
+        context.search.watchdog.start()
         takeover.guard(session)
         context._declared.append(session.announce(process.token(domain, session.zid)))
         if link and not checked:
@@ -144,6 +146,10 @@ class Context:
         if self._link is not None:
             await self._link.wait_ready(LINK_GRACE)
 
+    def arrived(self) -> list[tuple[Runner, bytes, int]]:
+        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+        return self.switchboard.arrived()
+
     def next_id(self) -> int:
         """A number no other node or endpoint of this process has."""
         return next(self._ids)
@@ -168,33 +174,18 @@ class Context:
                 self.loop.call_soon_threadsafe(_settle, future, result, error)
 
         thread = threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True)
-        self.waits.threads[future] = thread
-        thread.start()
-        cancelled: asyncio.CancelledError | None = None
-        try:
-            while stays and not future.done():
-                try:
-                    await asyncio.shield(future)
-                except asyncio.CancelledError as error:
-                    if future.cancelled():
-                        raise
-                    cancelled = error
-                except GeneratorExit:
-                    raise
-                except BaseException:  # the thread's own, which is raised below
-                    break
-            if cancelled is not None and future.exception() is None:
-                raise cancelled
+        with self.ledger.thread_work(future, thread):
+            thread.start()
+            if stays:
+                await _seen_through(future)
             return await future
-        finally:
-            del self.waits.threads[future]
 
-    def on_change(self, listener: Callable[[Change], None]) -> Callable[[], None]:
+    def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
         """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
-    def on_name(self, name: str, listener: Callable[[Change], None]) -> Callable[[], None]:
+    def on_name(self, name: str, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
         """Have `listener` called for every endpoint called `name` that comes or goes; returns what ends that."""
         listeners = self._by_name.setdefault(name, [])
         listeners.append(listener)
@@ -212,7 +203,7 @@ class Context:
             return
         future = self.loop.create_future()
 
-        def look(_: Change) -> None:
+        def look(_: GraphChange) -> None:
             if future.done():
                 return
             try:
@@ -243,14 +234,31 @@ class Context:
 
     async def close(self) -> None:
         """Leave the network. Nodes are to be stopped before."""
-        self.watchdog.close()
-        self.detector.close()
-        self.inspection.close()
+        self.search.close()
+        self._inspection.close()
         if self._link is not None:
             await asyncio.to_thread(self._link.close)
         if self._takeover is not None:
             await self._takeover.close()
         await self.session.close()
+
+
+async def _seen_through(future: asyncio.Future[Any]) -> None:
+    """Wait for a thread to its end, also if the waiting is cancelled meanwhile; then raise the cancellation."""
+    cancelled: asyncio.CancelledError | None = None
+    while not future.done():
+        try:
+            await asyncio.shield(future)
+        except asyncio.CancelledError as error:
+            if future.cancelled():
+                raise
+            cancelled = error
+        except GeneratorExit:
+            raise
+        except BaseException:  # the thread's own, which the caller raises
+            return
+    if cancelled is not None and future.exception() is None:
+        raise cancelled
 
 
 def _settle(future: asyncio.Future[Any], result: Any, error: BaseException | None) -> None:

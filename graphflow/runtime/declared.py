@@ -5,28 +5,32 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any, ClassVar, Protocol
 
-from graphflow import interface
 from graphflow.errors import DeclarationError, Place
-from graphflow.interface import COMMON_PARAMETERS, Endpoint, GroupInfo, Interface, Parameter
+from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, GroupInfo, HandlerInfo, Interface, Parameter
 from graphflow.runtime.declare import (
     HOOK_MARK,
-    MARK,
     ActionClient,
     Client,
     Group,
-    Handler,
     Held,
     Param,
     ParamHook,
     Publisher,
     Subscription,
 )
+from graphflow.runtime.handlers import MARK, Handler
 
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
+
+class NodeClass(Protocol):
+    """What a node class says of itself by plain attributes."""
+
+    node_name: ClassVar[str]
+    dynamic_names: ClassVar[bool | Sequence[str]]
+    default_group: ClassVar[Group | None]
 
 
 def snake_case(class_name: str) -> str:
@@ -34,7 +38,7 @@ def snake_case(class_name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
 
 
-def default_name(cls: type[Node]) -> str:
+def default_name(cls: type[NodeClass]) -> str:
     """The name of a node of the class that is given none."""
     return cls.node_name or snake_case(cls.__name__)
 
@@ -77,8 +81,18 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
     return found
 
 
-def check_attributes(cls: type, taken: frozenset[str]) -> None:
-    """See that no declaration hides something that every node has, nor a method that does not call on it.
+def hooks(cls: type) -> frozenset[str]:
+    """The methods that are called outside of any handler: by parameters, events, and to decide about goals."""
+    found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
+    called: list[Any] = [getattr(declared, "on_event", None) for declared in held(cls).values()]
+    for handler in handlers(cls).values():
+        called += [handler.on_event]
+        called += [handler.action.accept, handler.action.cancellable] if handler.action else []
+    return frozenset(found | {hook.__name__ for hook in called if inspect.isfunction(hook)})
+
+
+def check_attributes(cls: type, taken: AbstractSet[str]) -> None:
+    """See that no declaration hides something that users call on a node, nor a method that does not call on it.
 
     Raises:
         DeclarationError: One does.
@@ -88,18 +102,14 @@ def check_attributes(cls: type, taken: frozenset[str]) -> None:
         if inspect.isfunction(value) and not attribute.startswith("__") and "super" not in value.__code__.co_names:
             found.setdefault(attribute, value)
     for attribute, declared in found.items():
-        if attribute in taken and attribute not in _REDEFINED:
+        if attribute in taken:
             hint = f", as in my_{attribute} = Param(..., name={attribute!r})" if isinstance(declared, Param) else ""
-            text = f"{attribute!r} is something every node has; call the attribute otherwise{hint}"
+            text = f"every node has {attribute!r}; choose another name{hint}"
             if inspect.isfunction(declared):
                 place = f"{Place(declared.__code__.co_filename, declared.__code__.co_firstlineno)}: "
             else:
                 place = f"{declared.place}: " if hasattr(declared, "place") else f"{cls.__name__}: "
             raise DeclarationError(f"{place}{text}")
-
-
-_REDEFINED = {"default_group", "on_start", "on_shutdown"}
-"""What subclasses are to say anew."""
 
 
 def groups(cls: type) -> dict[str, Group]:
@@ -123,7 +133,7 @@ def class_line() -> int:
     return frame.f_lineno
 
 
-def interface_of(cls: type[Node]) -> Interface:
+def interface_of(cls: type[NodeClass]) -> Interface:
     """Everything a node class declares, as data.
 
     Raises:
@@ -134,7 +144,7 @@ def interface_of(cls: type[Node]) -> Interface:
         place = Place(inspect.getsourcefile(cls) or "", line or inspect.getsourcelines(cls)[1])
     except (OSError, TypeError):
         place = Place(getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__module__)
-    endpoints: list[Endpoint] = []
+    endpoints: list[EndpointInfo] = []
     params: dict[str, Parameter] = {}
     kinds = {
         Publisher: "publisher",
@@ -156,7 +166,7 @@ def interface_of(cls: type[Node]) -> Interface:
             is_topic = isinstance(declared, (Publisher, Subscription))
             type_name = declared.type.SCHEMA.name if is_topic else declared.type.NAME  # type: ignore[union-attr]
             kind: Any = kinds[type(declared)]
-            endpoints.append(Endpoint(kind, declared.name, type_name, attribute, declared.place))
+            endpoints.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place))
     methods = handlers(cls)
     for attribute, handler in methods.items():
         for name in handler.rate.parameters() if handler.rate is not None else ():
@@ -166,7 +176,7 @@ def interface_of(cls: type[Node]) -> Interface:
         if handler.kind in ("subscription", "service", "action"):
             type_name = handler.type.SCHEMA.name if handler.kind == "subscription" else handler.type.NAME
             kind = handler.kind
-            endpoints.append(Endpoint(kind, handler.name, type_name, attribute, handler.place))
+            endpoints.append(EndpointInfo(kind, handler.name, type_name, attribute, handler.place))
     dynamic = cls.dynamic_names
     return Interface(
         class_path=f"{cls.__module__}:{cls.__qualname__}",
@@ -181,11 +191,11 @@ def interface_of(cls: type[Node]) -> Interface:
     )
 
 
-def _handler(cls: type[Node], attribute: str, handler: Handler) -> interface.Handler:
+def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerInfo:
     # A child may have replaced the body only, by one of the other kind and in another place.
     function = inspect.unwrap(getattr(cls, attribute))
     code = getattr(function, "__code__", None)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)
     group = None if handler.kind == "task" else handler.group or cls.default_group
     is_async = inspect.iscoroutinefunction(function)
-    return interface.Handler(attribute, handler.kind, place, group.name if group else "", is_async, handler.thread)
+    return HandlerInfo(attribute, handler.kind, place, group.name if group else "", is_async, handler.thread)

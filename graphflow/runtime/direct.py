@@ -16,18 +16,16 @@ Until then, and with a server of another kind or several servers, calls are quer
 from __future__ import annotations
 
 import logging
+from asyncio import AbstractEventLoop
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from graphflow.errors import DecodeError
+from graphflow.executor.runner import BURST, Runner
 from graphflow.qos import SERVICES
-from graphflow.runtime.scheduler import BURST
-from graphflow.transport.base import Answer, Closable, Inbox, Payload, Sender
+from graphflow.transport.base import Answer, Closable, Inbox, Payload, Sender, Session
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
-
-if TYPE_CHECKING:
-    from graphflow.runtime.context import Context
 
 logger = logging.getLogger("graphflow")
 
@@ -38,45 +36,55 @@ Heard = Callable[[bytes, bytes, int, bytes], None]
 """Called with what arrives: payload, attachment, and of that the sequence number and the GID."""
 
 
+class _Listener(NamedTuple):
+    """An endpoint of this process that hears something."""
+
+    heard: Heard
+    runner: Runner | None
+    """What requests queue for."""
+
+
 class Switchboard:
     """A process's ends of all lines: who hears what arrives. One per `Context`."""
 
-    def __init__(self, context: Context) -> None:
-        self._context = context
-        self._heard: dict[tuple[str, str], Heard] = {}
+    def __init__(self, session: Session, domain: int, loop: AbstractEventLoop) -> None:
+        self._session, self._domain, self._loop = session, domain, loop
+        self._listeners: dict[tuple[str, str], _Listener] = {}
         """By `ask` or `answer` and endpoint id."""
         self._receivers: dict[str, Closable] = {}
         self._inboxes: dict[str, Inbox] = {}
 
-    def arrived(self) -> list[tuple[str, bytes, int]]:
-        """Requests that the loop has not seen yet: the server's endpoint id, the client's GID, the sequence number."""
-        found: list[tuple[str, bytes, int]] = []
-        session = self._context.session
+    def arrived(self) -> list[tuple[Runner, bytes, int]]:
+        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+        found: list[tuple[Runner, bytes, int]] = []
+        session = self._session
         for arrival in list(self._inboxes["ask"].items) if "ask" in self._inboxes else ():
+            listener = self._listeners.get(("ask", session.key_of(arrival).rpartition("/")[2]))
             try:
                 sequence, _, gid = attachment.fields((session.read(arrival)[1] or b"")[: attachment.SIZE])
             except DecodeError:
                 continue
-            found.append((session.key_of(arrival).rpartition("/")[2], gid, sequence))
+            if listener is not None and listener.runner is not None:
+                found.append((listener.runner, gid, sequence))
         return found
 
     def key(self, what: str, zid: str, eid: str) -> str:
-        return f"@graphflow/{self._context.domain}/{what}/{zid}/{eid}"
+        return f"@graphflow/{self._domain}/{what}/{zid}/{eid}"
 
-    def listen(self, what: str, entity: Entity, heard: Heard) -> None:
+    def listen(self, what: str, entity: Entity, heard: Heard, runner: Runner | None = None) -> None:
         """Have `heard` called with what comes for an endpoint of this process."""
-        self._heard[what, str(entity.eid)] = heard
+        self._listeners[what, str(entity.eid)] = _Listener(heard, runner)
         if what not in self._receivers:
             # One for the process: Zenoh starts a thread for each.
-            session = self._context.session
+            session = self._session
             inbox = self._inboxes[what] = Inbox(session.bell, None, lambda: self._deliver(what, inbox))
             self._receivers[what] = session.open_receiver(self.key(what, session.zid, "*"), SERVICES, inbox)
 
     def _deliver(self, what: str, inbox: Inbox) -> None:
-        session, heard = self._context.session, self._heard
+        session, listeners = self._session, self._listeners
         for _ in range(min(BURST, len(inbox.items))):
             arrival = inbox.items.popleft()
-            listener = heard.get((what, session.key_of(arrival).rpartition("/")[2]))
+            listener = listeners.get((what, session.key_of(arrival).rpartition("/")[2]))
             if listener is not None:
                 payload, beside = session.read(arrival)
                 try:
@@ -84,15 +92,15 @@ class Switchboard:
                 except DecodeError as error:
                     logger.debug("%s: %s", session.key_of(arrival), error)
                     continue
-                listener(payload, beside or b"", sequence, gid)
+                listener.heard(payload, beside or b"", sequence, gid)
         if inbox.items:  # callers that are faster than the handlers must not hold the loop
-            self._context.loop.call_soon(self._deliver, what, inbox)
+            self._loop.call_soon(self._deliver, what, inbox)
 
     def forget(self, what: str, entity: Entity) -> None:
-        self._heard.pop((what, str(entity.eid)), None)
+        self._listeners.pop((what, str(entity.eid)), None)
 
     def open_sender(self, what: str, zid: str, eid: str, changed: Callable[[], None]) -> Sender:
-        return self._context.session.open_sender(self.key(what, zid, eid), SERVICES, changed)
+        return self._session.open_sender(self.key(what, zid, eid), SERVICES, changed)
 
 
 class DirectRequest:
@@ -115,11 +123,14 @@ class ServerLines:
     """A server's ends of the lines to its clients.
 
     Args:
+        runner: What requests queue for.
         asked: Called with each request.
     """
 
-    def __init__(self, context: Context, entity: Entity, asked: Callable[[DirectRequest], None]) -> None:
-        self._context, self._entity, self._asked = context, entity, asked
+    def __init__(
+        self, switchboard: Switchboard, entity: Entity, runner: Runner, asked: Callable[[DirectRequest], None]
+    ) -> None:
+        self._switchboard, self._entity, self._runner, self._asked = switchboard, entity, runner, asked
         self._senders: dict[bytes, Sender] = {}
         """To the clients, by GID."""
         self._is_listening = False
@@ -130,7 +141,7 @@ class ServerLines:
         """There is a client, which may be graphflow's."""
         if not self._is_listening:
             self._is_listening = True
-            self._context.switchboard.listen("ask", self._entity, self._heard)
+            self._switchboard.listen("ask", self._entity, self._heard, self._runner)
 
     def client_gone(self, client: Entity) -> None:
         sender = self._senders.pop(client.gid, None)
@@ -145,7 +156,7 @@ class ServerLines:
             self._asked(DirectRequest(payload, beside, self._answer))
 
     def _answer(self, payload: Payload, beside: bytes) -> None:
-        sender = self._senders.get(beside[-16:])
+        sender = self._senders.get(beside[attachment.SIZE - 16 : attachment.SIZE])
         if sender is not None:  # else the client has gone meanwhile
             sender.put(payload, attachment=beside)
         self._unanswered -= 1
@@ -162,13 +173,13 @@ class ServerLines:
             if sender.is_wanted:
                 sender.put(b"", attachment=attachment.pack(_HELLO, 0, self._entity.gid))
 
-        sender = self._senders[gid] = self._context.switchboard.open_sender("answer", zid, eid, changed)
+        sender = self._senders[gid] = self._switchboard.open_sender("answer", zid, eid, changed)
         changed()
 
     def close(self) -> None:
         """Take no more requests; those under way are still answered."""
         self._is_closing = True
-        self._context.switchboard.forget("ask", self._entity)
+        self._switchboard.forget("ask", self._entity)
         if not self._unanswered:
             for sender in self._senders.values():
                 sender.close()
@@ -182,14 +193,14 @@ class ClientLine:
         client, server: Its own entity and the server's.
     """
 
-    def __init__(self, context: Context, client: Entity, server: Entity) -> None:
+    def __init__(self, switchboard: Switchboard, client: Entity, server: Entity) -> None:
         self.server = server
-        self._context, self._client = context, client
+        self._switchboard, self._client = switchboard, client
         self.is_open = False
         """Whether both ways are known to work."""
         self._pending: dict[int, Callable[[Answer | None], None]] = {}
-        context.switchboard.listen("answer", client, self._heard)
-        self._sender = context.switchboard.open_sender("ask", server.zid, str(server.eid), self._changed)
+        switchboard.listen("answer", client, self._heard)
+        self._sender = switchboard.open_sender("ask", server.zid, str(server.eid), self._changed)
         self._changed()
 
     def _changed(self) -> None:
@@ -221,7 +232,7 @@ class ClientLine:
     def close(self) -> None:
         """Hang up. Those who still wait learn that the server is gone."""
         self.is_open = False
-        self._context.switchboard.forget("answer", self._client)
+        self._switchboard.forget("answer", self._client)
         self._sender.close()
         pending, self._pending = self._pending, {}
         for answered in pending.values():

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections import Counter, deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from graphflow.errors import ClosedError
-from graphflow.machines.cache import Change
+from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.machines.cache import GraphChange
 from graphflow.machines.matching import verdict
 from graphflow.msgs import registry
 from graphflow.qos import Qos
 from graphflow.runtime.events import OnEvent, QosEvent, QosEventKind
-from graphflow.runtime.scheduler import Runner
+from graphflow.runtime.host import Host, Part
 from graphflow.transport.base import Closable
 from graphflow.wire.liveliness import Entity, Kind
 
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
 
-
-class Endpoint(ABC):
+class Endpoint(Part):
     """What a node holds on the network under one name, from `open` to `close`.
 
     Args:
@@ -30,8 +28,8 @@ class Endpoint(ABC):
 
     kind: Kind
 
-    def __init__(self, node: Node, type_name: str, name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
-        self.node = node
+    def __init__(self, host: Host, type_name: str, name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
+        self.host = host
         self.type_name = type_name
         self.name = name
         """The full, remapped name."""
@@ -52,15 +50,17 @@ class Endpoint(ABC):
 
     @property
     def title(self) -> str:
-        """What it is and its name."""
         return f"{self.kind.name.lower()} {self.name}"
 
     def statistics(self) -> dict[str, Any]:
-        """Numbers since the start."""
         return {
             "matched": len(self.matched),
             **{kind: n for kind, n in self._event_totals.items() if kind != "matched"},
         }
+
+    @property
+    def endpoints(self) -> tuple[Endpoint, ...]:
+        return (self,)
 
     @property
     def is_open(self) -> bool:
@@ -68,38 +68,37 @@ class Endpoint(ABC):
 
     def open(self) -> None:
         """Declare it on the network and announce it. Done by the node."""
-        context, node = self.node.context, self.node
+        context, host = self.host.context, self.host
         there = context.cache.named(self.name)
         self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
         self.entity = Entity(
             context.domain,
             context.session.zid,
-            node.id,
+            host.id,
             context.next_id(),
             self.kind,
-            node.namespace,
-            node.name,
+            host.namespace,
+            host.name,
             self.name,
             self.type_name,
             registry.hash_of(self.type_name),
             self.qos,
         )
         if self._on_event is not None:
-            label = f"events of {self.name}"
-            self._event_runner = node.runner(label, None, self._events, self._on_event, self._event_handled)
+            spec = RunnerSpec(f"events of {self.name}", self._on_event, self._event_handled, host.full_name)
+            self._event_runner = host.runner(spec, self._events)
         self._open(self.entity.data_key)
         # After the declaration, so that whoever sees the token can reach what it announces.
         self._declared.append(context.session.announce(self.entity.token))
         self._stop_listening = context.on_name(self.name, self._counterpart)
         for entity in there:
-            self._counterpart(Change(entity, True))
+            self._counterpart(GraphChange(entity, True))
 
     @abstractmethod
     def _open(self, key: str) -> None:
         """Declare it on the network under its data key."""
 
     def close(self) -> None:
-        """Withdraw it from the network. Closing twice is harmless."""
         self._stop_listening()
         self._stop_listening = _nothing
         declared, self._declared = self._declared, []
@@ -109,10 +108,7 @@ class Endpoint(ABC):
             self._event_runner.cancel()
         self.matched.clear()
         self.entity = None
-        self.node.forget(self)
-
-    def clock_changed(self) -> None:  # noqa: B027 - most endpoints go by no clock
-        """The node goes by another clock."""
+        self.host.forget(self)
 
     async def wait_matched(self, count: int = 1) -> None:
         """Wait until `count` counterparts are reached: for a publisher, so many subscriptions.
@@ -121,18 +117,18 @@ class Endpoint(ABC):
             ClosedError: The node is not running.
         """
         self._announced()
-        await self.node.context.wait_for(lambda: len(self.matched) >= count)
+        await self.host.context.wait_for(lambda: len(self.matched) >= count)
 
     def event_total(self, kind: QosEventKind) -> int:
         """How often a kind of event has happened since the start."""
         return self._event_totals[kind]
 
-    def _counterpart(self, change: Change) -> None:
+    def _counterpart(self, change: GraphChange) -> None:
         """Something of the same name came or went."""
-        if not self.node.is_running:  # it has stopped, and leaves the network with its context
+        if not self.host.is_running:  # it has stopped, and leaves the network with its context
             return
         other = change.entity
-        judged = verdict(self._announced(), other, self.node.context.profile)
+        judged = verdict(self._announced(), other, self.host.context.profile)
         if judged is None:
             return
         if judged.reaches and change.alive != (other.token in self.matched):
@@ -144,13 +140,13 @@ class Endpoint(ABC):
             self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
             self._matched(other, change.alive)
         if change.alive and judged.complaint:
-            self.node.log.warning("%s", judged.complaint)
+            self.host.log.warning("%s", judged.complaint)
             if judged.reaches:
                 self._tell("incompatible_qos", detail=", ".join(judged.policies))
             else:
                 self._tell("incompatible_type", detail=other.node_name)
 
-    def _matched(self, other: Entity, alive: bool) -> None:  # noqa: B027 - most endpoints have nothing to add
+    def _matched(self, other: Entity, alive: bool) -> None:
         """A counterpart that is reached came or went."""
 
     def _tell(
@@ -164,12 +160,12 @@ class Endpoint(ABC):
 
     def _event_handled(self, event: QosEvent, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self.node.handler_failed(f"event {event.kind} of {self.name}", error)
+            self.host.handler_failed(f"event {event.kind} of {self.name}", error)
 
     def _announced(self) -> Entity:
         if self.entity is None:
             raise ClosedError(
-                f"{self.name}: node {self.node.full_name} is not running; use this from its handlers and tasks"
+                f"{self.name}: node {self.host.full_name} is not running; use this from its handlers and tasks"
             )
         return self.entity
 

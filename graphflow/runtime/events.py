@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
-from graphflow.runtime.clock import Clock, Handle
+from graphflow.executor.clock import Alarm, Clock
 
 QosEventKind = Literal[
     "matched",
@@ -38,7 +38,7 @@ class QosEvent(NamedTuple):
 OnEvent = Callable[[QosEvent], Any]
 
 
-class Watchdog:
+class SilenceTimer:
     """Calls `silent` once a period for as long as nobody calls `touch`.
 
     A touch costs one look at the clock: the alarm that is set finds out how long it has been.
@@ -49,7 +49,7 @@ class Watchdog:
     def __init__(self, clock: Clock, period_ns: int, silent: Callable[[], None]) -> None:
         self._clock, self._period_ns, self._silent = clock, period_ns, silent
         self._last_ns = 0
-        self._alarm: Handle | None = None
+        self._alarm: Alarm | None = None
 
     @property
     def is_running(self) -> bool:

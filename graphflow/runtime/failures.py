@@ -4,19 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import NamedTuple
 
-from graphflow.errors import GraphflowError
+from graphflow.errors import TooManyErrors
+from graphflow.interface import OnError
+from graphflow.runtime.host import Host
 from graphflow.times import NANOSECONDS, to_ns
-
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
-
-OnError = Literal["budget", "log", "end"]
-"""What an error of a timer or subscription means for its node.
-
-`budget`: it is logged and counted, and too many end the node. `log`: it is logged. `end`: it ends the node.
-"""
 
 
 class ErrorBudget(NamedTuple):
@@ -26,31 +19,28 @@ class ErrorBudget(NamedTuple):
     per: float
 
 
-class TooManyErrors(GraphflowError):
-    """A node's error budget is spent."""
-
-
 class Failures:
     """The errors of one node's handlers.
 
     Args:
+        budget: So many are borne; None for any number.
         end: Called with the error that ends the node.
     """
 
-    def __init__(self, node: Node, end: Callable[[BaseException], None]) -> None:
-        self._node, self._end = node, end
+    def __init__(self, host: Host, budget: ErrorBudget | None, end: Callable[[BaseException], None]) -> None:
+        self._host, self._budget, self._end = host, budget, end
         self._counted: deque[int] = deque()
         self._silence: dict[str, tuple[int, int]] = {}
         """By handler: until when its errors are not logged, and how many were not."""
 
     def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
         """A handler has raised."""
-        now = self._node.context.clock.monotonic_ns()
+        now = self._host.context.clock.monotonic_ns()
         self._say(label, error, now)
         if on_error == "end":
             self._end(error)
-        elif on_error == "budget" and self._node.error_budget is not None:
-            self._count(label, error, now, self._node.error_budget)
+        elif on_error == "budget" and self._budget is not None:
+            self._count(label, error, now, self._budget)
 
     def _say(self, label: str, error: BaseException, now: int) -> None:
         """Log the first error of a handler, and then one a second."""
@@ -59,7 +49,7 @@ class Failures:
             self._silence[label] = until, unsaid + 1
             return
         self._silence[label] = now + NANOSECONDS, 0
-        self._node.report_error(f"{label} ({unsaid} more before this)" if unsaid else label, error)
+        self._host.report_error(f"{label} ({unsaid} more before this)" if unsaid else label, error)
 
     def _count(self, label: str, error: BaseException, now: int, budget: ErrorBudget) -> None:
         self._counted.append(now)

@@ -20,7 +20,6 @@ from graphflow.wire.typehash import referenced, type_id
 if TYPE_CHECKING:
     from graphflow.msgs.type_description_interfaces import msg as description
     from graphflow.msgs.type_description_interfaces import srv
-    from graphflow.runtime.node import Node
 
 
 class TypeDescriptions:
@@ -89,8 +88,8 @@ _ROS_LEVELS = {number: python for python, number in LEVELS.items()}
 class LoggerLevels:
     """Reads and sets how much a node's loggers say: its own, by its ROS name, and those below it."""
 
-    def __init__(self, node: Node) -> None:
-        self._own = node.log.name.removeprefix(f"{ROOT}.")
+    def __init__(self, own: logging.Logger) -> None:
+        self._own = own.name.removeprefix(f"{ROOT}.")
 
     def _logger(self, name: str) -> logging.Logger | None:
         is_ours = name == self._own or name.startswith(f"{self._own}.")

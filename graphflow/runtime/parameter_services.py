@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 from graphflow.errors import ParameterError
 from graphflow.interface import TYPE_IDS, Parameter, type_id
 from graphflow.qos import PARAMETER_EVENTS
-from graphflow.runtime.params import Change, Parameters
+from graphflow.runtime.host import Host, Part
+from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.runtime.values import from_message, to_message
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces import msg as rcl
-    from graphflow.runtime.node import Node
 
 _INT64 = range(-(2**63), 2**63)
 
@@ -139,39 +139,39 @@ class ParameterServices:
         return SetParametersResult(successful=True)
 
 
-class ParameterEvents:
+class ParameterEvents(Part):
     """Publishes every change of a node's parameters on /parameter_events; at the start, all of them as new."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, host: Host, parameters: Parameters) -> None:
         from graphflow.msgs.rcl_interfaces.msg import ParameterEvent
 
-        self._node = node
-        self._publisher = TopicPublisher(node, ParameterEvent, "/parameter_events", PARAMETER_EVENTS)
+        self._host, self._parameters = host, parameters
+        self._publisher = TopicPublisher(host, ParameterEvent, "/parameter_events", PARAMETER_EVENTS)
 
     def open(self) -> None:
         self._publisher.open()
-        parameters = self._node.parameters
-        self.tell({name: Change(None, parameters.get(name)) for name in parameters.names()})
+        parameters = self._parameters
+        self.tell({name: ParameterChange(None, parameters.get(name)) for name in parameters.names()})
 
-    def tell(self, changes: Mapping[str, Change]) -> None:
+    def tell(self, changes: Mapping[str, ParameterChange]) -> None:
         """Publish what has changed, if anybody listens."""
         if not self._publisher.is_wanted:
             return
         from graphflow.msgs.rcl_interfaces.msg import Parameter as ParameterMessage
         from graphflow.msgs.rcl_interfaces.msg import ParameterEvent
 
-        event = ParameterEvent(stamp=self._node.clock.now(), node=self._node.full_name)
+        event = ParameterEvent(stamp=self._host.clock.now(), node=self._host.full_name)
         for name, (old, new) in changes.items():
             if old is None and new is None:
                 continue
             if new is None:
                 event.deleted_parameters.append(ParameterMessage(name=name, value=to_message(old, type_id(old))))
                 continue
-            number = type_number(self._node.parameters.describe(name), new)
+            number = type_number(self._parameters.describe(name), new)
             target = event.new_parameters if old is None else event.changed_parameters
             target.append(ParameterMessage(name=name, value=to_message(new, number)))
         self._publisher.publish(event)
 
     def close(self) -> None:
         self._publisher.close()
-        self._node.forget(self)
+        self._host.forget(self)

@@ -13,7 +13,7 @@ from graphflow.interface import Parameter
 from graphflow.names import did_you_mean
 
 
-class Change(NamedTuple):
+class ParameterChange(NamedTuple):
     """A parameter's value before and after; None where there is no parameter."""
 
     old: Any
@@ -21,7 +21,7 @@ class Change(NamedTuple):
 
 
 Check = Callable[[Mapping[str, Any]], None]
-Observer = Callable[[Mapping[str, Change]], None]
+Observer = Callable[[Mapping[str, ParameterChange]], None]
 
 
 class Parameters:
@@ -57,7 +57,7 @@ class Parameters:
             value, source = parameter.fit(parameter.default), "default"
         self._declared[parameter.name] = parameter
         self._values[parameter.name], self._sources[parameter.name] = value, source
-        self._tell({parameter.name: Change(None, value)})
+        self._tell({parameter.name: ParameterChange(None, value)})
         return value
 
     def undeclare(self, name: str) -> None:
@@ -70,7 +70,7 @@ class Parameters:
             raise ParameterError(f"parameter {name!r} is read-only")
         value = self._values.pop(name)
         del self._declared[name], self._sources[name]
-        self._tell({name: Change(value, None)})
+        self._tell({name: ParameterChange(value, None)})
 
     def unused_overrides(self) -> list[str]:
         """Overrides for which no parameter has been declared, as sentences that help."""
@@ -124,7 +124,7 @@ class Parameters:
             fitted[name] = declared.fit(value)
         for check in self._checks:
             check(fitted)
-        changes = {name: Change(self._values[name], value) for name, value in fitted.items()}
+        changes = {name: ParameterChange(self._values[name], value) for name, value in fitted.items()}
         for name, value in fitted.items():
             if value is None:
                 del self._values[name], self._sources[name], self._declared[name]
@@ -140,6 +140,6 @@ class Parameters:
         """Have `observer(changes)` called after each change, by name; also for what is declared or deleted."""
         self._observers.append(observer)
 
-    def _tell(self, changes: Mapping[str, Change]) -> None:
+    def _tell(self, changes: Mapping[str, ParameterChange]) -> None:
         for observer in self._observers:
             observer(changes)

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from graphflow.errors import GraphflowError
 from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
+from graphflow.runtime.host import Host, Part
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.times import Time
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import Log
-    from graphflow.runtime.node import Node
 
 ROOT = "graphflow.node"
 LEVELS = {logging.DEBUG: 10, logging.INFO: 20, logging.WARNING: 30, logging.ERROR: 40, logging.CRITICAL: 50}
@@ -64,36 +64,36 @@ def setup_console(level: int = logging.INFO) -> None:
         logger.addHandler(handler)
 
 
-class Rosout(logging.Handler):
+class Rosout(logging.Handler, Part):
     """Publishes a node's log records on /rosout while the node runs."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, host: Host) -> None:
         super().__init__()
         from graphflow.msgs.rcl_interfaces.msg import Log
 
-        self._node = node
+        self._host = host
         self._thread = 0
-        self._publisher = TopicPublisher(node, Log, "/rosout", ROSOUT)
+        self._publisher = TopicPublisher(host, Log, "/rosout", ROSOUT)
 
     def open(self) -> None:
         self._thread = threading.get_ident()
         self._publisher.open()
-        self._node.log.addHandler(self)
+        self._host.log.addHandler(self)
 
     def detach(self) -> None:
         """Listen to the node's logger no more."""
-        self._node.log.removeHandler(self)
+        self._host.log.removeHandler(self)
 
     def close(self) -> None:
         self.detach()
         self._publisher.close()
-        self._node.forget(self)
+        self._host.forget(self)
         super().close()
 
     def emit(self, record: logging.LogRecord) -> None:
-        if not self._node.is_running or not self._is_ours(record):
+        if not self._host.is_running or not self._is_ours(record):
             return
-        loop = self._node.context.loop
+        loop = self._host.context.loop
         if threading.get_ident() == self._thread:
             self._publish(record)
         elif not loop.is_closed():
@@ -107,7 +107,7 @@ class Rosout(logging.Handler):
         return logger is None or self in logger.handlers
 
     def _publish(self, record: logging.LogRecord) -> None:
-        if self._node.is_running:
+        if self._host.is_running:
             try:
                 self._publisher.publish(to_log(record))
             except Exception:  # as every handler of Python's: to log is never an error of who logs

@@ -11,10 +11,11 @@ import time
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
+from graphflow.deadlock.user_code import users_part
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node, users_part
+from graphflow.runtime.node import Node, core_of
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.transport import loop
 
@@ -39,11 +40,12 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
             context = await Context.open()
             stack.push_async_callback(context.close)
         for node in nodes:
-            await node.start(context)
-            stack.push_async_callback(node.stop, withdraw=not own)
+            core = core_of(node)
+            await core.start(context)
+            stack.push_async_callback(core.stop, withdraw=not own)
         try:
             async with asyncio.TaskGroup() as group:
-                watchers = [group.create_task(node.wait_ended()) for node in nodes]
+                watchers = [group.create_task(core_of(node).wait_ended()) for node in nodes]
                 try:
                     yield context
                 finally:
@@ -73,12 +75,12 @@ async def serve(
         asked = asyncio.create_task(stop.wait())
         stack.callback(asked.cancel)
         for node in nodes:
-            stack.push_async_callback(node.stop, withdraw=False)
+            stack.push_async_callback(core_of(node).stop, withdraw=False)
             if not await _start(node, context, asked):
                 return
             if ready is not None:
                 ready(node)
-        left = {asked, *(asyncio.create_task(node.wait_ended()) for node in nodes)}
+        left = {asked, *(asyncio.create_task(core_of(node).wait_ended()) for node in nodes)}
         for task in left:
             stack.callback(task.cancel)
         while left - {asked} and asked in left:
@@ -89,7 +91,7 @@ async def serve(
 
 async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> bool:
     """Start a node; False when it was asked to stop before it was ready."""
-    starting = asyncio.create_task(node.start(context))
+    starting = asyncio.create_task(core_of(node).start(context))
     try:
         await asyncio.wait({starting, asked}, return_when=asyncio.FIRST_COMPLETED)
     finally:
@@ -163,7 +165,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         return
     except Exception as error:
-        if any(node.failure is error for node in made):  # the node has logged it
+        if any(core_of(node).failure is error for node in made):  # the node has logged it
             raise SystemExit(1) from None
         if not isinstance(error, GraphflowError):
             raise
@@ -182,8 +184,8 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
     Raises:
         GraphflowError: A parameter does not exist or fit.
     """
-    node = cls(remap=ros.remaps, overrides=ros.params_for(cls))
-    node.ensure_made()
+    node = cls(remap=ros.remaps, overrides=ros.params_for(cls.interface()))
+    core_of(node).ensure_made()
     return node
 
 

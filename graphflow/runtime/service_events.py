@@ -9,11 +9,11 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Literal
 
 from graphflow.qos import DEFAULT, Qos
+from graphflow.runtime.host import Host
 from graphflow.runtime.topics import TopicPublisher
 
 if TYPE_CHECKING:
     from graphflow.msgs.base import Message, Service
-    from graphflow.runtime.node import Node
 
 Introspection = Literal["off", "metadata", "contents"]
 """What is published of a call: nothing, who called when, or request and response too."""
@@ -35,8 +35,8 @@ def _event_class(type_: type[Service[Any, Any]]) -> Any:
 class ServiceEvents:
     """The topic `<service>/_service_event` of one client or server, while introspection is on."""
 
-    def __init__(self, node: Node, type_: type[Service[Any, Any]], name: str) -> None:
-        self._node, self._event, self._name = node, _event_class(type_), name
+    def __init__(self, host: Host, type_: type[Service[Any, Any]], name: str) -> None:
+        self._host, self._event, self._name = host, _event_class(type_), name
         self._level: Introspection = "off"
         self._qos = DEFAULT
         self._publisher: TopicPublisher[Any] | None = None
@@ -59,7 +59,7 @@ class ServiceEvents:
 
     def open(self) -> None:
         if self._level != "off":
-            self._publisher = TopicPublisher(self._node, self._event, f"{self._name}/_service_event", self._qos)
+            self._publisher = TopicPublisher(self._host, self._event, f"{self._name}/_service_event", self._qos)
             self._publisher.open()
 
     def close(self) -> None:
@@ -83,7 +83,7 @@ class ServiceEvents:
         """
         if self._publisher is None or not self._publisher.is_wanted:
             return
-        info = {"event_type": event, "stamp": self._node.clock.now(), "client_gid": gid, "sequence_number": sequence}
+        info = {"event_type": event, "stamp": self._host.clock.now(), "client_gid": gid, "sequence_number": sequence}
         whole = self._level == "contents"
         self._publisher.publish(
             self._event(

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from graphflow.runtime.clock import period_ns
-from graphflow.runtime.failures import OnError
-from graphflow.runtime.groups import HandlerGroup
-from graphflow.runtime.scheduler import Runner
-
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
+from graphflow.executor.clock import period_ns
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.interface import OnError
+from graphflow.runtime.host import Host, Part
 
 
 class TimerInfo(NamedTuple):
@@ -23,22 +21,24 @@ class TimerInfo(NamedTuple):
     skipped: int
 
 
-class Timer:
+class Timer(Part):
     """A timer at work: skips missed periods, keeps phase, and has one run at a time.
 
     Source: rcl timer.c.
     """
 
+    opens_last = True
+
     def __init__(
         self,
-        node: Node,
+        host: Host,
         period_ns: int,
         callback: Callable[[TimerInfo], Any],
         label: str,
         group: HandlerGroup | None = None,
         on_error: OnError = "budget",
     ) -> None:
-        self.node = node
+        self.host = host
         self.skipped = 0
         """Periods missed since the start, because a run or its wait for a slot took too long."""
         self._period_ns = period_ns
@@ -81,13 +81,13 @@ class Timer:
 
     def open(self) -> None:
         """Start. Done by the node."""
-        queue = (self._due, self._callback, self._finished, self._refused)
-        self.runner = self.node.runner(self._label, self._group, *queue, kind="timer")
+        tell = (self._callback, self._finished, self.host.full_name)
+        self.runner = self.host.runner(RunnerSpec(self._label, *tell, "timer", self._refused), self._due, self._group)
         self.reset()
 
     def reset(self) -> None:
         """Begin anew: the next run is one period from now."""
-        self._arm(self.node.clock.monotonic_ns() + self._period_ns)
+        self._arm(self.host.clock.monotonic_ns() + self._period_ns)
 
     def clock_changed(self) -> None:
         """The node goes by another clock: begin anew on it, if the timer runs."""
@@ -100,11 +100,11 @@ class Timer:
         if self._handle is not None:
             self._handle.cancel()
         self._next_ns = when_ns
-        self._handle = self.node.clock.call_at(when_ns, self._fire)
+        self._handle = self.host.clock.call_at(when_ns, self._fire)
 
     def _fire(self) -> None:
         assert self.runner is not None
-        now, due = self.node.clock.monotonic_ns(), self._next_ns
+        now, due = self.host.clock.monotonic_ns(), self._next_ns
         late = max(0, (now - due) // self._period_ns)
         self._arm(due + (1 + late) * self._period_ns)
         self.skipped += late
@@ -121,7 +121,7 @@ class Timer:
 
     def _finished(self, info: TimerInfo, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self.node.handler_failed(self._label, error, self._on_error)
+            self.host.handler_failed(self._label, error, self._on_error)
 
     def _refused(self, info: TimerInfo) -> None:
         self.skipped += 1
@@ -133,9 +133,13 @@ class Timer:
             self._handle.cancel()
             self._handle = None
 
+    def begin_to_stop(self) -> Runner | None:
+        self.cancel()
+        return self.runner
+
     def close(self) -> None:
         """Stop for good, and cancel a run under way."""
         self.cancel()
         if self.runner is not None:
             self.runner.cancel()
-        self.node.forget(self)
+        self.host.forget(self)

@@ -5,24 +5,22 @@ from __future__ import annotations
 import asyncio
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError, EncodeError
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.runner import BURST, Runner, RunnerSpec
+from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.qos import DEFAULT, INFINITE_NS, History, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.events import OnEvent, Watchdog
-from graphflow.runtime.failures import OnError
-from graphflow.runtime.groups import HandlerGroup
-from graphflow.runtime.scheduler import BURST, Runner
+from graphflow.runtime.events import OnEvent, SilenceTimer
+from graphflow.runtime.host import Host
 from graphflow.transport.base import Closable, Inbox, Payload, Sender
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo, pack
 from graphflow.wire.liveliness import Entity, Kind
-
-if TYPE_CHECKING:
-    from graphflow.runtime.node import Node
 
 M = TypeVar("M", bound=Message)
 
@@ -37,8 +35,8 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     kind = Kind.PUBLISHER
 
-    def __init__(self, node: Node, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
-        super().__init__(node, type_.SCHEMA.name, name, qos, on_event)
+    def __init__(self, host: Host, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
+        super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.published = 0
         """Messages sent since the start; also the last sequence number."""
@@ -46,26 +44,26 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._sender: Sender = _NOT_OPEN
         self._gid = bytes(16)
         self._now_ns: Callable[[], int] = int
-        self._deadline: Watchdog | None = None
-        self._lease: Watchdog | None = None
+        self._deadline: SilenceTimer | None = None
+        self._lease: SilenceTimer | None = None
         self._alive: Sender | None = None
 
     def _open(self, key: str) -> None:
-        session = self.node.context.session
-        self._gid, self._now_ns = self._announced().gid, self.node.context.clock.time_ns
+        session = self.host.context.session
+        self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
         self._sender = session.open_sender(key, self.qos)
         self._declared.append(self._sender)
         if self.qos.deadline_ns != INFINITE_NS:
-            self._deadline = self._watchdog(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+            self._deadline = self._silence_timer(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
         if self.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and self.qos.lease_ns != INFINITE_NS:
-            self._lease = self._watchdog(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
+            self._lease = self._silence_timer(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
             self._alive = session.open_sender(_alive_key(self._announced()), DEFAULT)
             self._declared.append(self._alive)
 
-    def _watchdog(self, period_ns: int, silent: Callable[[], None]) -> Watchdog:
-        dog = Watchdog(self.node.clock, period_ns, silent)
-        dog.start()
-        return dog
+    def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
+        timer = SilenceTimer(self.host.clock, period_ns, silent)
+        timer.start()
+        return timer
 
     @property
     def is_wanted(self) -> bool:
@@ -107,9 +105,9 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._alive.put(b"", attachment=b"")
 
     def clock_changed(self) -> None:
-        for dog in (self._deadline, self._lease):
-            if dog is not None:
-                dog.move(self.node.clock)
+        for timer in (self._deadline, self._lease):
+            if timer is not None:
+                timer.move(self.host.clock)
 
     def statistics(self) -> dict[str, Any]:
         return {"published": self.published, **super().statistics()}
@@ -120,9 +118,9 @@ class TopicPublisher(Endpoint, Generic[M]):
         return len(self.matched)
 
     def close(self) -> None:
-        for dog in (self._deadline, self._lease):
-            if dog is not None:
-                dog.stop()
+        for timer in (self._deadline, self._lease):
+            if timer is not None:
+                timer.stop()
         self._sender = _NOT_OPEN
         super().close()
 
@@ -159,7 +157,7 @@ class _Source:
     def __init__(self, lifespan_ns: int) -> None:
         self.sequence = 0
         self.lifespan_ns = lifespan_ns
-        self.lease: Watchdog | None = None
+        self.lease: SilenceTimer | None = None
         self.alive: Closable | None = None
 
 
@@ -175,7 +173,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def __init__(
         self,
-        node: Node,
+        host: Host,
         type_: type[M],
         name: str,
         qos: Qos,
@@ -188,7 +186,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         on_event: OnEvent | None = None,
         on_error: OnError = "budget",
     ) -> None:
-        super().__init__(node, type_.SCHEMA.name, name, qos, on_event)
+        super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.malformed = 0
         """Payloads that were no message of the type, and were dropped."""
@@ -208,19 +206,19 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, _Source] = {}
         self._gaps = 0
-        self._deadline: Watchdog | None = None
+        self._deadline: SilenceTimer | None = None
 
     def _open(self, key: str) -> None:
-        context = self.node.context
+        context = self.host.context
         self._read = context.session.read
         bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
         if self._callback is None:
             self._inbox = Inbox(context.session.bell, bound, self._arrived)
         else:
             self._inbox = Inbox(context.session.bell, bound, _nothing)
-            queue = (self._inbox.items, self._invoke, self._finished, self._refused)
-            self.runner = self.node.runner(self._label, self._group, *queue, kind="subscription")
-            self.runner.dropped = lambda: self.dropped
+            tell = (self._invoke, self._finished, self.host.full_name)
+            spec = RunnerSpec(self._label, *tell, "subscription", self._refused, lambda: self.dropped)
+            self.runner = self.host.runner(spec, self._inbox.items, self._group)
             self._inbox.ready = self.runner.wake
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
@@ -229,14 +227,14 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _watch_deadline(self, inbox: Inbox) -> None:
         """Count a missed deadline for every period without a message, while there is a publisher to keep it."""
-        dog = Watchdog(self.node.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+        timer = SilenceTimer(self.host.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
         ready = inbox.ready
 
         def heard() -> None:
-            dog.touch()
+            timer.touch()
             ready()
 
-        inbox.ready, self._deadline = heard, dog
+        inbox.ready, self._deadline = heard, timer
 
     @property
     def received(self) -> int:
@@ -267,9 +265,9 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def clock_changed(self) -> None:
         leases = [source.lease for source in self._sources.values()]
-        for dog in (self._deadline, *leases):
-            if dog is not None:
-                dog.move(self.node.clock)
+        for timer in (self._deadline, *leases):
+            if timer is not None:
+                timer.move(self.host.clock)
 
     def get_publisher_count(self) -> int:
         """Publishers in the graph whose messages arrive here."""
@@ -304,9 +302,9 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._liveliness_changed(-1, other.node_name)
 
         assert self._inbox is not None
-        session, waiting = self.node.context.session, self._inbox
+        session, waiting = self.host.context.session, self._inbox
         read = session.read
-        source.lease = Watchdog(self.node.clock, other.qos.lease_ns, silent)
+        source.lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
         source.lease.start()
         inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
         source.alive = session.open_receiver(_alive_key(other), DEFAULT, inbox)
@@ -365,7 +363,7 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._revive(gid)
         if source.lifespan_ns == INFINITE_NS:
             return True
-        return self.node.context.clock.time_ns() - source_ns <= source.lifespan_ns
+        return self.host.context.clock.time_ns() - source_ns <= source.lifespan_ns
 
     def _count_missing(self, missing: int) -> None:
         """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
@@ -384,7 +382,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _finished(self, arrival: Any, result: Any, error: BaseException | None) -> None:
         if error is not None:
-            self.node.handler_failed(self._label, error, self._on_error)
+            self.host.handler_failed(self._label, error, self._on_error)
 
     def _refused(self, arrival: Any) -> None:
         assert self._inbox is not None
@@ -393,7 +391,7 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _count_malformed(self, error: DecodeError) -> None:
         self.malformed += 1
         if self.malformed == 1 or self.malformed % 1000 == 0:
-            self.node.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)
+            self.host.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)
 
     # iteration
 
@@ -425,12 +423,15 @@ class TopicSubscription(Endpoint, Generic[M]):
                 if taken is not None:
                     message, fields = taken
                     return message, MessageInfo._make(fields)
-            waiter: Future[None] = self.node.context.loop.create_future()
+            waiter: Future[None] = self.host.context.loop.create_future()
             self._waiters.add(waiter)
             try:
                 await waiter
             finally:
                 self._waiters.discard(waiter)
+
+    def begin_to_stop(self) -> Runner | None:
+        return self.runner
 
     def close(self) -> None:
         if self.runner is not None:

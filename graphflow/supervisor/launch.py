@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from graphflow.graph.check import Interfaces
     from graphflow.graph.plan import Plan
     from graphflow.runtime.context import Context
-    from graphflow.supervisor.rundir import Run, RunDirectory
+    from graphflow.supervisor.rundir import GraphRun, RunDirectory
     from graphflow.supervisor.starter import Starter
     from graphflow.supervisor.supervisor import Supervisor
 
@@ -111,9 +111,7 @@ class _Launch:
                 signal.signal(getattr(signal, name), signal.SIG_IGN)
         starter = None
         try:
-            from graphflow.supervisor.starter import make_starter
-
-            starter = self._starter = make_starter(keep=(self._report_pipe,))
+            starter = self._starter = _make_starter(keep=(self._report_pipe,))
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
@@ -195,7 +193,7 @@ class _Launch:
         plan: Plan,
         context: Context,
         directory: RunDirectory,
-        run: Run,
+        run: GraphRun,
         interfaces: Interfaces,
         step_types: dict[str, str],
     ) -> int:
@@ -245,14 +243,14 @@ async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> N
             supervisor.note(text)
 
 
-def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> Run:
+def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
     import hashlib
     import time
 
     from graphflow.supervisor import rundir
     from graphflow.transport.config import rendezvous_endpoint
 
-    return rundir.Run(
+    return rundir.GraphRun(
         run_id=run_id,
         graph=plan.name,
         domain=domain,
@@ -293,3 +291,18 @@ def _tell_notes(note: Callable[[str], None]) -> None:
 if __name__ == "__main__":
     report = os.dup(1)
     sys.exit(_Launch(json.load(sys.stdin), report).supervise())
+
+
+def _make_starter(keep: tuple[int, ...]) -> Starter:
+    """A starter of the kind that this system takes. To be made while this process has one thread.
+
+    Args:
+        keep: Descriptors that workers must not inherit.
+    """
+    if is_portable():
+        from graphflow.supervisor.spawning import SpawningStarter
+
+        return SpawningStarter()
+    from graphflow.supervisor.forking import ForkingStarter
+
+    return ForkingStarter(keep)

@@ -11,8 +11,9 @@ from contextlib import suppress
 
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.context import Context
-from graphflow.runtime.declare import Param, Publisher, subscription, timer
-from graphflow.runtime.node import Node
+from graphflow.runtime.declare import Param, Publisher
+from graphflow.runtime.handlers import subscription, timer
+from graphflow.runtime.node import Node, core_of
 from graphflow.transport.loop import new_event_loop
 from graphflow.transport.memory import Network
 
@@ -45,10 +46,10 @@ async def _rehearse() -> bool:
     context = Context(Network().session(asyncio.get_running_loop()))
     node = Rehearsal()
     node.log.setLevel(logging.DEBUG)
-    await node.start(context)
+    await core_of(node).start(context)
     with suppress(TimeoutError):  # then the workers do everything for the first time, and the graph runs all the same
         async with asyncio.timeout(LIMIT):
             await done.wait()
-    await node.stop()
+    await core_of(node).stop()
     await context.close()
     return done.is_set()

@@ -113,7 +113,7 @@ def start_time(pid: int) -> float | None:
 
 
 @dataclass(frozen=True)
-class Run:
+class GraphRun:
     """A run file's content."""
 
     run_id: str
@@ -192,7 +192,7 @@ class RunDirectory:
             raise SupervisorError(f"{folder} belongs to another user; set XDG_RUNTIME_DIR to a shorter path")
         return folder / f"{digest}.sock"
 
-    def write(self, run: Run) -> None:
+    def write(self, run: GraphRun) -> None:
         """Write the run file, whole or not at all."""
         fresh = self.path / "run.json.new"
         fresh.write_text(json.dumps(asdict(run), indent=1))
@@ -225,22 +225,22 @@ def _lock(fd: int) -> None:
         fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def read_run(path: Path) -> Run | None:
+def read_run(path: Path) -> GraphRun | None:
     """A run file's content; None when it is not there or not one."""
     try:
         data: Any = json.loads(path.read_text())
-        return Run(**data)
+        return GraphRun(**data)
     except (OSError, ValueError, TypeError):
         return None
 
 
-def running() -> list[Run]:
+def running() -> list[GraphRun]:
     """Every graph of this user that runs now, by name."""
     found = [read_run(path) for path in sorted(runtime_root().glob("*/*/run.json"))]
     return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
 
 
-def choose(name: str | None) -> Run:
+def choose(name: str | None) -> GraphRun:
     """The running graph that is meant.
 
     Raises:

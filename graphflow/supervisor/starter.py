@@ -6,8 +6,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from graphflow.system import is_portable
-
 Heard = Callable[[dict[str, Any]], None]
 """Called with what happens to workers:
 
@@ -58,18 +56,3 @@ class Starter(Protocol):
 
     def end(self) -> None:
         """Give everything back, after the loop has ended."""
-
-
-def make_starter(keep: tuple[int, ...]) -> Starter:
-    """A starter of the kind that this system takes. To be made while this process has one thread.
-
-    Args:
-        keep: Descriptors that workers must not inherit.
-    """
-    if is_portable():
-        from graphflow.supervisor.spawning import SpawningStarter
-
-        return SpawningStarter()
-    from graphflow.supervisor.forking import ForkingStarter
-
-    return ForkingStarter(keep)

@@ -10,7 +10,7 @@ from graphflow.graph.plan import PlannedStep
 from graphflow.msgs import registry
 from graphflow.msgs.values import from_plain
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node
+from graphflow.runtime.node import Node, core_of
 from graphflow.wire.liveliness import Kind
 
 
@@ -35,7 +35,7 @@ class StepRunner:
         """
         if self._node is None:
             self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
-            await self._node.start(self._context)
+            await core_of(self._node).start(self._context)
         type_name = self._types.get(step.name) or await self._find_type(step)
         service: Any = registry.interface_class(type_name)
         request: Any = from_plain(service.Request, step.request)
@@ -59,4 +59,4 @@ class StepRunner:
 
     async def close(self) -> None:
         if self._node is not None:
-            await self._node.stop()
+            await core_of(self._node).stop()

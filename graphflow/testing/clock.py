@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from graphflow.runtime.clock import Clock
+from graphflow.executor.clock import Clock
 from graphflow.times import to_ns
 
 START_NS = 1_700_000_000_000_000_000
@@ -18,7 +18,7 @@ _TURNS = 100_000
 _settling: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
 
 
-class _Alarm:
+class _ManualAlarm:
     def __init__(self, callback: Callable[[], None]) -> None:
         self.callback: Callable[[], None] | None = callback
 
@@ -31,7 +31,7 @@ class ManualClock(Clock):
 
     def __init__(self) -> None:
         self._elapsed_ns = 0
-        self._alarms: list[tuple[int, int, _Alarm]] = []
+        self._alarms: list[tuple[int, int, _ManualAlarm]] = []
         self._order = itertools.count()
 
     def time_ns(self) -> int:
@@ -40,8 +40,8 @@ class ManualClock(Clock):
     def monotonic_ns(self) -> int:
         return self._elapsed_ns
 
-    def call_at(self, when_ns: int, callback: Callable[[], None]) -> _Alarm:
-        alarm = _Alarm(callback)
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> _ManualAlarm:
+        alarm = _ManualAlarm(callback)
         heapq.heappush(self._alarms, (when_ns, next(self._order), alarm))
         return alarm
 

@@ -12,7 +12,7 @@ from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Respon
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node
+from graphflow.runtime.node import Node, core_of
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
@@ -63,13 +63,13 @@ class Graph:
             session = self.network.session(asyncio.get_running_loop())
             context = Context(session, clock=self.clock, deadlock=self.deadlock)
             self._contexts.append(context)
-            await node.start(context)
+            await core_of(node).start(context)
             self.nodes.append(node)
         await settle()
 
     async def stop(self, node: Node) -> None:
         """Stop one node."""
-        await node.stop()
+        await core_of(node).stop()
         await settle()
 
     def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
@@ -110,20 +110,20 @@ class Graph:
     async def close(self) -> None:
         """Stop all nodes; raises the error of a node that failed and whose failure the test did not take."""
         for node in reversed(self.nodes):
-            await node.stop()
+            await core_of(node).stop()
         for context in self._contexts:
             await context.close()
-        for node in self.nodes:
-            if node.failure is not None and not node.failure_taken:
-                raise node.failure
+        for core in map(core_of, self.nodes):
+            if core.failure is not None and not core.failure_taken:
+                raise core.failure
 
     def _test_node(self) -> Node:
         if self._tester is None:
             context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
             self._contexts.append(context)
             self._tester = Node(f"_test_{next(self._names)}")
-            # Node.start is a coroutine for the sake of what it may wait for; a bare node waits for nothing.
-            _run_now(self._tester.start(context))
+            # To start is a coroutine for the sake of what it may wait for; a bare node waits for nothing.
+            _run_now(core_of(self._tester).start(context))
             self.nodes.append(self._tester)
         return self._tester
 

@@ -20,10 +20,10 @@ from contextlib import suppress
 from random import Random
 from typing import Any
 
+from graphflow.executor.clock import Alarm, Clock
 from graphflow.interface import DeadlockPolicy
-from graphflow.runtime.clock import Clock, Handle
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node
+from graphflow.runtime.node import Node, core_of
 from graphflow.transport.memory import MemorySession, Network
 
 START_NS = 1_700_000_000_000_000_000
@@ -73,7 +73,7 @@ class LoopClock(Clock):
     def monotonic_ns(self) -> int:
         return round(self._loop.time() * 1e9)
 
-    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Handle:
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
         return self._loop.call_at(when_ns / 1e9, callback)
 
 
@@ -118,18 +118,18 @@ class World:
             session = self.network.session(loop)
             context = Context(session, clock=LoopClock(loop), deadlock=self._deadlock)
             self._sessions[node] = session, context
-            await node.start(context)
+            await core_of(node).start(context)
 
     async def kill(self, node: Node) -> None:
         """End a node as `kill -9` does: from one moment to the next nothing more of it reaches anybody."""
         session, context = self._sessions.pop(node)
         session.die()
-        await node.stop()
+        await core_of(node).stop()
         await context.close()
 
     async def close(self) -> None:
         for node, (_, context) in reversed(self._sessions.items()):
-            await node.stop()
+            await core_of(node).stop()
             await context.close()
 
 

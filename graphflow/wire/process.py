@@ -1,4 +1,8 @@
-"""How a process of graphflow shows itself in a domain: `@graphflow/<domain>/proc/<zid>/<uid>/<pid>/<host>`."""
+"""How a process of graphflow shows itself in a domain, and where it answers questions of others.
+
+@graphflow/<domain>/proc/<zid>/<uid>/<pid>/<host>    the token of a process
+@graphflow/<domain>/<what>/<zid>                     its answers: `answer_key`
+"""
 
 from __future__ import annotations
 
@@ -46,6 +50,15 @@ def token(domain: int, zid: str) -> str:
 def watch_key(domain: int) -> str:
     """The key of all of a domain."""
     return f"@graphflow/{domain}/proc/**"
+
+
+WAITS, LOOK, GROUPS = "waits", "look", "groups"
+"""What a process answers; see `deadlock.inspection`."""
+
+
+def answer_key(domain: int, what: str, zid: str = "*") -> str:
+    """Where the processes of a domain answer."""
+    return f"@graphflow/{domain}/{what}/{zid}"
 
 
 def parse(text: str) -> ProcessToken | None:

@@ -12,13 +12,13 @@ from graphflow.graph import source
 from graphflow.graph.check import Interfaces, check, offered_services, resolver, step_type
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import resolve
-from graphflow.interface import Endpoint, Handler, Interface, Parameter
+from graphflow.interface import EndpointInfo, HandlerInfo, Interface, Parameter
 
 NOWHERE = Place("code.py", 1)
 
 
-def endpoint(kind: Any, name: str, type_: str) -> Endpoint:
-    return Endpoint(kind, name, type_, name, NOWHERE)
+def endpoint(kind: Any, name: str, type_: str) -> EndpointInfo:
+    return EndpointInfo(kind, name, type_, name, NOWHERE)
 
 
 CHASER = Interface(
@@ -41,9 +41,9 @@ CHASER = Interface(
         Parameter("points", "list[float]", [0.0], NOWHERE),
     ),
     handlers=(
-        Handler("control", "timer", NOWHERE),
-        Handler("load", "service", NOWHERE, is_async=False),
-        Handler("watch", "task", NOWHERE),
+        HandlerInfo("control", "timer", NOWHERE),
+        HandlerInfo("load", "service", NOWHERE, is_async=False),
+        HandlerInfo("watch", "task", NOWHERE),
     ),
 )
 SIM = Interface(

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graphflow.machines.cache import Change, GraphCache
+from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 STRING = "std_msgs/msg/String"
@@ -48,10 +48,10 @@ def test_a_token_changes_the_picture_once() -> None:
     """A repeated token is no change, neither when it comes nor when it goes."""
     cache = GraphCache()
 
-    assert cache.apply(CHATTER.token, alive=True) == [Change(CHATTER, True)]
+    assert cache.apply(CHATTER.token, alive=True) == [GraphChange(CHATTER, True)]
     assert cache.apply(CHATTER.token, alive=True) == []
     assert CHATTER.token in cache
-    assert cache.apply(CHATTER.token, alive=False) == [Change(CHATTER, False)]
+    assert cache.apply(CHATTER.token, alive=False) == [GraphChange(CHATTER, False)]
     assert cache.apply(CHATTER.token, alive=False) == []
     assert CHATTER.token not in cache
 
@@ -72,8 +72,8 @@ def test_the_end_of_a_node_ends_its_endpoints() -> None:
 
     changes = cache.apply(LISTENER.token, alive=False)
 
-    assert changes[0] == Change(LISTENER, False)
-    assert set(changes[1:]) == {Change(HEARD, False), Change(SERVER, False)}
+    assert changes[0] == GraphChange(LISTENER, False)
+    assert set(changes[1:]) == {GraphChange(HEARD, False), GraphChange(SERVER, False)}
     assert set(cache) == {TALKER, CHATTER}
     assert cache.apply(HEARD.token, alive=False) == []
 

@@ -1,49 +1,172 @@
-"""ROS 2's goal states, and the book that an action's server keeps of its goals."""
+"""The table of a goal's life, and the book that an action's server keeps of its goals."""
 
 from __future__ import annotations
 
 from itertools import product
+from typing import get_args
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from graphflow.machines.goal import ALL_GOALS, TRANSITIONS, CancelCode, GoalBook, GoalEvent, GoalStatus, step
+from graphflow.interface import GoalPolicy, OnClientLoss
+from graphflow.machines.goal import (
+    ALL_GOALS,
+    STEPS,
+    CancelCode,
+    Do,
+    GoalBook,
+    GoalEvent,
+    GoalRules,
+    GoalStatus,
+    Phase,
+    step,
+)
+from tests.machines.rcl_goals import NEXT
 
 A, B, C = (bytes([n]) * 16 for n in (1, 2, 3))
-LIVE = (GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING)
+RULES = [GoalRules(policy, loss) for policy in get_args(GoalPolicy) for loss in get_args(OnClientLoss)]
+EVERYTHING = GoalRules("preempt", "cancel")
+"""Under which nothing is left out."""
+CLEANING = (Phase.CANCELING, Phase.PREEMPTED)
 
 
-def test_legal_and_illegal_transitions() -> None:
-    """Eight transitions are legal, and every other raises; the table is that of rcl_action."""
-    legal = {
-        "ACCEPTED": {"execute": "EXECUTING", "cancel_goal": "CANCELING"},
-        "EXECUTING": {"cancel_goal": "CANCELING", "succeed": "SUCCEEDED", "abort": "ABORTED"},
-        "CANCELING": {"succeed": "SUCCEEDED", "abort": "ABORTED", "canceled": "CANCELED"},
-    }
-    assert len(TRANSITIONS) == 8
-    for status, event in product(GoalStatus, GoalEvent):
-        after = legal.get(status.name, {}).get(event.value)
-        if after is not None:
-            assert step(status, event).name == after
-        else:
-            with pytest.raises(ValueError, match=f"a goal that is {status.name} cannot {event.value}"):
-                step(status, event)
+def test_every_step_is_legal_in_ros() -> None:
+    """Clients are told of no change that rcl_action does not have, and of all that lie between."""
+    for (phase, event), following in STEPS.items():
+        states = [s for s in (phase.status, following.through, following.phase.status) if s]
+        changes = [(a, b) for a, b in zip(states, states[1:], strict=False) if a is not b]
+        assert all(after in NEXT.get(before, ()) for before, after in changes), (phase, event)
+        if phase is Phase.DECIDING:
+            assert following.phase.status in (GoalStatus.UNKNOWN, GoalStatus.ACCEPTED)
 
 
 def test_what_is_terminal_and_what_can_be_cancelled() -> None:
-    """No transition leads out of a terminal state."""
+    """No state follows a terminal one."""
     assert [s.name for s in GoalStatus if s.is_terminal] == ["SUCCEEDED", "CANCELED", "ABORTED", "LOST"]
     assert [s.name for s in GoalStatus if s.is_cancelable] == ["ACCEPTED", "EXECUTING"]
-    assert not any(status.is_terminal for status, _ in TRANSITIONS)
+    assert not any(status.is_terminal for status in NEXT)
+
+
+def test_the_table_is_complete() -> None:
+    """Whoever may go or stop at any time may do so in every phase; every phase is reached, and left to an end."""
+    live = [phase for phase in Phase if not phase.is_over]
+    for phase, event in product(live, (GoalEvent.CLIENT_LOST, GoalEvent.CLIENT_AWAY, GoalEvent.STOPPING)):
+        assert (phase, event) in STEPS
+    for phase in live:
+        assert phase.status.is_cancelable == (
+            phase is not Phase.DECIDING
+            and STEPS.get((phase, GoalEvent.CLIENT_AWAY), STEPS[phase, GoalEvent.STOPPING]).phase is not phase
+        )
+    reached, todo = {Phase.DECIDING}, [Phase.DECIDING]
+    while todo:
+        found = {following.phase for (phase, _), following in STEPS.items() if phase is todo[-1]} - reached
+        todo.pop()
+        reached |= found
+        todo += found
+    assert reached == set(Phase)
+
+
+def test_a_goal_that_is_over_stays_what_it_is() -> None:
+    """Whatever comes late changes nothing, and has nothing done."""
+    for phase, event, rules in product([p for p in Phase if p.is_over], GoalEvent, RULES):
+        assert step(phase, event, rules).phase is phase
+        assert step(phase, event, rules).do == ()
+
+
+def test_what_cannot_happen_is_an_error() -> None:
+    """A server that loses count is told so, and does not go on."""
+    with pytest.raises(ValueError, match="a goal that is QUEUED cannot have RETURNED"):
+        step(Phase.QUEUED, GoalEvent.RETURNED, RULES[0])
+    with pytest.raises(ValueError, match="a goal that is DECIDING cannot have BEGUN"):
+        step(Phase.DECIDING, GoalEvent.BEGUN, RULES[0])
+
+
+def test_a_body_is_cancelled_once() -> None:
+    """It gets a limit with it, and from then on only cleans up."""
+    for (phase, event), following in STEPS.items():
+        starts = phase not in CLEANING and following.phase in CLEANING
+        assert (Do.CANCEL_BODY in following.do) == (Do.LIMIT_CLEANUP in following.do) == starts, (phase, event)
+
+
+@pytest.mark.parametrize("rules", RULES)
+def test_what_only_some_servers_do(rules: GoalRules) -> None:
+    """Others are told of a newer goal under `preempt` only, and clients are waited for where their loss matters."""
+    answered = step(Phase.ANSWERING, GoalEvent.ANSWERED, rules)
+    assert (Do.PREEMPT_OTHERS in answered.do) == (rules.policy == "preempt")
+    assert answered.do[-1] is Do.ENQUEUE
+    lost = step(Phase.RUNNING, GoalEvent.CLIENT_LOST, rules)
+    assert lost.phase is Phase.RUNNING
+    assert (lost.do == (Do.AWAIT_CLIENT,)) == (rules.on_client_loss == "cancel")
+
+
+@given(st.lists(st.sampled_from(sorted(GoalEvent, key=lambda e: e.name)), max_size=30))
+def test_any_life_ends_once_and_as_it_should(events: list[GoalEvent]) -> None:
+    """Whatever happens in whatever order: one end, which is that of who has asked for it."""
+    kept = GoalBook(EVERYTHING, 10, 10, 10)
+    record = kept.ask(A, B)
+    path: list[GoalStatus] = []
+    queued = running = False
+    for now, event in enumerate(events):
+        if (record.phase, event) not in STEPS and not record.phase.is_over:
+            continue
+        before = record.phase
+        outcome = kept.step(A, event, now) if A in kept.goals or A in kept.deciding else None
+        if outcome is None:  # it was rejected, and is forgotten
+            assert record.phase is Phase.REJECTED
+            return
+        path += outcome.told
+        queued = (queued or Do.ENQUEUE in outcome.do) and Do.DEQUEUE not in outcome.do
+        if event is GoalEvent.BEGUN and not before.is_over:
+            assert queued
+            queued, running = False, True
+        if Do.CANCEL_BODY in outcome.do:
+            assert running
+        if event is GoalEvent.DROPPED:
+            queued = False
+    assert not (record.phase.is_over and queued)
+    assert all(after in NEXT[before] for before, after in zip(path, path[1:], strict=False))
+    if record.phase is Phase.CANCELED:
+        assert GoalStatus.CANCELING in path
+    if record.phase is Phase.SUCCEEDED:
+        assert running
+    assert (record.ended_ns is not None) == record.phase.is_over
+
+
+@pytest.mark.parametrize(
+    ("policy", "room"), [("reject", [True, False]), ("queue", [True, True, True, False]), ("parallel", [True] * 9)]
+)
+def test_for_how_many_goals_there_is_room(policy: GoalPolicy, room: list[bool]) -> None:
+    """One, so many as may wait, or any number; goals that are over take none."""
+    kept = GoalBook(GoalRules(policy, queue_depth=3), 10, 10, 10)
+    found = []
+    for n in range(len(room)):
+        found.append(kept.has_room())
+        kept.ask(bytes([n]) * 16, B)
+        kept.step(bytes([n]) * 16, GoalEvent.ACCEPTED, n)
+    assert found == room
+    for goal_id in list(kept.goals):
+        kept.step(goal_id, GoalEvent.STOPPING, 99)
+    assert kept.has_room()
+
+
+def test_the_goals_of_a_client() -> None:
+    """Those that are being decided too, and none that is over."""
+    kept = book()
+    kept.ask(bytes([4]) * 16, B)
+    assert kept.of_client(bytes(16)) == [B, C]
+    assert kept.of_client(B) == [bytes([4]) * 16]
 
 
 def book() -> GoalBook:
     """A book in which A was accepted at 10 and ended, B runs since 20, and C is being cancelled since 30."""
-    made = GoalBook(keep_ns=1000, show_ns=100, keep_most=2)
+    made = GoalBook(GoalRules("parallel"), keep_ns=1000, show_ns=100, keep_most=2)
     for goal_id, when in ((A, 10), (B, 20), (C, 30)):
-        made.accept(goal_id, when)
-        made.step(goal_id, GoalEvent.EXECUTE, when)
-    made.step(A, GoalEvent.SUCCEED, 40)
-    made.step(C, GoalEvent.CANCEL_GOAL, 50)
+        made.ask(goal_id, bytes(16))
+        for event in (GoalEvent.ACCEPTED, GoalEvent.ANSWERED, GoalEvent.BEGUN):
+            made.step(goal_id, event, when)
+    made.step(A, GoalEvent.RETURNED, 40)
+    made.step(C, GoalEvent.CANCEL, 50)
     return made
 
 
@@ -73,7 +196,7 @@ def test_results_are_kept_from_the_end_on() -> None:
     assert kept.expire(1041) == [A]
     assert kept.expire(10**9) == []
     assert set(kept.goals) == {B, C}
-    kept.step(B, GoalEvent.ABORT, 10**9)
+    kept.step(B, GoalEvent.FAILED, 10**9)
     assert kept.expire(10**9 + 1000) == []
     assert kept.active() == 1
 
@@ -81,8 +204,8 @@ def test_results_are_kept_from_the_end_on() -> None:
 def test_the_oldest_results_go_when_there_are_many() -> None:
     """Not the oldest goals: those that ended first."""
     kept = book()
-    kept.step(C, GoalEvent.CANCELED, 60)
-    kept.step(B, GoalEvent.SUCCEED, 70)
+    kept.step(C, GoalEvent.UNWOUND, 60)
+    kept.step(B, GoalEvent.RETURNED, 70)
     assert kept.expire(70) == [A]
     assert set(kept.goals) == {B, C}
 
@@ -96,4 +219,4 @@ def test_the_list_of_states_tells_of_ends_for_a_while() -> None:
 def test_an_id_is_good_for_one_goal() -> None:
     """A goal cannot be entered twice."""
     with pytest.raises(ValueError, match="is known already"):
-        book().accept(A, 99)
+        book().ask(A, bytes(16))

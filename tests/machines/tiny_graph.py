@@ -16,7 +16,19 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from graphflow.machines.waits import FREE, Activity, All, AnyOf, Call, Condition, Group, Join, Picture, Queue, Slot
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    GroupView,
+    Join,
+    QueueView,
+    Slot,
+    WaitGraph,
+)
 
 # What is to be done
 
@@ -246,19 +258,21 @@ class TinyGraph:
         holds = needs[1:] if released else needs
         return _with(State(others.runs, tuple(queues)), Run(run.id, step, wait, holds, blocks))
 
-    def picture(self, state: State) -> Picture:
+    def picture(self, state: State) -> WaitGraph:
         """What graphflow would see."""
         activities = (
-            Activity(run.id, run.id, "/n", run.holds, run.wait, run.id, process=self._process[run.id])
+            ActivityView(run.id, run.id, "/n", run.holds, run.wait, run.id, process=self._process[run.id])
             for run in state.runs
         )
         queues = (
-            Queue(f"queue{i}", f"handler{i}", "/n", self._groups(i), ids, process=f"process{self._handlers[i].process}")
+            QueueView(
+                f"queue{i}", f"handler{i}", "/n", self._groups(i), ids, process=f"process{self._handlers[i].process}"
+            )
             for i, ids in enumerate(state.queues)
         )
-        return Picture(
+        return WaitGraph(
             {a.id: a for a in activities},
-            {name: Group(name, name, "/n", limit) for name, limit in self._limits.items()},
+            {name: GroupView(name, name, "/n", limit) for name, limit in self._limits.items()},
             {q.id: q for q in queues},
             {self._process[run.id]: run.id for run in state.runs if run.blocks},
         )

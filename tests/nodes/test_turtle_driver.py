@@ -12,7 +12,7 @@ import pytest
 from graphflow import GoalRejected, GoalStatus
 from graphflow.msgs.turtle_interfaces.action import GoToGoal
 from graphflow.msgs.turtlesim.msg import Pose
-from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.testing import Graph
 from nodes.turtle_driver import TurtleDriver
 from nodes.turtlesim import TurtleSim
@@ -20,7 +20,7 @@ from nodes.turtlesim import TurtleSim
 START = 11.088889122009277 / 2
 
 
-async def drive(graph: Graph, x: float, y: float) -> ClientGoal[Any, Any, Any]:
+async def drive(graph: Graph, x: float, y: float) -> ClientGoalHandle[Any, Any, Any]:
     client = graph.action_client(GoToGoal, "/turtle1/go_to_goal")
     await graph.settle()
     return await client.send_goal(GoToGoal.Goal(position={"x": x, "y": y}))

@@ -11,6 +11,7 @@ from typing import TextIO
 import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from nodes.turtle_teleop import TurtleTeleop
 
@@ -61,7 +62,7 @@ async def test_q_ends_it_and_gives_the_terminal_back(press: Callable[[bytes], in
     assert termios.tcgetattr(sys.stdin) != before
 
     press(key)
-    await node.wait_ended()
+    await core_of(node).wait_ended()
 
     assert termios.tcgetattr(sys.stdin) == before
 
@@ -84,7 +85,7 @@ async def test_without_a_terminal_it_says_what_to_do(
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     node = TurtleTeleop()
     await graph.start(node)
-    await node.wait_ended()
+    await core_of(node).wait_ended()
 
     assert node.name == "teleop_turtle"
     assert any("run teleop_turtle in one of its own" in m for m in caplog.messages)

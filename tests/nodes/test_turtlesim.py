@@ -16,7 +16,7 @@ from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
 from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
-from graphflow.runtime.action_client import ClientGoal
+from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.testing import Graph
 from nodes.turtle_world import SIZE
 from nodes.turtlesim import TurtleSim
@@ -323,7 +323,7 @@ async def test_reset_begins_again(graph: Graph, caplog: pytest.LogCaptureFixture
 # rotate_absolute
 
 
-async def rotation(graph: Graph, theta: float) -> ClientGoal[Any, Any, Any]:
+async def rotation(graph: Graph, theta: float) -> ClientGoalHandle[Any, Any, Any]:
     client = graph.action_client(RotateAbsolute, "/turtle1/rotate_absolute")
     await graph.settle()
     return await client.send_goal(RotateAbsolute.Goal(theta=theta))

@@ -15,7 +15,7 @@ import warnings
 from asyncio import CancelledError, Task
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Literal
 
@@ -42,7 +42,7 @@ from graphflow import (
 )
 from graphflow.errors import ClosedError, GoalError
 from graphflow.interface import GoalPolicy, OnClientLoss
-from graphflow.machines.goal import ALL_GOALS, TRANSITIONS, CancelCode, GoalBook, GoalEvent, GoalRecord
+from graphflow.machines.goal import ALL_GOALS, CancelCode, GoalBook, GoalEvent, GoalRecord, GoalRules, Outcome
 from graphflow.msgs.action_msgs.msg import GoalStatusArray
 from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
@@ -51,16 +51,20 @@ from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.qos import ACTION_STATUS
 from graphflow.runtime import action_client, actions
-from graphflow.runtime.action_client import CANCEL_TIMEOUT, LOST_GRACE, RESULT_LONGEST, ClientGoal
-from graphflow.runtime.actions import ACCEPT_LIMIT, CLIENT_GRACE, RESULT_KEPT
+from graphflow.runtime.action_client import CANCEL_TIMEOUT, LOST_GRACE, RESULT_LONGEST, ClientGoalHandle
+from graphflow.runtime.actions import RESULT_KEPT
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import Seeded, World, simulate
 from graphflow.times import NANOSECONDS
+from tests.machines.rcl_goals import NEXT
 
 CASES = int(os.environ.get("GRAPHFLOW_CASES", "180"))
 """Programs that are tried; always the same ones unless the environment gives their number."""
 CLEANUP = 2.0537
 """Seconds that cancelled bodies get. Nothing that they do takes just as long."""
+RULES = GoalRules()
+"""What servers go by that say nothing else."""
 DEPTH = 2
 """Goals that may wait for their turn."""
 MOMENT = 1e-3
@@ -254,8 +258,8 @@ class Model:
 class Book(GoalBook):
     """A server's book, read as it is written."""
 
-    def __init__(self, model: Model, *limits: int) -> None:
-        super().__init__(*limits)
+    def __init__(self, model: Model, rules: GoalRules, *limits: int) -> None:
+        super().__init__(replace(rules, queue_depth=DEPTH), *limits)
         self.model = model
         self.lives: list[Life] = []
         self.stopped: float | None = None
@@ -263,22 +267,21 @@ class Book(GoalBook):
         self.bodies: list[Life] = []
         """Those that have begun, in order."""
 
-    def accept(self, goal_id: bytes, now_ns: int) -> GoalRecord:
-        record, life = super().accept(goal_id, now_ns), self.model.of(goal_id)
+    def accept(self, goal_id: bytes, record: GoalRecord) -> None:
+        life = self.model.of(goal_id)
         if life.record is not None:
             self.model.wrong(f"{life.n} is accepted twice")
         if self.model.setting.policy == "reject" and any(other.over is None for other in self.lives):
             self.model.wrong(f"{life.n} is accepted while another is under way")
         for other in self.lives:
             other.is_forgotten |= other.over is not None and now() - other.over > RESULT_KEPT
-        if not life.plan.is_wanted or life.plan.decides > ACCEPT_LIMIT:
+        if not life.plan.is_wanted or life.plan.decides > RULES.accept_limit:
             self.model.wrong(f"{life.n} is accepted against its server's will")
         life.book, life.record, life.accepted, life.path = self, record, now(), [record.status]
         life.changed = now()
         self.lives.append(life)
         if self.model.setting.policy == "preempt":
             asyncio.get_running_loop().call_soon(self._preempt, life)
-        return record
 
     def _preempt(self, newer: Life) -> None:
         """What is about to be done for a newer goal."""
@@ -287,28 +290,34 @@ class Book(GoalBook):
                 life.is_preempted = True
                 life.tell_to_end()
 
-    def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> GoalStatus:
-        status, life = super().step(goal_id, event, now_ns), self.model.of(goal_id)
-        if life.over is not None:
-            self.model.wrong(f"{life.n} ends twice")
-        life.path.append(status)
-        life.changed = now()
-        if status.is_terminal:
-            life.over = now()
-        if event is GoalEvent.CANCEL_GOAL:
+    def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> Outcome:
+        outcome, life = super().step(goal_id, event, now_ns), self.model.of(goal_id)
+        if event is GoalEvent.ACCEPTED:
+            self.accept(goal_id, outcome.record)
+            return outcome
+        for status in outcome.told:
+            if life.over is not None:
+                self.model.wrong(f"{life.n} ends twice")
+            life.path.append(status)
+            life.changed = now()
+            if status.is_terminal:
+                life.over = now()
+        if CANCELING in outcome.told:
             life.tell_to_end()
             if not life.is_granted and not self._client_is_lost(life):
                 self.model.wrong(f"{life.n} is cancelled, and nobody has asked for it")
-        return status
+        return outcome
 
     def _client_is_lost(self, life: Life) -> bool:
         died = self.model.died.get(life.n)
         return (
-            self.model.setting.on_client_loss == "cancel" and died is not None and now() > died + CLIENT_GRACE - MOMENT
+            self.model.setting.on_client_loss == "cancel"
+            and died is not None
+            and now() > died + RULES.client_grace - MOMENT
         )
 
 
-class SeenGoal(ClientGoal[Any, Any, Any]):
+class SeenGoal(ClientGoalHandle[Any, Any, Any]):
     """A goal at its client, which remembers its states."""
 
     path: list[GoalStatus]
@@ -637,7 +646,7 @@ class Play:
             self.doer, self.is_stopping, self.gone_since = None, False, now()
             await self.world.kill(doer)
         else:
-            await doer.stop()
+            await core_of(doer).stop()
             # A request that is on its way when its server stops may have to time out.
             self.doer, self.is_stopping, self.gone_since = None, False, now() + RESULT_LONGEST
 
@@ -791,7 +800,7 @@ class Play:
             assert life.told is None or now() < life.told + CLEANUP
             died = self.model.died.get(life.n)
             if self.setting.on_client_loss == "cancel" and died is not None and life.accepted <= died:
-                assert not life.is_cancelable or now() <= died + CLIENT_GRACE + MOMENT
+                assert not life.is_cancelable or now() <= died + RULES.client_grace + MOMENT
         elif life.began is None and CANCELING not in life.path:
             assert life.is_preempted
         if life.must_stop and life.told != now():
@@ -857,9 +866,9 @@ class Play:
             await self.check_expiry(self.doer)
         self.check_leaks()
         for doer in self.doers:
-            await doer.stop()
+            await core_of(doer).stop()
         for asker in self.askers:
-            await asker.stop()
+            await core_of(asker).stop()
         assert asyncio.all_tasks() == {asyncio.current_task()}
 
     def check_outcome(self, sent: Sent) -> None:
@@ -890,7 +899,7 @@ class Play:
 
     def may_be_rejected(self, sent: Sent) -> bool:
         plan, policy = sent.life.plan, self.setting.policy
-        if not plan.is_wanted or plan.decides > ACCEPT_LIMIT or sent.life.is_withdrawn:
+        if not plan.is_wanted or plan.decides > RULES.accept_limit or sent.life.is_withdrawn:
             return True
         books = [doer.book for doer in self.doers]
         others = [other for book in books for other in book.lives if other.over is None or other.over >= sent.when]
@@ -923,18 +932,19 @@ class Play:
             assert not client._followers
             assert not client._send._pending | client._get._pending | client._cancel._pending
         nodes: list[Node] = [node for node in (*self.askers, self.doer) if node is not None]
-        for waits in [node.context.waits for node in nodes]:
-            assert not waits.calls
-            assert not waits.goals
-            assert not waits.served
+        for ledger in [node.context.ledger for node in nodes]:
+            assert not ledger.calls
+            assert not ledger.goals
+            assert not ledger.served
 
 
 def _follow() -> dict[GoalStatus, set[GoalStatus]]:
     """Which states a client may see after which: it may miss some."""
     follow: dict[GoalStatus, set[GoalStatus]] = {status: set() for status in GoalStatus}
     for _ in GoalStatus:
-        for (before, _event), after in TRANSITIONS.items():
-            follow[before] |= {after, LOST} | follow[after]
+        for before, afters in NEXT.items():
+            for after in afters:
+                follow[before] |= {after, LOST} | follow[after]
     follow[GoalStatus.UNKNOWN] = set(GoalStatus)
     return follow
 
@@ -947,8 +957,7 @@ def watched(model: Model) -> Iterator[None]:
     """Have what happens to goals written down, and nothing logged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(actions, "GoalBook", partial(Book, model))
-        patch.setattr(actions, "QUEUE_DEPTH", DEPTH)
-        patch.setattr(action_client, "ClientGoal", partial(SeenGoal, model))
+        patch.setattr(action_client, "ClientGoalHandle", partial(SeenGoal, model))
         logging.disable()
         try:
             yield
@@ -1222,7 +1231,7 @@ def test_a_server_that_is_replaced() -> None:
 # Races of goals, clients and servers that end
 
 
-async def begun(world: World, cleaner: Cleaner) -> tuple[Asker, ClientGoal[Any, Any, Any]]:
+async def begun(world: World, cleaner: Cleaner) -> tuple[Asker, ClientGoalHandle[Any, Any, Any]]:
     await world.start(cleaner, asker := Asker())
     goal = await asker.do.send_goal(Fibonacci.Goal())
     await asyncio.sleep(0.1)
@@ -1267,7 +1276,7 @@ def test_stopping_while_a_body_cleans_up() -> None:
     async def story(world: World) -> None:
         _, goal = await begun(world, cleaner := Cleaner())
         await goal.cancel()
-        await cleaner.stop()
+        await core_of(cleaner).stop()
         assert (cleaner.cancels, cleaner.cleaned) == (1, 1)
 
     simulate(story)
@@ -1281,7 +1290,7 @@ async def test_many_goals_at_once_for_a_queue(graph: Graph) -> None:
     goals = [asker.do.send_goal(Fibonacci.Goal()) for _ in range(40)]
     outcomes = await asyncio.gather(*goals, return_exceptions=True)
 
-    assert sum(isinstance(outcome, GoalRejected) for outcome in outcomes) == 40 - actions.QUEUE_DEPTH
+    assert sum(isinstance(outcome, GoalRejected) for outcome in outcomes) == 40 - RULES.queue_depth
 
 
 def test_a_goal_sent_twice_while_the_server_decides() -> None:
@@ -1357,7 +1366,7 @@ def test_a_body_that_outlives_its_server() -> None:
         await world.start(cleaner := Cleaner(5.0), asker := Asker())
         await asker.do.send_goal(Fibonacci.Goal())
         await asyncio.sleep(0.1)
-        await cleaner.stop()
+        await core_of(cleaner).stop()
         await asyncio.sleep(10.0)
 
     assert background_errors(story) == []
@@ -1370,7 +1379,7 @@ def test_a_request_that_arrives_when_its_server_has_stopped() -> None:
         await world.start(cleaner := Cleaner(), asker := Asker())
         sending = asyncio.create_task(asker.do.send_goal(Fibonacci.Goal(), timeout=100.0))
         await asyncio.sleep(0.01)
-        await cleaner.stop()
+        await core_of(cleaner).stop()
         await asyncio.gather(sending, return_exceptions=True)
         assert now() < 2.0
 
@@ -1389,7 +1398,7 @@ def test_a_client_that_is_closed_while_a_block_is_left() -> None:
 
         asking = asyncio.create_task(ask())
         await asyncio.sleep(0.1)
-        await asker.stop()
+        await core_of(asker).stop()
         await asyncio.wait([asking])
         assert not asking.cancelled()
 
@@ -1403,7 +1412,7 @@ def test_a_sender_that_is_cancelled_when_its_node_has_stopped() -> None:
         await world.start(Cleaner(accept=decide), asker := Asker())
         sending = asyncio.create_task(asker.do.send_goal(Fibonacci.Goal()))
         await asyncio.sleep(0.1)
-        await asker.stop()
+        await core_of(asker).stop()
         sending.cancel()
         await asyncio.gather(sending, return_exceptions=True)
         return sending.cancelled()

@@ -24,17 +24,19 @@ from graphflow import (
 )
 from graphflow.errors import EncodeError
 from graphflow.interface import GoalPolicy
+from graphflow.machines.goal import GoalEvent
 from graphflow.msgs.action_msgs.msg import GoalStatusArray
 from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
-from graphflow.runtime.action_client import ClientGoal
-from graphflow.runtime.actions import GoalServer
+from graphflow.runtime.action_client import ClientGoalHandle
+from graphflow.runtime.actions import ActionServer
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 from tests.runtime.cast import Log
 
-Goal = ClientGoal[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
+Goal = ClientGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 
 
 class Asker(Node):
@@ -79,6 +81,11 @@ class Server(Node):
             raise
         finally:
             self.bodies -= 1
+
+
+def at_work(server: Node) -> ActionServer[Any, Any, Any]:
+    [found] = [part for part in core_of(server)._parts if isinstance(part, ActionServer)]
+    return found
 
 
 async def pair(graph: Graph, server: Node | None = None) -> tuple[Any, Asker]:
@@ -324,10 +331,10 @@ async def test_a_goal_cancelled_before_its_body_was_reached(graph: Graph) -> Non
     """Between its acceptance and its first step."""
     server, asker = await pair(graph, Recorder("queue"))
     sending = asyncio.ensure_future(asker.order(1))
-    while not server._openables[-1].goals:
+    while not at_work(server).goals:
         await asyncio.sleep(0)
-    [handle] = server._openables[-1].goals.values()
-    server._openables[-1].cancel(handle)
+    [handle] = at_work(server).goals.values()
+    at_work(server)._step(handle, GoalEvent.CANCEL)
     goal = await sending
     await graph.settle()
 
@@ -360,7 +367,7 @@ async def test_a_body_that_outstays_its_cancellation(graph: Graph, caplog: pytes
 
     assert goal.status is GoalStatus.ABORTED
     assert server.work.running == 1
-    assert "compute still runs 2 s after it was cancelled" in caplog.text
+    assert "compute is still running 2 s after it was cancelled" in caplog.text
     server.gate.set()
     await graph.settle()
     assert server.work.running == 0
@@ -413,7 +420,7 @@ async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
     server, asker = await pair(graph)
     goal = await asker.order(50)
     await graph.settle()
-    for endpoint in server._openables[-1].endpoints:
+    for endpoint in core_of(server)._parts[-1].endpoints:
         endpoint.close()
     await graph.clock.advance(1.0)
 
@@ -430,7 +437,7 @@ async def test_a_client_that_dies(graph: Graph, on_client_loss: str, status: int
     await graph.settle()
     await graph.stop(asker)
     await graph.clock.advance(4.9)
-    [handle] = server._openables[-1].goals.values()
+    [handle] = at_work(server).goals.values()
     assert handle.status is GoalStatus.EXECUTING
     await graph.clock.advance(1.0)
 
@@ -497,12 +504,12 @@ async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.
     def broken(*_: Any) -> None:
         raise LookupError("mislaid")
 
-    monkeypatch.setattr(GoalServer, "_get_result", broken)
+    monkeypatch.setattr(ActionServer, "_get_result", broken)
     _, asker = await pair(graph)
     goal = await asker.order(3)
     await graph.clock.advance(1.0)
 
-    with pytest.raises(GoalLost, match="result is not to be had, last known as EXECUTING"):
+    with pytest.raises(GoalLost, match="result cannot be had, last known as EXECUTING"):
         await goal.result()
 
 
@@ -522,18 +529,18 @@ class Crowd(Node):
 async def test_a_parallel_action_that_is_moved(graph: Graph) -> None:
     """It takes turns in the group that it is moved to, and none when it is moved back to no group."""
     server, asker = await pair(graph, Crowd())
-    [runner] = [r for r in server.runners if r.handler == "compute"]
+    [runner] = [r for r in core_of(server).runners if r.spec.handler == "compute"]
     for order in (1, 2):
         await asker.order(order)
     await graph.settle()
     assert server.bodies == 2
 
-    runner.move(server.groups.named("one"))
+    runner.move(core_of(server).groups.named("one"))
     for order in (3, 4):
         await asker.order(order)
     await graph.settle()
     assert server.bodies == 3
-    runner.move(server.groups.named("none"))
+    runner.move(core_of(server).groups.named("none"))
     await graph.settle()
     assert server.bodies == 4
 

@@ -83,8 +83,8 @@ def test_values_for_one_node() -> None:
         ]
     )
 
-    assert parsed.params_for(TurtleSim) == {"rate": (2.0, "command line"), "title": ("two", "command line")}
-    assert TurtleSim(remap=parsed.remaps, overrides=parsed.params_for(TurtleSim)).full_name == "/sim2"
+    assert parsed.params_for(TurtleSim.interface()) == {"rate": (2.0, "command line"), "title": ("two", "command line")}
+    assert TurtleSim(remap=parsed.remaps, overrides=parsed.params_for(TurtleSim.interface())).full_name == "/sim2"
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import pytest
 
 from graphflow import Context, Node
 from graphflow.errors import GraphflowError
-from graphflow.machines.cache import Change
-from graphflow.runtime.clock import WallClock
+from graphflow.executor.clock import WallClock
+from graphflow.machines.cache import GraphChange
 from graphflow.testing import Graph
 from graphflow.transport.memory import Network
 
@@ -56,7 +56,7 @@ async def test_listeners_hear_of_changes(graph: Graph) -> None:
     """Each entity that comes or goes, until they stop listening."""
     watcher, node = Node("watcher"), Node("n", **BARE)
     await graph.start(watcher)
-    changes: list[Change] = []
+    changes: list[GraphChange] = []
     stop = watcher.context.on_change(changes.append)
     await graph.start(node)
     await graph.stop(node)
@@ -108,7 +108,7 @@ async def test_a_condition_that_fails(graph: Graph) -> None:
     answers: list[bool] = [False]
     waiting = asyncio.create_task(watcher.context.wait_for(lambda: answers.pop()))
     await graph.settle()
-    changes: list[Change] = []
+    changes: list[GraphChange] = []
     watcher.context.on_change(changes.append)
     await graph.start(Node("n"))
 

@@ -29,6 +29,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.declared import snake_case
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 
 X: Any = None
@@ -162,30 +163,28 @@ def test_names_that_a_node_needs_itself() -> None:
             name = Param("bob")  # hides the name
 
     assert str(caught.value).startswith(f"{__file__}:{line_of('hides the name')}: ")
-    assert "'name' is something every node has; call the attribute otherwise" in str(caught.value)
-    for attribute in ("log", "id", "clock", "start", *vars(Node("x"))):
-        with pytest.raises(DeclarationError, match=f"'{attribute}' is something every node has"):
+    assert "every node has 'name'; choose another name" in str(caught.value)
+    for attribute in ("log", "clock", "shutdown", *vars(Node("x"))):
+        with pytest.raises(DeclarationError, match=f"every node has '{attribute}'"):
             type("Hiding", (Node,), {attribute: Param(1.0)})
-    with pytest.raises(DeclarationError, match="'stop' is something every node has"):
-        type("Hiding", (Node,), {"stop": timer(1.0)(of_self_copy())})
+    with pytest.raises(DeclarationError, match="every node has 'shutdown'; choose another name"):
+        type("Hiding", (Node,), {"shutdown": timer(1.0)(of_self_copy())})
 
     with pytest.raises(DeclarationError) as caught:
 
         class Robot(Node):
-            async def stop(self) -> None:  # type: ignore[override]  # hides what stops the node
+            def spawn(self) -> None:  # type: ignore[override]  # hides what starts tasks
                 """Stand still."""
 
-    assert str(caught.value).startswith(f"{__file__}:{line_of('hides what stops the node')}: 'stop' is something")
+    assert str(caught.value).startswith(f"{__file__}:{line_of('hides what starts tasks')}: every node has 'spawn'")
 
     class Busy(Node):
         def __init__(self) -> None:
             super().__init__()
-            self.tasks = ["wash up"]  # type: ignore[assignment]
+            self.log = ["wash up"]  # type: ignore[assignment]
 
-    with pytest.raises(
-        DeclarationError, match=r"Busy: self\.tasks is something every node has; call the attribute oth"
-    ):
-        Busy().ensure_made()
+    with pytest.raises(DeclarationError, match=r"Busy: every node has self\.log; choose another name"):
+        core_of(Busy()).ensure_made()
 
     class Careful(Node):
         default_group = Group(1)

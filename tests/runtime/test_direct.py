@@ -9,7 +9,8 @@ import pytest
 
 from graphflow import Node, ServerLost, service
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
-from graphflow.runtime.services import ServiceClient
+from graphflow.runtime.node import core_of
+from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
@@ -105,7 +106,7 @@ async def test_a_call_under_way_outlives_the_coming_of_another_server(graph: Gra
 async def test_a_server_of_another_kind_gets_queries(graph: Graph) -> None:
     """A ROS 2 server knows nothing of lines."""
     _, client, queries = await asker(graph)
-    session = graph.network.session(client.node.context.loop)
+    session = graph.network.session(client.host.context.loop)
     entity = client.entity
     assert entity is not None
 
@@ -130,7 +131,7 @@ async def test_a_server_that_goes_without_a_word_is_lost(graph: Graph) -> None:
     answer = asyncio.ensure_future(client.call(REQUEST))
     await graph.settle()
     (server,) = client.matched.values()
-    client.node.context._token(server.token, False)
+    client.host.context._token(server.token, False)
     with pytest.raises(ServerLost, match="went away before it answered"):
         await answer
     assert queries == []
@@ -141,7 +142,7 @@ async def test_a_client_that_goes_takes_its_line_along(graph: Graph) -> None:
     adder = Adder()
     await graph.start(adder)
     node, client, _ = await asker(graph)
-    (server,) = [e for e in adder._openables if getattr(e, "name", "") == "/add"]
+    (server,) = [e for e in core_of(adder)._parts if getattr(e, "name", "") == "/add"]
     lines: Any = getattr(server, "_lines")  # noqa: B009
     assert len(lines._senders) == 1
     adder.gate.clear()
@@ -163,7 +164,7 @@ async def test_a_hello_from_nowhere_is_ignored(graph: Graph, where: bytes) -> No
     await graph.start(adder)
     _, client, _ = await asker(graph)
     (server,) = client.matched.values()
-    session = graph.network.session(client.node.context.loop)
+    session = graph.network.session(client.host.context.loop)
     sender = session.open_sender(f"@graphflow/{server.domain}/ask/{server.zid}/{server.eid}", client.qos)
     sender.put(where, attachment=attachment.pack(0, 0, b"stranger" * 2))
     sender.put(b"rubbish", attachment=b"rubbish")
@@ -179,7 +180,7 @@ async def test_an_answer_that_nobody_waits_for_is_ignored(graph: Graph) -> None:
     _, client, _ = await asker(graph)
     entity = client.entity
     assert entity is not None
-    session = graph.network.session(client.node.context.loop)
+    session = graph.network.session(client.host.context.loop)
     sender = session.open_sender(f"@graphflow/{entity.domain}/answer/{entity.zid}/{entity.eid}", client.qos)
     for sequence in (1, -1, 77):
         sender.put(b"", attachment=attachment.pack(sequence, 0, bytes(16)))

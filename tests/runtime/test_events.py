@@ -10,7 +10,7 @@ import pytest
 from graphflow import Liveliness, MessageInfo, Node, Publisher, Qos, QosEvent, Subscription, subscription
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import SENSOR_DATA, Durability
-from graphflow.runtime.events import Watchdog
+from graphflow.runtime.events import SilenceTimer
 from graphflow.testing import Graph, ManualClock
 from graphflow.wire import attachment
 from tests.runtime.cast import Log
@@ -347,12 +347,12 @@ async def test_a_watchdog_bites_once_a_silent_period(graph: Graph) -> None:
     """It calls after each whole period since the last touch, and not once it is stopped."""
     clock: ManualClock = graph.clock
     bites: list[float] = []
-    dog = Watchdog(clock, SECOND, lambda: bites.append(clock.monotonic_ns() / SECOND))
-    dog.start()
+    timer = SilenceTimer(clock, SECOND, lambda: bites.append(clock.monotonic_ns() / SECOND))
+    timer.start()
     await clock.advance(0.6)
-    dog.touch()
+    timer.touch()
     await clock.advance(3.0)
     assert bites == [1.6, 2.6, 3.6]
-    dog.stop()
+    timer.stop()
     await clock.advance(5.0)
     assert len(bites) == 3

@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from graphflow import ErrorBudget, Node, timer
-from graphflow.runtime.failures import OnError, TooManyErrors
+from graphflow.errors import TooManyErrors
+from graphflow.interface import OnError
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 
 
@@ -34,11 +36,11 @@ async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None
     node.create_timer(0.1, failing)
     await graph.start(node)
     await graph.clock.advance(2.0)
-    assert node.failure is None
+    assert core_of(node).failure is None
     await graph.clock.advance(0.1)
 
     with pytest.raises(TooManyErrors, match=r"21 errors of handlers within 10 s, the last in failing: ValueError: aga"):
-        await node.wait_ended()
+        await core_of(node).wait_ended()
 
 
 async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:
@@ -48,7 +50,7 @@ async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:
     await graph.start(node)
     await graph.clock.advance(60.0)
 
-    assert node.failure is None
+    assert core_of(node).failure is None
 
 
 @pytest.mark.parametrize(("on_error", "ends"), [("log", False), ("end", True), ("budget", True)])
@@ -66,5 +68,5 @@ async def test_a_handler_says_what_its_errors_mean(graph: Graph, on_error: OnErr
     await graph.start(node)
     await graph.clock.advance(1.0)
 
-    assert (node.failure is not None) is ends
-    node.failure_taken = True
+    assert (core_of(node).failure is not None) is ends
+    core_of(node).failure_taken = True

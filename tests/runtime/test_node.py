@@ -26,8 +26,9 @@ from graphflow.errors import ClosedError, InvalidName
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import Remap
-from graphflow.runtime import node as node_module
+from graphflow.runtime import core
 from graphflow.runtime.context import Context
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from graphflow.transport.memory import MemorySession
 from graphflow.wire.liveliness import Kind
@@ -113,12 +114,12 @@ async def test_nodes_and_endpoints_have_ids_of_their_own(graph: Graph) -> None:
     """No two of a process share one, as GIDs are made from them."""
     one, two = Talker("one"), Talker("two")
     context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
-    await one.start(context)
-    await two.start(context)
+    await core_of(one).start(context)
+    await core_of(two).start(context)
     await graph.settle()
     ids = [e.eid for e in context.cache]
-    await one.stop()
-    await two.stop()
+    await core_of(one).stop()
+    await core_of(two).stop()
     await context.close()
 
     assert len(ids) == len(set(ids)) > 10
@@ -297,12 +298,12 @@ async def test_a_failing_task_ends_the_node(graph: Graph, caplog: pytest.LogCapt
     await graph.start(node)
 
     with pytest.raises(ValueError, match="spawned" if spawned else "declared"):
-        await node.wait_ended()
+        await core_of(node).wait_ended()
     [record] = caplog.records
     name = "fail" if spawned else "work"
     assert record.getMessage().startswith(f"task /worker.{name}: ValueError: ")
     assert record.exc_info is not None
-    assert isinstance(node.failure, ValueError)
+    assert isinstance(core_of(node).failure, ValueError)
 
 
 async def test_an_error_of_graphflows_own_is_a_sentence(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
@@ -319,7 +320,7 @@ async def test_an_error_of_graphflows_own_is_a_sentence(graph: Graph, caplog: py
     await graph.start(node)
     await graph.clock.advance(1.0)
     with pytest.raises(ServiceUnavailable):
-        await node.wait_ended()
+        await core_of(node).wait_ended()
 
     [record] = caplog.records
     assert record.getMessage().startswith("task /caller.work: nobody offers the service /add")
@@ -343,8 +344,8 @@ async def test_the_first_failure_counts(graph: Graph, caplog: pytest.LogCaptureF
     await graph.start(node)
 
     with pytest.raises(ValueError, match="first"):
-        await node.wait_ended()
-    assert str(node.failure) == "first"
+        await core_of(node).wait_ended()
+    assert str(core_of(node).failure) == "first"
 
 
 async def test_shutdown_ends_the_node_from_within(graph: Graph) -> None:
@@ -359,7 +360,7 @@ async def test_shutdown_ends_the_node_from_within(graph: Graph) -> None:
     node = Quitter()
     node.shutdown()  # before the start there is nothing to end
     await graph.start(node)
-    waiting = asyncio.create_task(node.wait_ended())
+    waiting = asyncio.create_task(core_of(node).wait_ended())
     await graph.clock.advance(0.9)
     assert not waiting.done()
     await graph.clock.advance(0.1)
@@ -372,13 +373,13 @@ async def test_waiting_for_the_end_can_be_cancelled(graph: Graph) -> None:
     """The node does not notice."""
     node = Talker()
     await graph.start(node)
-    waiting = asyncio.create_task(node.wait_ended())
+    waiting = asyncio.create_task(core_of(node).wait_ended())
     await graph.settle()
     waiting.cancel()
     await graph.settle()
 
     assert waiting.cancelled()
-    again = asyncio.create_task(node.wait_ended())
+    again = asyncio.create_task(core_of(node).wait_ended())
     await graph.settle()
     assert not again.done()
     node.shutdown()
@@ -425,7 +426,7 @@ async def test_stop_waits_for_the_cleanup(graph: Graph) -> None:
     heard = graph.tap(String, "/out")
     graph.publisher(String, "/in").publish(String())
     await graph.clock.advance(1.0)
-    stopping = asyncio.create_task(node.stop())
+    stopping = asyncio.create_task(core_of(node).stop())
     await graph.settle()
     assert not stopping.done()
     assert node.is_running
@@ -443,7 +444,7 @@ async def test_nothing_begins_after_the_stop(graph: Graph) -> None:
     """Messages that still arrive and timers that fall due are not handled."""
     node = Tidy()
     await graph.start(node)
-    stopping = asyncio.create_task(node.stop())
+    stopping = asyncio.create_task(core_of(node).stop())
     await graph.settle()
     publisher = graph.publisher(String, "/in")
     publisher.publish(String())
@@ -461,8 +462,8 @@ async def test_two_may_stop_a_node(graph: Graph, caplog: pytest.LogCaptureFixtur
     graph.publisher(String, "/in").publish(String())
     await graph.settle()
     node.gate.set()
-    await asyncio.gather(node.stop(), node.stop())
-    await node.stop()
+    await asyncio.gather(core_of(node).stop(), core_of(node).stop())
+    await core_of(node).stop()
 
     assert sorted(node.ended) == ["subscription", "task"]
     assert caplog.records == []
@@ -470,7 +471,7 @@ async def test_two_may_stop_a_node(graph: Graph, caplog: pytest.LogCaptureFixtur
 
 async def test_a_node_that_was_never_started_can_be_stopped(graph: Graph) -> None:
     """There is nothing to do."""
-    await Talker().stop()
+    await core_of(Talker()).stop()
 
 
 @pytest.mark.parametrize("what", ["task", "subscription"])
@@ -478,7 +479,7 @@ async def test_what_does_not_end_is_named(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     """A cleanup that takes too long does not hold the stop for ever, and the log says whose it is."""
-    monkeypatch.setattr(node_module, "STOP_LIMIT", 0.001)
+    monkeypatch.setattr(core, "STOP_LIMIT", 0.001)
     node = Tidy()
     await graph.start(node)
     if what == "subscription":
@@ -519,14 +520,14 @@ async def test_a_task_that_fails_while_it_stops(graph: Graph, caplog: pytest.Log
 
     assert [r.getMessage() for r in caplog.records] == ["task /clumsy.work: ValueError: broke it while tidying up"]
     with pytest.raises(ValueError, match="tidying up"):
-        await node.wait_ended()
+        await core_of(node).wait_ended()
 
 
 async def test_a_stopped_node_has_ended(graph: Graph) -> None:
     """Whoever waits for its end is cancelled with it."""
     node = Talker()
     await graph.start(node)
-    waiting: asyncio.Task[None] = asyncio.create_task(node.wait_ended())
+    waiting: asyncio.Task[None] = asyncio.create_task(core_of(node).wait_ended())
     await graph.stop(node)
 
     assert waiting.cancelled()
@@ -536,7 +537,7 @@ async def test_a_cancelled_stop_leaves_nothing_open(graph: Graph) -> None:
     """Who is cancelled while it waits for cleanups withdraws the node all the same."""
     node = Tidy()
     await graph.start(node)
-    stopping = asyncio.create_task(node.stop())
+    stopping = asyncio.create_task(core_of(node).stop())
     await graph.settle()
     stopping.cancel()
     await graph.settle()

@@ -25,6 +25,7 @@ from graphflow.interface import DeadlockPolicy, GroupChange, WhenFull
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.srv import ListParameters
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from tests.runtime.cast import Log
 
@@ -210,7 +211,7 @@ async def test_what_becomes_of_work_that_finds_its_group_full(
     assert node.begun == begun
     assert node.ended == ended
     assert node.statistics()["subscription /x"]["dropped"] == dropped
-    assert node.groups.by_name["work"].running == 0
+    assert core_of(node).groups.by_name["work"].running == 0
 
 
 @pytest.mark.parametrize("when_full", ["drop_new", "drop_old"])
@@ -368,7 +369,7 @@ async def test_a_graph_file_moves_handlers(graph: Graph) -> None:
     node = Mixed(concurrency=changes)
     await graph.start(node)
 
-    groups = node.groups.by_name
+    groups = core_of(node).groups.by_name
     assert {name: group.limit for name, group in groups.items()} == {"io": 3, "own": 2}
     assert [member.name for member in groups["own"].members] == ["/mixed.a", "/mixed.c"]  # type: ignore[attr-defined]
     assert not groups["io"].members

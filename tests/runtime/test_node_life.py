@@ -13,7 +13,8 @@ from graphflow import Client, Node, Publisher, service, subscription, task, time
 from graphflow.errors import ServiceUnavailable
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime import node as node_module
+from graphflow.runtime import core
+from graphflow.runtime.node import core_of
 from graphflow.runtime.run import serve
 from graphflow.testing import Graph
 
@@ -201,7 +202,7 @@ async def test_a_goodbye_has_a_limit(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that takes too long is cancelled and said so; the node is gone all the same."""
-    monkeypatch.setattr(node_module, "STOP_LIMIT", 0.01)
+    monkeypatch.setattr(core, "STOP_LIMIT", 0.01)
 
     class Slow(Node):
         async def on_shutdown(self) -> None:
@@ -209,7 +210,7 @@ async def test_a_goodbye_has_a_limit(
 
     slow = Slow()
     await graph.start(slow)
-    await slow.stop()
+    await core_of(slow).stop()
     assert "on_shutdown has taken more than 0 s and was cancelled" in caplog.text
     assert not slow.is_running
 

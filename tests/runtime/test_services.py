@@ -26,7 +26,8 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.runtime import services
 from graphflow.runtime.direct import ServerLines
-from graphflow.runtime.services import ServiceClient
+from graphflow.runtime.node import core_of
+from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer, Inbox
 from graphflow.wire import attachment
@@ -351,7 +352,7 @@ async def test_a_request_during_the_servers_cleanup(graph: Graph) -> None:
     await graph.start(server)
     client = await client_of(graph)
     first = await begun(graph, client.call(AddTwoInts.Request()))
-    stopping = asyncio.create_task(server.stop())
+    stopping = asyncio.create_task(core_of(server).stop())
     await graph.settle()
     second = await begun(graph, client.call(AddTwoInts.Request()))
     cleaned.set()
@@ -511,7 +512,7 @@ async def test_waiting_with_a_client_that_is_closed(graph: Graph) -> None:
     waiting = asyncio.create_task(client.wait_ready())
     await graph.settle()
     changes = Log()
-    client.node.context.on_change(changes)
+    client.host.context.on_change(changes)
     client.close()
     await graph.settle()
     changes.clear()

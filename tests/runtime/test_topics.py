@@ -18,11 +18,11 @@ from graphflow import (
     subscription,
 )
 from graphflow.errors import ClosedError
+from graphflow.executor.runner import BURST
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import Durability, History
 from graphflow.runtime import topics
-from graphflow.runtime.scheduler import BURST
 from graphflow.runtime.topics import TopicSubscription
 from graphflow.testing import Graph
 from tests.runtime.cast import Log, Speaker, nothing

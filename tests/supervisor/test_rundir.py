@@ -16,7 +16,7 @@ from graphflow.errors import SupervisorError
 from graphflow.supervisor import rundir
 from graphflow.supervisor.rundir import (
     SOCKET_PATH_LIMIT,
-    Run,
+    GraphRun,
     RunDirectory,
     choose,
     log_file,
@@ -40,11 +40,11 @@ def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def a_run(graph: str = "chase", domain: int = 7) -> Run:
+def a_run(graph: str = "chase", domain: int = 7) -> GraphRun:
     """A run file of this very process."""
     started = start_time(os.getpid())
     assert started is not None
-    return Run("id", graph, domain, os.getpid(), started, 1_700_000_000.0, "/g.yaml", "/s", "/l", "tcp/x", "hash")
+    return GraphRun("id", graph, domain, os.getpid(), started, 1_700_000_000.0, "/g.yaml", "/s", "/l", "tcp/x", "hash")
 
 
 def start(graph: str = "chase", domain: int = 7) -> RunDirectory:

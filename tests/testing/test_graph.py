@@ -9,6 +9,7 @@ import pytest
 from graphflow import Node, Publisher, ServiceUnavailable, service, task
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.node import core_of
 from graphflow.testing import Graph, ManualClock, Tap
 from graphflow.testing.graph import TRANSIENT_LOCAL
 
@@ -158,7 +159,7 @@ def test_a_failed_node_fails_its_test(graphflow_runner: asyncio.Runner, taken: b
         await graph.start(broken, other)
         if taken:
             with pytest.raises(ValueError, match="broken"):
-                await broken.wait_ended()
+                await core_of(broken).wait_ended()
         await graph.close()
 
     if taken:

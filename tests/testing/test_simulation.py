@@ -24,6 +24,7 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
+from graphflow.runtime.node import core_of
 from graphflow.testing.simulation import Standstill, World, simulate
 
 
@@ -133,8 +134,8 @@ def test_a_group_never_has_more_runs_than_slots(seed: int) -> None:
         await asyncio.sleep(30.0)
         assert worker.most == 2
         assert worker.runs > 100
-        await worker.stop()
-        assert (worker.now, worker.groups.by_name["work"].running) == (0, 0)
+        await core_of(worker).stop()
+        assert (worker.now, core_of(worker).groups.by_name["work"].running) == (0, 0)
 
     logging.disable()
     try:

@@ -22,7 +22,9 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.srv import AddTwoInts, AddTwoInts_Request, AddTwoInts_Response
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
-from graphflow.runtime.services import ServiceClient, ServiceServer
+from graphflow.runtime.node import core_of
+from graphflow.runtime.service_client import ServiceClient
+from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.timer import Timer
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.testing import Graph, Tap
@@ -204,11 +206,10 @@ async def nodes(node: Node, context: Context) -> None:
     assert_type(await node.offload(len, "x"), int)
     assert_type(node.clock.now(), Time)
     assert_type(node.full_name, str)
-    await node.start(context)
-    await node.start("here")  # type: ignore[arg-type]
+    await core_of(node).start(context)
+    await core_of(node).start("here")  # type: ignore[arg-type]
     node.spawn(handler, String())
     node.spawn(handler(String()))  # type: ignore[arg-type]
-    node.names.resolve("x")
 
 
 async def graphs_of_tests_are_typed(graph: Graph) -> None:

@@ -108,7 +108,7 @@ class ExecuteMotionPrimitiveSequence(
     Goal: TypeAlias = ExecuteMotionPrimitiveSequence_Goal
     Result: TypeAlias = ExecuteMotionPrimitiveSequence_Result
     Feedback: TypeAlias = ExecuteMotionPrimitiveSequence_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class FollowJointTrajectory_Goal(base.Message):
     trajectory: trajectory_msgs.JointTrajectory
@@ -243,7 +243,7 @@ class FollowJointTrajectory(
     Goal: TypeAlias = FollowJointTrajectory_Goal
     Result: TypeAlias = FollowJointTrajectory_Result
     Feedback: TypeAlias = FollowJointTrajectory_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class GripperCommand_Goal(base.Message):
     command: control_msgs.GripperCommand
@@ -344,7 +344,7 @@ class GripperCommand(base.Action[GripperCommand_Goal, GripperCommand_Result, Gri
     Goal: TypeAlias = GripperCommand_Goal
     Result: TypeAlias = GripperCommand_Result
     Feedback: TypeAlias = GripperCommand_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class JointTrajectory_Goal(base.Message):
     trajectory: trajectory_msgs.JointTrajectory
@@ -423,7 +423,7 @@ class JointTrajectory(base.Action[JointTrajectory_Goal, JointTrajectory_Result, 
     Goal: TypeAlias = JointTrajectory_Goal
     Result: TypeAlias = JointTrajectory_Result
     Feedback: TypeAlias = JointTrajectory_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class ParallelGripperCommand_Goal(base.Message):
     command: sensor_msgs.JointState
@@ -523,7 +523,7 @@ class ParallelGripperCommand(
     Goal: TypeAlias = ParallelGripperCommand_Goal
     Result: TypeAlias = ParallelGripperCommand_Result
     Feedback: TypeAlias = ParallelGripperCommand_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class PointHead_Goal(base.Message):
     target: geometry_msgs.PointStamped
@@ -615,7 +615,7 @@ class PointHead(base.Action[PointHead_Goal, PointHead_Result, PointHead_Feedback
     Goal: TypeAlias = PointHead_Goal
     Result: TypeAlias = PointHead_Result
     Feedback: TypeAlias = PointHead_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]
 
 class SingleJointPosition_Goal(base.Message):
     position: float
@@ -724,4 +724,4 @@ class SingleJointPosition(
     Goal: TypeAlias = SingleJointPosition_Goal
     Result: TypeAlias = SingleJointPosition_Result
     Feedback: TypeAlias = SingleJointPosition_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]

@@ -91,4 +91,4 @@ class Fibonacci(base.Action[Fibonacci_Goal, Fibonacci_Result, Fibonacci_Feedback
     Goal: TypeAlias = Fibonacci_Goal
     Result: TypeAlias = Fibonacci_Result
     Feedback: TypeAlias = Fibonacci_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]

@@ -111,4 +111,4 @@ class LookupTransform(base.Action[LookupTransform_Goal, LookupTransform_Result, 
     Goal: TypeAlias = LookupTransform_Goal
     Result: TypeAlias = LookupTransform_Result
     Feedback: TypeAlias = LookupTransform_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]

@@ -88,4 +88,4 @@ class RotateAbsolute(base.Action[RotateAbsolute_Goal, RotateAbsolute_Result, Rot
     Goal: TypeAlias = RotateAbsolute_Goal
     Result: TypeAlias = RotateAbsolute_Result
     Feedback: TypeAlias = RotateAbsolute_Feedback
-    Handle: TypeAlias = base.Handle[Goal, Result, Feedback]
+    Handle: TypeAlias = base.ServerGoalHandle[Goal, Result, Feedback]

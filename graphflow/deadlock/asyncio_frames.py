@@ -1,0 +1,214 @@
+"""What a suspended coroutine tells of its wait: all that is read of asyncio's internals, and of CPython's frames.
+
+asyncio says of a task only which future it awaits. What that future stands for (all of these tasks, any of them, a
+lock, a deadline) is read here from the coroutines between, which are known by their code, and from the local names and
+private attributes that CPython 3.11 to 3.14 have in common. A test pins each of them, so that a new Python in which
+one is missing is told by that test and not by a search that has become blind.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import gc
+import inspect
+import queue
+import sys
+import threading
+from asyncio import AbstractEventLoop
+from collections.abc import Iterable, Iterator
+from types import CodeType, FrameType, MethodType
+from typing import Any, Literal, NamedTuple
+
+FUTURE = ("set_result", "set_exception", "cancel")
+"""Methods that end a future."""
+_WAITS: dict[CodeType, tuple[str, ...]] = {
+    asyncio.Event.wait.__code__: ("set",),
+    asyncio.Queue.get.__code__: ("put", "put_nowait"),
+    asyncio.Queue.put.__code__: ("get", "get_nowait"),
+    asyncio.Queue.join.__code__: ("task_done",),
+    asyncio.Condition.wait.__code__: ("notify", "notify_all"),
+    asyncio.Semaphore.acquire.__code__: ("release",),
+    asyncio.Lock.acquire.__code__: ("release",),
+    threading.Event.wait.__code__: ("set",),
+    threading.Condition.wait.__code__: ("notify", "notify_all"),
+    threading.Semaphore.acquire.__code__: ("release",),
+    queue.Queue.get.__code__: ("put", "put_nowait"),
+    queue.Queue.put.__code__: ("get", "get_nowait"),
+    queue.Queue.join.__code__: ("task_done",),
+    concurrent.futures.Future.result.__code__: FUTURE,
+}
+"""Waits of asyncio, and of threads, and the methods of the same object that end them."""
+ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)}
+_TASK_GROUP_EXITS = tuple(
+    getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)
+)
+_WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
+_WAIT_FOR = asyncio.wait_for.__code__
+_CONDITION_WAIT = asyncio.Condition.wait.__code__
+_ENTER = asyncio.Lock.__aenter__.__code__
+
+
+def coroutines(task: Any) -> Iterator[Any]:
+    """The coroutine of a suspended task and those that it awaits, the outermost first."""
+    coroutine = task.get_coro()
+    while coroutine is not None:
+        yield coroutine
+        coroutine = (
+            getattr(coroutine, "cr_await", None)
+            or getattr(coroutine, "gi_yieldfrom", None)
+            or getattr(coroutine, "ag_await", None)
+        )
+
+
+def frame_of(coroutine: Any) -> FrameType | None:
+    """Where a coroutine is suspended; None of one that runs or has ended."""
+    frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
+    return frame or getattr(coroutine, "ag_frame", None)
+
+
+def frames_of(task: Any) -> list[FrameType]:
+    """The frames of a suspended task, the outermost first."""
+    return [frame for frame in map(frame_of, coroutines(task)) if frame is not None]
+
+
+def entered(coroutine: Any) -> Iterator[Any]:
+    """What a suspended coroutine has entered by `with`: CPython keeps the method that leaves it on the stack."""
+    for referent in gc.get_referents(coroutine):
+        if isinstance(referent, MethodType) and referent.__name__ in ("__aexit__", "__exit__"):
+            yield referent.__self__
+
+
+def stack_of(thread: int) -> list[FrameType]:
+    """The frames of a running thread, the outermost first."""
+    frames: list[FrameType] = []
+    frame = sys._current_frames().get(thread)
+    while frame is not None:
+        frames.append(frame)
+        frame = frame.f_back
+    return frames[::-1]
+
+
+def is_coroutine(frame: FrameType) -> bool:
+    """Whether `await` can stand in the code of a frame."""
+    return bool(frame.f_code.co_flags & inspect.CO_COROUTINE)
+
+
+def waiter_of(task: Any) -> Any:
+    """The future that a task awaits; None when its next step is due."""
+    return getattr(task, "_fut_waiter", None)
+
+
+def is_done(future: Any) -> bool:
+    """Whether a future or task is done; callable from any thread."""
+    return bool(future.done())
+
+
+class JointWait(NamedTuple):
+    """A wait for several tasks together."""
+
+    tasks: list[Any]
+    wants: Literal["all", "any"]
+    fails_early: bool
+    """Whether an error of one of them ends the wait."""
+
+
+def joint_wait(frame: FrameType) -> JointWait | None:
+    """The tasks that one of asyncio's primitives waits for, if this is the frame of one."""
+    code, names = frame.f_code, frame.f_locals
+    if code in _TASK_GROUP_EXITS:
+        return JointWait(list(names["self"]._tasks), "all", True)
+    if code is _WAIT:
+        is_all = names["return_when"] == asyncio.ALL_COMPLETED
+        return JointWait(list(names["fs"]), "all" if is_all else "any", False)
+    if code is _WAIT_FOR and asyncio.isfuture(names.get("fut")):
+        return JointWait([names["fut"]], "all", True)
+    return None
+
+
+def gathered(future: Any) -> JointWait | None:
+    """What `asyncio.gather` waits for, if that made the future."""
+    children = getattr(future, "_children", None)
+    return None if children is None else JointWait(list(children), "all", not _returns_errors(children))
+
+
+def _returns_errors(children: Iterable[Any]) -> bool:
+    """Whether `asyncio.gather` was called with `return_exceptions`, told by the callback that it hangs on its parts."""
+    for child in children:
+        for callback in _callbacks(child):
+            names = getattr(getattr(callback, "__code__", None), "co_freevars", ())
+            if "return_exceptions" in names:
+                return bool(callback.__closure__[names.index("return_exceptions")].cell_contents)
+    return False
+
+
+def shielded(outer: Any) -> Any:
+    """What `asyncio.shield` protects, told by the callback that it hangs on the outer future; None if it is none."""
+    for callback in _callbacks(outer):
+        if getattr(callback, "__name__", "") == "_outer_done_callback" and callback.__closure__:
+            for cell in callback.__closure__:
+                if asyncio.isfuture(cell.cell_contents) and cell.cell_contents is not outer:
+                    return cell.cell_contents
+    return None
+
+
+def _callbacks(future: Any) -> Iterator[Any]:
+    for entry in getattr(future, "_callbacks", None) or ():
+        yield entry[0] if isinstance(entry, tuple) else entry
+
+
+def deadlines(coroutine: Any) -> Iterator[float]:
+    """When a suspended coroutine gives up by asyncio's means, in seconds of its loop's clock."""
+    frame = frame_of(coroutine)
+    if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
+        when = getattr(frame.f_locals.get("timeout_handle"), "when", None)  # uvloop's has one too
+        if when is not None:
+            yield when()
+    for context in entered(coroutine):
+        if isinstance(context, asyncio.Timeout) and (due := context.when()) is not None:
+            yield due
+
+
+class ObjectWait(NamedTuple):
+    """A wait for an event, a queue, a lock or their like."""
+
+    thing: Any
+    endings: tuple[str, ...]
+    """Its methods that end the wait."""
+    is_bounded: bool
+    """Whether a thread gives it up after some time."""
+
+
+def object_wait(frame: FrameType) -> ObjectWait | None:
+    """What one of asyncio's or of the threads' primitives waits for, if this is the frame of one."""
+    endings = _WAITS.get(frame.f_code)
+    if endings is None:
+        return None
+    names = frame.f_locals
+    return ObjectWait(names["self"], endings, names.get("timeout") is not None)
+
+
+def awaited_future(future: Any) -> ObjectWait | None:
+    """A wait for a future that is no task, which would end by itself."""
+    is_plain = isinstance(future, asyncio.Future) and not isinstance(future, asyncio.Task)
+    return ObjectWait(future, FUTURE, False) if is_plain else None
+
+
+def is_inside(thing: Any, lock: Any) -> bool:
+    """Whether something is a lock, or a condition that has it."""
+    return lock is thing or lock is getattr(thing, "_lock", None)
+
+
+def times_inside(task: Any, lock: Any) -> int:
+    """How often a suspended task has entered a lock, or a condition that has it, by `with`, and is inside now."""
+    chain = list(coroutines(task))
+    entries = sum(is_inside(context, lock) for coroutine in chain for context in entered(coroutine))
+    outside = [
+        f.f_locals["self"] for f in map(frame_of, chain) if f is not None and f.f_code in (_CONDITION_WAIT, _ENTER)
+    ]
+    return entries - sum(is_inside(context, lock) for context in outside)
+
+
+def current_task(loop: AbstractEventLoop) -> Any:
+    """What a loop is stepping just now; from any thread."""
+    return asyncio.current_task(loop)

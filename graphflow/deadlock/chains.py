@@ -1,0 +1,61 @@
+"""Calls that cannot succeed, told at once.
+
+A request carries who waits for it. If its server's group is full of runs that do, it can never be answered.
+
+Source: tier 1 of docs/architecture.md, "The life of a deadlock report".
+"""
+
+from __future__ import annotations
+
+import asyncio
+
+from graphflow.deadlock.asyncio_frames import waiter_of
+from graphflow.executor.ledger import Ledger, PendingCall
+from graphflow.executor.runner import Run, Runner
+from graphflow.wire import attachment, chain
+
+
+class Chains:
+    """The chains of one process's calls.
+
+    Args:
+        zid: Of its session.
+    """
+
+    def __init__(self, ledger: Ledger, zid: str) -> None:
+        self._ledger = ledger
+        self._process = chain.process_of(zid)
+
+    def of(self, call: PendingCall) -> bytes:
+        """What a call that begins to wait carries: nothing unless a handler makes it in its own body."""
+        run = asyncio.current_task()
+        if not isinstance(run, Run):
+            return b""
+        asked = getattr(run.item, "attachment", None) if run.runner.spec.kind == "service" else None
+        hop = chain.Hop(self._process, run.number, call.gid, call.sequence)
+        return chain.extended((asked or b"")[attachment.SIZE :], hop)
+
+    def holders(self, runner: Runner, asked: bytes) -> list[Run]:
+        """The runs that hold every slot which a queued request needs, if all of them wait for that very request.
+
+        Args:
+            asked: The attachment of the request.
+        """
+        hops = {hop.run: hop for hop in chain.hops(asked[attachment.SIZE :]) if hop.process == self._process}
+        if not hops:
+            return []
+        group = runner.group
+        if group is None and runner.is_serial:
+            holders, limit = list(runner.active), 1
+        elif group is None or group.limit is None or group.when_full == "cancel_running":
+            return []
+        else:
+            members = [m for m in group.members if isinstance(m, Runner)]
+            holders, limit = [run for m in members for run in m.active if run.group is group], group.limit
+        waits = all(run.number in hops and self._awaits(run, hops[run.number]) for run in holders)
+        return holders if waits and len(holders) >= limit else []
+
+    def _awaits(self, run: Run, hop: chain.Hop) -> bool:
+        """Whether a run still waits for the call that it is said to wait for: it may have given up."""
+        call = self._ledger.calls.get(waiter_of(run))
+        return call is not None and (call.gid, call.sequence) == (hop.gid, hop.sequence)

@@ -1,0 +1,387 @@
+"""Who can end a wait that asyncio knows nothing of: a plain Event, Queue, Lock or Future, or a flag that is polled.
+
+The answer is read from the source of the node's class: which methods set `self.arrived`, assign `self.pose`, and which
+handlers call them. That holds as long as nothing else does it, which the source cannot prove: hence *closed world*,
+and reports that say LIKELY. Whatever this cannot follow to the end leaves the world open, and nothing is reported: an
+object that is given away, a function inside a method, an attribute that is written from outside, a condition with
+anything in it but attributes, constants and arithmetic.
+"""
+
+from __future__ import annotations
+
+import ast
+import asyncio
+import sys
+import threading
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from types import FrameType
+from typing import Any, NamedTuple
+
+from graphflow.deadlock.asyncio_frames import ENDINGS, awaited_future, is_inside, object_wait
+from graphflow.deadlock.conditions import (
+    CONTAINERS,
+    LOOKING,
+    PLAIN,
+    QUESTIONS,
+    TOOLS,
+    Loop,
+    LoopConditions,
+    arrays,
+    makes_task,
+)
+from graphflow.deadlock.protocols import Subject
+from graphflow.deadlock.source import Function, FunctionNode, Unknown, Use, is_nested, is_own, source_of, walk
+from graphflow.executor.ledger import PendingGoal
+from graphflow.msgs.base import Message
+
+_BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
+_MAKERS = {*(tool.__name__ for tool in TOOLS), "create_future", "Lock", "Semaphore", "BoundedSemaphore", "Condition"}
+_MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
+_CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
+_ARRAYS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
+_ARRAYS |= {"fill", "sort", "put", "partition"}
+"""Methods of arrays that give nobody another view of them."""
+_CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
+
+
+class Setters(NamedTuple):
+    """Who ends a wait."""
+
+    what: str
+    handlers: frozenset[str]
+    """Methods that are called by timers, messages, requests, goals, or run as tasks."""
+    lock: Any = None
+    """What ends the wait when one of those who have entered it by `with` leaves it."""
+    places: int = 1
+    """How many can be in it."""
+    tasks: tuple[asyncio.Future[Any], ...] = ()
+    """Whose ends may end the wait too."""
+
+
+def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
+    """Who can end a wait; None when that is not known.
+
+    Args:
+        frames: Of the coroutine that waits, the outermost first.
+        waiter: The future that it waits for, if it is a coroutine.
+        is_bounded: Whether the wait is given up after some time.
+    """
+    try:
+        question = _Question(frames, node)
+        if (is_bounded or question.is_bounded) and question.is_repeated:  # what matters is when it stops to try again
+            return question.of_loop()
+        return question.of_object(waiter) or question.of_loop()
+    except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
+        return None
+
+
+def cancellers(thing: Any, node: Subject) -> Setters | None:
+    """Who of themselves, as timers and tasks do, cancel a task or goal that the node keeps; None when nobody does.
+
+    Those who do it when they are told to, by a message or a request, are like the world outside: a ring that needs them
+    does not end.
+
+    Raises:
+        Unknown: Somebody may.
+    """
+    instance = node.instance
+    held = {name for name, value in vars(instance).items() if value is thing or _holds(value, thing)}
+    if not held:
+        return None
+    source, methods = source_of(instance), set[str]()
+    for name in held:
+        uses = source.uses(name)
+        if getattr(instance, name) is not thing or source.foreign(name) or any(use.kind == "given" for use in uses):
+            if any(use.method not in _BEGINNINGS for use in (*source.foreign("cancel"), *source.uses("cancel"))):
+                raise Unknown
+            continue
+        methods |= {use.method for use in uses if use.kind == "called" and use.name == "cancel"}
+    entries = entries_of(node)
+    alone = {runner.spec.handler for runner in node.runners if runner.spec.kind == "timer"}
+    alone |= {method_of(task) for task in node.tasks}
+    what = " and ".join(f"self.{name}" for name in sorted(held))
+    found = frozenset(source.above(methods - _BEGINNINGS, entries) & alone)
+    return Setters(what, found) if found else None
+
+
+def entries_of(node: Subject) -> set[str]:
+    """The methods of a node that graphflow runs: handlers and tasks."""
+    return {runner.spec.handler for runner in node.runners} | {method_of(task) for task in node.tasks}
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A frame of one of the node's methods."""
+
+    frame: FrameType
+    function: Function
+
+    @cached_property
+    def loops(self) -> list[Loop]:
+        """The loops that it is in, the outermost first."""
+        around = (ast.While, ast.AsyncFor, ast.For)
+        nodes = ast.walk(self.function.syntax)  # by depth
+        return [node for node in nodes if isinstance(node, around) and _spans(node, self.frame.f_lineno)]
+
+
+def _spans(node: ast.stmt, line: int) -> bool:
+    return node.lineno <= line <= (node.end_lineno or line)
+
+
+class _Question:
+    """Who ends one wait."""
+
+    def __init__(self, frames: list[FrameType], node: Subject) -> None:
+        self._node, self._instance = node, node.instance
+        self._source = source_of(self._instance)
+        self._waits = [wait for wait in map(object_wait, frames) if wait is not None]
+        self.is_bounded = any(wait.is_bounded for wait in self._waits)
+        self._places: list[_Place] = []
+        for frame in frames:
+            function = self._source.function(frame.f_code)
+            if function is not None and frame.f_locals.get("self") is self._instance:
+                self._places.append(_Place(frame, function))
+            elif frame.f_locals.get("self") is self._instance and not _is_library(frame):
+                raise Unknown  # a method whose source was not found
+            elif self._places and not _is_library(frame):
+                self._places.clear()  # code of others stands between: it may do as it likes
+        if not self._places:
+            raise Unknown
+
+    @property
+    def is_repeated(self) -> bool:
+        """Whether it waits again and again, for as long as something holds."""
+        return any(isinstance(loop, (ast.While, ast.AsyncFor)) for place in self._places for loop in place.loops)
+
+    # something that is waited for
+
+    def of_object(self, waiter: Any) -> Setters | None:
+        """Who calls what ends the wait for an object of the node's; None when it waits for none."""
+        waits = self._waits[::-1]
+        if not waits and (wait := awaited_future(waiter)) is not None:
+            waits = [wait]
+            if not any(self._names(waiter)):
+                return None
+        for thing, methods, _ in waits:  # some are made of others, which the node does not know
+            by_name, in_container = self._names(thing)
+            if len(by_name) + len(in_container) > 1:
+                raise Unknown
+            if by_name:
+                return self._ended(by_name.pop(), thing, methods)
+            if in_container:
+                return self._ended_in_container(in_container.pop(), methods)
+        if waits:
+            raise Unknown
+        return None
+
+    def _names(self, thing: Any) -> tuple[set[str], set[str]]:
+        """The attributes that are a thing, and those that are containers in which it is."""
+        everything = [*(pair for cls in type(self._instance).__mro__ for pair in vars(cls).items())]
+        everything += vars(self._instance).items()
+        is_it = {name for name, value in everything if is_inside(value, thing)}
+        return is_it, {name for name, value in vars(self._instance).items() if _holds(value, thing)}
+
+    def _ended(self, name: str, thing: Any, methods: tuple[str, ...]) -> Setters | None:
+        uses = list(self._uses(name))
+        found = {use.method for use in uses if use.kind == "called" and use.name in methods}
+        setters = self._reached(f"self.{name}", found)
+        if methods != ("release",) or not any(use.kind == "entered" for use in uses):
+            return setters
+        if isinstance(thing, (asyncio.Semaphore, threading.Semaphore)):
+            places = {_places(use.value) for use in uses if use.kind == "assigned"}
+            if len(places) != 1:
+                raise Unknown
+            return Setters(f"self.{name}", setters.handlers if setters else frozenset(), thing, places.pop())
+        return Setters(f"self.{name}", setters.handlers if setters else frozenset(), thing)
+
+    def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
+        """What is held by a list or dictionary may be ended by whatever method ends such a thing."""
+        if any(use.kind == "given" for use in self._source.uses(name)) or self._source.foreign(name):
+            raise Unknown
+        if any(not use.method for ending in methods for use in self._source.foreign(ending)):
+            raise Unknown
+        found: set[str] = set()
+        for method, functions in self._source.methods.items():
+            for syntax, parents in (pair for function in functions for pair in walk(function)):
+                if isinstance(syntax, ast.Attribute) and syntax.attr in methods:
+                    if is_nested(parents) or not (isinstance(parents[-1], ast.Call) and parents[-1].func is syntax):
+                        raise Unknown
+                    found.add(method)
+        return self._reached(f"a part of self.{name}", found)
+
+    def _uses(self, name: str) -> Iterator[Use]:
+        """The uses of a tool, such as an event, by which it cannot be known to anybody else."""
+        if any(use.kind != "called" or use.name not in QUESTIONS for use in self._source.foreign(name)):
+            raise Unknown
+        for use in self._source.uses(name):
+            ends = use.name in ENDINGS or use.kind == "entered"
+            if use.kind in ("given", "changed", "invoked") or (ends and (use.kind == "part" or use.is_nested)):
+                raise Unknown
+            if not _is_new(use, _MAKERS):
+                raise Unknown
+            yield use
+
+    # a loop that looks again and again
+
+    def of_loop(self) -> Setters | None:
+        """Who changes what a loop looks at, in which the handler only waits and looks again."""
+        place = next((place for place in reversed(self._places) if place.loops), None)
+        if place is None:
+            return None
+        loop = place.loops[-1]
+        endless = isinstance(loop, ast.AsyncFor) and ast.unparse(loop.iter).startswith("self.clock.every(")
+        if not (isinstance(loop, ast.While) or endless):
+            return None
+        called = {use.attr for use in ast.walk(loop) if isinstance(use, ast.Attribute) and is_own(use)}
+        below = {method for name in called & set(self._source.methods) for method in self._source.below(name)}
+        if self._source.may_fail(loop, below):
+            raise Unknown
+        conditions = LoopConditions(loop, place.function.syntax, place.frame, self._source, self._instance)
+        attributes = conditions.attributes()
+        inside = set(ast.walk(loop))
+        changing: set[str] = set()
+        for name in attributes:
+            for use in self._changes(name):
+                if use.syntax in inside or use.method in below:  # the loop changes itself what it looks at
+                    raise Unknown
+                changing.add(use.method)
+        what = " and ".join(f"self.{name}" for name in sorted(attributes))
+        if conditions.tasks and not changing - _BEGINNINGS:
+            return Setters(what, frozenset(), tasks=tuple(conditions.tasks))
+        found = self._reached(what, changing)
+        return None if found is None else found._replace(tasks=tuple(conditions.tasks))
+
+    def _changes(self, name: str) -> Iterator[Use]:
+        """The uses of an attribute that may make it something else than it is now."""
+        value = getattr(self._instance, name)
+        changes = next((methods for tool, methods in TOOLS.items() if isinstance(value, tool)), None)
+        if changes is not None:
+            for use in self._uses(name):
+                is_begun = isinstance(value, asyncio.Task) and use.value is not None and makes_task(use.value)
+                if (use.kind == "assigned" and not is_begun) or (use.kind == "called" and use.name in changes):
+                    yield use
+            return
+        if isinstance(value, PendingGoal):
+            yield from self._ends_of_goal(name)
+            return
+        known = isinstance(value, (*CONTAINERS, *arrays()))
+        for use in self._source.foreign(name):
+            if use.kind in ("assigned", "changed") or (known and use.kind not in ("read", "part")):
+                raise Unknown
+        for use in self._source.uses(name):
+            if known and (use.kind in ("given", "invoked") or not _is_new(use, _CONTAINER_MAKERS)):
+                raise Unknown
+            if isinstance(value, (*arrays(), Message)) and _has_second_name(use, value):
+                raise Unknown
+            if not self._changes_nothing(use, value):
+                if use.is_nested:
+                    raise Unknown
+                yield use
+
+    def _ends_of_goal(self, name: str) -> Iterator[Use]:
+        if self._source.foreign(name):
+            raise Unknown
+        for use in self._source.uses(name):
+            if use.kind == "given" or use.is_nested:
+                raise Unknown
+            is_begun = use.value is not None and makes_task(use.value)
+            if (use.kind == "assigned" and not is_begun) or (use.kind == "called" and use.name == "cancel"):
+                yield use
+
+    def _changes_nothing(self, use: Use, value: Any) -> bool:
+        if use.kind == "assigned":
+            is_same = isinstance(use.value, ast.Constant) and type(use.value.value) is type(value)
+            return is_same and use.value.value == value  # type: ignore[union-attr]
+        if use.kind == "called":
+            return isinstance(value, PLAIN) or use.name in LOOKING
+        if use.kind == "given" and isinstance(value, Message):  # its fields may be set by the other name
+            functions = self._source.methods[use.method]
+            return not any(_sets_fields(function) for function in functions)
+        return use.kind != "changed"
+
+    def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
+        """The handlers and tasks that call those methods, if nobody else does."""
+        entries = entries_of(self._node)
+        above = self._source.above(set(methods) - _BEGINNINGS, entries)
+        if above & self._node.hooks:
+            raise Unknown
+        for method in above - entries - _BEGINNINGS:
+            if self._source.above({method}, entries) == {method}:  # nobody is seen to call it, so somebody else does
+                raise Unknown
+        found = frozenset(above & entries)
+        return Setters(what, found) if found else None
+
+
+def method_of(task: Any) -> str:
+    """The name of the coroutine function that a task runs."""
+    return str(getattr(task.get_coro(), "__name__", ""))
+
+
+_LIBRARIES = ("graphflow.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")
+
+
+def _is_library(frame: FrameType) -> bool:
+    """Whether it is code that gives way to the handler's sooner or later, and does nothing else."""
+    name = f"{frame.f_globals.get('__name__', '')}."
+    return name.startswith(_LIBRARIES)
+
+
+def _holds(container: Any, thing: Any) -> bool:
+    if isinstance(container, dict):
+        container = container.values()
+    elif not isinstance(container, (list, set, deque, tuple)):
+        return False
+    return any(part is thing for part in list(container))
+
+
+def _places(made: ast.expr | None) -> int:
+    """How many a semaphore lets in, read from where it is made."""
+    match made:
+        case ast.Call(args=[ast.Constant(value=int(places))], keywords=[]):
+            return places
+        case ast.Call(args=[], keywords=[]):
+            return 1
+    raise Unknown
+
+
+def _is_new(use: Use, makers: set[str]) -> bool:
+    """Whether what is assigned is made there."""
+    if use.kind != "assigned" or use.value is None:
+        return True
+    if isinstance(use.value, ast.Call):
+        return ast.unparse(use.value.func).split(".")[-1] in makers
+    made = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp, ast.Constant, ast.BinOp)
+    return isinstance(use.value, made)
+
+
+def _has_second_name(use: Use, value: Any) -> bool:
+    """Whether a part of an array or message, through which it can be changed, is handed on."""
+    if use.kind == "called" and isinstance(value, arrays()):
+        return use.name not in LOOKING | _ARRAYS
+    if use.part is None:
+        return False
+    path: list[ast.expr] = []
+    node: ast.expr = use.part
+    while isinstance(node, (ast.Attribute, ast.Subscript)) and node is not use.syntax:
+        path.append(node)
+        node = node.value
+    for step in reversed(path):
+        if isinstance(step, ast.Attribute):
+            value = getattr(value, step.attr, None)
+        elif not isinstance(step, ast.Subscript) or isinstance(step.slice, (ast.Slice, ast.Tuple)) or not len(value):
+            return True
+        else:
+            value = value[0]  # any part will do
+    numpy = sys.modules.get("numpy")
+    return not isinstance(value, (*PLAIN, tuple, *((numpy.generic, numpy.dtype) if numpy else ())))
+
+
+def _sets_fields(function: FunctionNode) -> bool:
+    """Whether a function sets a field of something that is not the node."""
+    return any(
+        isinstance(n, (ast.Attribute, ast.Subscript)) and isinstance(n.ctx, (ast.Store, ast.Del)) and not is_own(n)
+        for n in ast.walk(function)
+    )

@@ -1,0 +1,110 @@
+"""What a process tells of its handlers and groups, and lets be changed in them, on keys that ROS 2 knows nothing of.
+
+@graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
+@graphflow/<domain>/look/<zid>       has it look for a deadlock that somebody else has found and it is to report
+@graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from graphflow.deadlock.protocols import Process, Subject
+from graphflow.deadlock.search import Search
+from graphflow.errors import GraphflowError, InvalidName, RemoteError
+from graphflow.executor.runner import Runner
+from graphflow.machines.wait_graph_json import to_json
+from graphflow.names import did_you_mean
+from graphflow.transport.base import Inbox
+from graphflow.wire import attachment
+from graphflow.wire.process import GROUPS, LOOK, WAITS, answer_key
+
+_KINDS = ("timer", "subscription", "service", "action")
+
+
+class Inspection:
+    """The answers of one process."""
+
+    def __init__(self, process: Process, search: Search) -> None:
+        self._process, self._search = process, search
+        session, domain = process.session, process.domain
+        self._reports = (
+            session.open_report(answer_key(domain, WAITS, session.zid), self._waits),
+            session.open_report(answer_key(domain, LOOK, session.zid), self._look),
+        )
+        self._inbox = Inbox(session.bell, None, self._asked)
+        self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox)
+
+    def _waits(self) -> bytes:
+        """On any thread."""
+        search, watchdog = self._search, self._search.watchdog
+        nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
+        told = {
+            **to_json(search.snapshot.take_for_others()),
+            "reports": [report.text for report in list(search.reports.values())],
+            "process": self._process.session.zid,
+            "stalls": search.stalls.texts,
+            "nodes": nodes,
+            "blocked_for": watchdog.blocked_for if watchdog.is_blocked else 0.0,
+            "late": watchdog.late,
+            "longest": watchdog.longest,
+        }
+        return json.dumps(told).encode()
+
+    def _look(self) -> bytes:
+        """On any thread."""
+        self._search.look_now()
+        return b""
+
+    def _asked(self) -> None:
+        while self._inbox.items:
+            request = self._inbox.items.popleft()
+            try:
+                wanted = json.loads(request.payload)
+                answer = self._move(str(wanted["node"]), str(wanted["handler"]), str(wanted["group"]))
+            except (ValueError, KeyError, TypeError, GraphflowError) as error:
+                request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
+            else:
+                request.reply(json.dumps(answer).encode(), attachment.pack(0, 0, bytes(16)))
+
+    def _move(self, node_name: str, handler: str, group: str) -> dict[str, Any]:
+        node = next((n for n in self._process.nodes if n.full_name == node_name), None)
+        if node is None:
+            raise InvalidName(f"there is no node {node_name} in this process")
+        mine = [r for r in _handlers(node) if r.spec.handler == handler]
+        if not mine:
+            known = sorted({r.spec.handler for r in _handlers(node)})
+            near = did_you_mean(handler, known)
+            raise InvalidName(f"{node_name} has no handler {handler!r}{near or '; it has ' + ', '.join(known)}")
+        target = node.groups.named(group)
+        for runner in mine:
+            runner.move(target)
+        return {"groups": groups_of(node)}
+
+    def close(self) -> None:
+        """Answer no more."""
+        for report in self._reports:
+            report.close()
+        self._server.close()
+
+
+def groups_of(node: Subject) -> list[dict[str, Any]]:
+    """A node's groups with their handlers, those in no group last, as plain data."""
+    runners = _handlers(node)
+    found = []
+    for name, group in list(node.groups.by_name.items()):
+        about = {"name": name, "limit": group.limit, "when_full": group.when_full, "thread": group.is_threaded}
+        found.append({**about, "handlers": [_handler(r) for r in runners if r.group is group]})
+    rest = [_handler(r) for r in runners if r.group not in node.groups.by_name.values()]
+    return [*found, {"name": "", "limit": 1, "when_full": "wait", "thread": False, "handlers": rest}]
+
+
+def _handlers(node: Subject) -> list[Runner]:
+    """What runs the handlers that the node's class has declared or made."""
+    return [r for r in list(node.runners) if r.spec.kind in _KINDS and not r.spec.is_inner and not r.closed]
+
+
+def _handler(runner: Runner) -> dict[str, Any]:
+    numbers = {"running": len(runner.active), "waiting": len(runner.items), "runs": runner.runs}
+    return {"handler": runner.spec.handler, "kind": runner.spec.kind, **numbers, "errors": runner.errors}

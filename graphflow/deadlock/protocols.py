@@ -1,0 +1,79 @@
+"""What the search sees of a node, and what it needs around it."""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import AbstractEventLoop
+from collections.abc import Callable, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any, Protocol
+
+from graphflow.executor.clock import Clock
+from graphflow.executor.groups import Groups
+from graphflow.executor.ledger import Ledger
+from graphflow.executor.runner import Runner
+from graphflow.machines.cache import GraphCache, GraphChange
+from graphflow.transport.base import Session
+
+
+class Subject(Protocol):
+    """A node, as the search sees it."""
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+
+    @property
+    def instance(self) -> object:
+        """What the user has made: its attributes are looked at, and the source of its class is read."""
+
+    @property
+    def runners(self) -> Sequence[Runner]:
+        """What runs its handlers."""
+
+    @property
+    def tasks(self) -> AbstractSet[asyncio.Task[Any]]:
+        """What runs beside them."""
+
+    @property
+    def groups(self) -> Groups:
+        """Whose slots they take."""
+
+    @property
+    def handlers(self) -> AbstractSet[str]:
+        """Methods that the class declares as handlers."""
+
+    @property
+    def hooks(self) -> AbstractSet[str]:
+        """Methods that are called outside of any handler: checks of parameters, events, whether a goal is wanted."""
+
+
+class Process(Protocol):
+    """What the nodes of one process share, as far as the search needs it."""
+
+    @property
+    def session(self) -> Session: ...
+
+    @property
+    def domain(self) -> int: ...
+
+    @property
+    def loop(self) -> AbstractEventLoop: ...
+
+    @property
+    def clock(self) -> Clock: ...
+
+    @property
+    def cache(self) -> GraphCache: ...
+
+    @property
+    def ledger(self) -> Ledger: ...
+
+    @property
+    def nodes(self) -> Sequence[Subject]: ...
+
+    def arrived(self) -> list[tuple[Runner, bytes, int]]:
+        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+
+    def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
+        """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""

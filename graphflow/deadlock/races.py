@@ -1,0 +1,230 @@
+"""Looks for lost updates in the attributes of nodes, while it is switched on (`up --races`, GRAPHFLOW_RACES=1).
+
+A handler reads `self.x` and suspends; another writes it meanwhile; the first then writes what it made of the old value.
+The other's write is lost, and nobody is told, since no line of it is wrong by itself.
+
+Reported is a write only if all of this holds: the same run has read the attribute before; somebody else has written it
+since; the new value differs from the one that is overwritten; and by the source of the method the write comes of the
+read: its right side uses the attribute or a variable made from it, or it stands in an `if` or `while` that asks for it.
+
+Not seen are changes inside of objects (`self.points.append`), handlers in threads, attributes that are set by
+`setattr` or through another name, and values that reach the write through another method.
+"""
+
+from __future__ import annotations
+
+import ast
+import asyncio
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+from functools import cache
+from pathlib import PurePath
+from types import FrameType
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+from graphflow.errors import Place
+from graphflow.executor.runner import Run
+
+VARIABLE = "GRAPHFLOW_RACES"
+
+
+def is_wanted() -> bool:
+    """Whether the environment asks for it."""
+    return os.environ.get(VARIABLE, "") not in ("", "0")
+
+
+class _Access(NamedTuple):
+    """One read or write of an attribute."""
+
+    version: int
+    who: str
+    method: str
+    """The handler's, or the task's."""
+    place: Place
+    by: object
+    """The run or task."""
+
+
+def watch(node: object, full_name: str, logger: logging.Logger, ignored: AbstractSet[str]) -> None:
+    """Have every access to a node's own attributes looked at, by giving it a class that does so.
+
+    Args:
+        node: What the user has made.
+        ignored: Attributes that every node has.
+    """
+    cls, log = type(node), _Log(node, full_name, logger)
+    mine = {name for name in dir(cls) if _is_method(cls, name)} | ignored
+
+    def read(self: Any, name: str) -> Any:
+        value = object.__getattribute__(self, name)
+        if name not in mine and not name.startswith("__"):
+            log.read(name, sys._getframe(1))
+        return value
+
+    def write(self: Any, name: str, value: Any) -> None:
+        if name not in mine:
+            log.write(name, value, sys._getframe(1))
+        object.__setattr__(self, name, value)
+
+    copied = {"__module__": cls.__module__, "__qualname__": cls.__qualname__, "__doc__": cls.__doc__}
+    body = {
+        **copied,
+        "__firstlineno__": getattr(cls, "__firstlineno__", 0),
+        "__getattribute__": read,
+        "__setattr__": write,
+    }
+    node.__class__ = type(cls.__name__, (cls,), body)
+
+
+def _is_method(cls: type, name: str) -> bool:
+    """Whether it is anything else than plain data with a default on the class."""
+    value = next((vars(c)[name] for c in cls.__mro__ if name in vars(c)), None)
+    return callable(value) or hasattr(value, "__get__")
+
+
+class _Log:
+    """Who has read and written the attributes of one node."""
+
+    def __init__(self, node: object, full_name: str, logger: logging.Logger) -> None:
+        self._node, self._full_name, self._logger = node, full_name, logger
+        self._written: dict[str, _Access] = {}
+        self._read: WeakKeyDictionary[Any, dict[str, _Access]] = WeakKeyDictionary()
+        self._told: set[tuple[str, Place, Place]] = set()
+
+    def read(self, name: str, frame: FrameType) -> None:
+        actor = _actor()
+        if actor is not None:
+            last = self._written.get(name)
+            self._read.setdefault(actor, {})[name] = self._access(0 if last is None else last.version, actor, frame)
+
+    def write(self, name: str, value: Any, frame: FrameType) -> None:
+        actor, last = _actor(), self._written.get(name)
+        access = self._access(1 if last is None else last.version + 1, actor, frame)
+        if actor is not None:
+            seen = self._read.get(actor, {}).get(name)
+            if seen is not None and last is not None and last.version != seen.version and last.by is not actor:
+                self._compare(name, value, seen, last, access, frame)
+            self._read.setdefault(actor, {})[name] = access
+        self._written[name] = access
+
+    def _compare(self, name: str, value: Any, seen: _Access, other: _Access, access: _Access, frame: FrameType) -> None:
+        now = vars(self._node).get(name, value)
+        spot = (name, access.place, other.place)
+        if spot in self._told or now is value or _is_equal(now, value) or not _comes_of_read(name, frame):
+            return
+        self._told.add(spot)
+        self._logger.warning("%s", _text(self._full_name, name, seen, other, access))
+
+    def _access(self, version: int, actor: Any, frame: FrameType) -> _Access:
+        # The line of the node's own code, where a helper of its class is the caller.
+        place = Place(frame.f_code.co_filename, frame.f_lineno)
+        if isinstance(actor, Run):
+            return _Access(version, actor.runner.title, actor.runner.spec.handler, place, actor)
+        method = frame.f_code.co_name if actor is None else str(getattr(actor.get_coro(), "__name__", ""))
+        return _Access(version, f"task {method}" if actor is not None else method, method, place, actor)
+
+
+def _actor() -> Any:
+    """The run or task that is current; None for a `def` on the loop, which nothing interrupts, and in threads."""
+    try:
+        return asyncio.current_task()
+    except RuntimeError:
+        return None
+
+
+def _is_equal(a: Any, b: Any) -> bool:
+    try:
+        return bool(a == b)
+    except Exception:  # objects of users' classes, numpy arrays: whatever comparing them does
+        return False
+
+
+def _text(node: str, name: str, seen: _Access, other: _Access, access: _Access) -> str:
+    def at(place: Place) -> str:
+        return f"{PurePath(place.file).name}:{place.line}"
+
+    handlers = list(dict.fromkeys([access.method, other.method]))
+    together = f"{node}: {{concurrency: {{state: [{', '.join(handlers)}]}}}}"
+    return (
+        f"RACE: an update of self.{name} is lost\n"
+        f"  {access.who} of {node} read it in {at(seen.place)} and waited,\n"
+        f"  {other.who} wrote it meanwhile in {at(other.place)},\n"
+        f"  and {access.who} has overwritten that in {at(access.place)}.\n"
+        f"Write it before the `await`, or let the two exclude each other, in the graph file\n"
+        f"      {together}"
+    )
+
+
+def _comes_of_read(name: str, frame: FrameType) -> bool:
+    """Whether by the source what is written comes of a read of the same attribute."""
+    function = _function(frame.f_code.co_filename, frame.f_code.co_firstlineno)
+    if function is None:
+        return False
+    derived = _derived(function, name)
+    for statement, guards in _statements(function):
+        first, last = getattr(statement, "lineno", 0), getattr(statement, "end_lineno", 0) or 0
+        if not first <= frame.f_lineno <= last or not isinstance(statement, (ast.Assign, ast.AugAssign, ast.AnnAssign)):
+            continue
+        targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+        if not any(_uses(target, name, set()) for target in targets):
+            continue
+        if isinstance(statement, ast.AugAssign):
+            return True
+        value = statement.value
+        return (value is not None and _uses(value, name, derived)) or any(_uses(g, name, derived) for g in guards)
+    return False
+
+
+def _uses(expression: ast.AST, name: str, derived: set[str]) -> bool:
+    """Whether `self.name`, or a variable made from it, is in an expression."""
+    return any(
+        (isinstance(n, ast.Attribute) and n.attr == name and isinstance(n.value, ast.Name) and n.value.id == "self")
+        or (isinstance(n, ast.Name) and n.id in derived)
+        for n in ast.walk(expression)
+    )
+
+
+def _derived(function: ast.AST, name: str) -> set[str]:
+    """The local variables that are made from `self.name`, directly or through each other."""
+    found: set[str] = set()
+    while True:
+        more = {
+            target.id
+            for node in ast.walk(function)
+            if isinstance(node, ast.Assign) and _uses(node.value, name, found)
+            for whole in node.targets
+            for target in ast.walk(whole)
+            if isinstance(target, ast.Name)
+        } - {"self"}
+        if more <= found:
+            return found
+        found |= more
+
+
+def _statements(function: ast.AST) -> Iterator[tuple[ast.AST, tuple[ast.expr, ...]]]:
+    """The statements of a function, each with the tests of the branches that it is in."""
+    todo: list[tuple[ast.AST, tuple[ast.expr, ...]]] = [(function, ())]
+    while todo:
+        node, guards = todo.pop()
+        yield node, guards
+        inner = (*guards, node.test) if isinstance(node, (ast.If, ast.While)) else guards
+        todo += [(child, inner) for child in ast.iter_child_nodes(node)]
+
+
+@cache
+def _function(file: str, line: int) -> ast.AST | None:
+    try:
+        with open(file, encoding="utf-8") as source:
+            module = ast.parse(source.read())
+    except (OSError, SyntaxError):
+        return None
+    for node in ast.walk(module):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            first = node.decorator_list[0].lineno if node.decorator_list else node.lineno
+            if first == line:
+                return node
+    return None

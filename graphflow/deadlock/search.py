@@ -1,0 +1,393 @@
+"""Looks for deadlocks when somebody has waited: first in this process, then, if waits lead out of it, in all.
+
+Nothing is done while nothing waits. A call, or work that finds no slot, arms a look a quarter of a second later, and
+so does the start of a task; what still waits then is looked at, and again at growing distances. Deadlocks within a
+process are seen in one picture of it. For others all processes are asked twice, as `machines.reduction` explains.
+Every process that has a part in a deadlock finds it; the one that comes first by id reports it, and says when it is
+over. Whoever finds it first has that one look at once.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from typing import NamedTuple
+
+from graphflow.deadlock.chains import Chains
+from graphflow.deadlock.protocols import Process
+from graphflow.deadlock.snapshot import Snapshot, id_of
+from graphflow.deadlock.stalls import Stalls
+from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive, calls_of
+from graphflow.deadlock.watchdog import Watchdog
+from graphflow.errors import DeadlockError
+from graphflow.executor.clock import Alarm
+from graphflow.executor.ledger import PendingCall
+from graphflow.executor.runner import Runner
+from graphflow.interface import DeadlockPolicy
+from graphflow.machines.cache import GraphChange
+from graphflow.machines.explain import explanation, hopeless, title
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import Deadlock, explained, is_ring
+from graphflow.machines.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph, goal_id, joined
+from graphflow.machines.wait_graph_json import from_json
+from graphflow.times import to_ns
+from graphflow.wire.process import LOOK, WAITS, answer_key
+
+logger = logging.getLogger("graphflow")
+
+PROBE_AFTER = 0.25
+"""Seconds that something waits before it is looked at."""
+PROBE_LONGEST = 8.0
+"""Seconds between two looks at the same waits, at most."""
+TASKS_EVERY = 2.0
+"""Seconds between two looks at tasks, whose waits nobody announces, while nothing else waits."""
+PULL_LIMIT = 0.5
+"""Seconds that other processes get to answer."""
+GONE_AFTER = 0.5
+"""Seconds from the first sign that a process goes until all of it has gone."""
+
+Ring = frozenset[str]
+"""The members of a deadlock."""
+
+
+class Report(NamedTuple):
+    """A deadlock that was reported."""
+
+    text: str
+    who: str
+    """Has a part in it, in words."""
+    processes: set[str]
+    """In which its members are, and those who wait behind them."""
+    order: tuple[str, ...]
+    """The members, each of whom waits for the next."""
+
+
+class Foreign(NamedTuple):
+    """A deadlock with a part in this process that another one is to report."""
+
+    reporter: str
+    """Its process."""
+    who: str
+    processes: set[str]
+    waits: frozenset[tuple[str, Condition]]
+    """Those of the members that are in this process."""
+
+
+class Search:
+    """The search for deadlocks in which one process has a part. One per process."""
+
+    def __init__(self, process: Process, policy: DeadlockPolicy) -> None:
+        self._process = process
+        self.policy = policy
+        self.is_on = policy != "off"
+        """Whether anybody wants to know."""
+        self.is_armed = policy == "off"
+        """Whether a look is due soon; always, and in vain, when nobody wants to know."""
+        self.pulls = 0
+        """How often other processes were asked."""
+        self.reports: dict[Ring, Report] = {}
+        """The deadlocks that this process has reported and that there are now."""
+        self.stalls = Stalls()
+        self.watchdog = Watchdog(process.loop, self._probe_blocked)
+        self.snapshot = Snapshot(process, self.watchdog)
+        self._chains = Chains(process.ledger, process.session.zid)
+        self._unresponsive = Unresponsive(process)
+        self._dead: set[str] = set()
+        """Activities that were last found to be dead, with the help of other processes."""
+        self._foreign: dict[Ring, Foreign] = {}
+        """If the process that is to report them goes, another one has to say that they are over."""
+        self._is_watching = False
+        self._behind: dict[Ring, set[str]] = {}
+        """By deadlock, of whichever process: who was said to wait for it."""
+        self._period = PROBE_AFTER
+        self._grown_ns = 0
+        """When the period has last become longer."""
+        self._alarm: Alarm | None = None
+        self._last: set[tuple[str, Condition]] = set()
+        self._lock = threading.Lock()
+        self._is_closed = False
+        process.ledger.alert = self.arm
+
+    # what the runtime asks
+
+    def arm(self) -> None:
+        """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
+        if not self.is_armed:
+            self._period = PROBE_AFTER
+            self._schedule(PROBE_AFTER)
+
+    def chain(self, call: PendingCall) -> bytes:
+        """What a call that begins to wait carries, for `hopeless` at its server."""
+        return self._chains.of(call) if self.is_on else b""
+
+    def hopeless(self, service: str, runner: Runner, asked: bytes) -> str:
+        """Why a queued request can never be answered, where it is to be failed for that; empty if it may be.
+
+        Its server's group is full of runs that wait for it.
+
+        Args:
+            runner: The server's.
+            asked: The attachment of the request.
+        """
+        if self.policy not in ("raise", "break"):
+            return ""
+        holders = self._chains.holders(runner, asked)
+        if not holders:
+            return ""
+        graph, zid = self.snapshot.take(), self._process.session.zid
+        ids = [f"{zid}:{run.number}" for run in holders]
+        found = [graph.activities[name] for name in ids if name in graph.activities]
+        return hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph)
+
+    def close(self) -> None:
+        """Look no more."""
+        self._is_closed = True
+        self.watchdog.close()
+        if self._alarm is not None:
+            self._alarm.cancel()
+        self.is_armed = True
+
+    # when it looks
+
+    def _schedule(self, seconds: float) -> None:
+        if self._alarm is not None:
+            self._alarm.cancel()
+        self.is_armed = seconds <= PROBE_AFTER
+        clock = self._process.clock
+        self._alarm = clock.call_at(clock.monotonic_ns() + to_ns(seconds), self._probe)
+
+    def _probe(self) -> None:
+        """Look at what waits, and decide when to look again."""
+        try:
+            self._look()
+        except Exception as error:  # a search that has stumbled must not be the last
+            logger.debug("the search for deadlocks: %r", error, exc_info=error)
+            self._schedule(PROBE_LONGEST)
+
+    def _look(self) -> None:
+        graph = self.snapshot.take()
+        mine = self._process.session.zid
+        dead = deadlocked(graph)
+        self._take_back(graph, dead, {mine})
+        if any(report.processes != {mine} for report in self.reports.values()):
+            self._ask(self._look_again)
+        waiting = {(a.id, a.wait) for a in graph.activities.values() if a.wait is not FREE}
+        if not waiting and not any(q.waiting for q in graph.queues.values()):
+            self.is_armed = not self.is_on
+            self._last.clear()
+            self._behind.clear()
+            self._foreign.clear()
+            self._stall(graph, set())
+            if any(node.tasks for node in self._process.nodes):
+                self._schedule(TASKS_EVERY)
+            return
+        young = [a.age for a in graph.activities.values() if a.wait is not FREE and not _is_old(a)]
+        found = explained(graph, dead)
+        is_told_whole = _is_asked(graph) and not all(self._is_reported(frozenset(d.ring)) for d in found)
+        for deadlock in () if is_told_whole else found:
+            self._tell(deadlock, graph)
+        if is_told_whole or any(self._leaves(a, graph) for a in graph.activities.values() if _is_old(a)):
+            self._pull()
+        is_new = bool(waiting - self._last)
+        self._last = waiting
+        longest = 2 * PROBE_AFTER if self.reports else PROBE_LONGEST
+        now_ns = self._process.clock.monotonic_ns()
+        if is_new:
+            self._period, self._grown_ns = PROBE_AFTER, now_ns
+        elif now_ns - self._grown_ns >= to_ns(0.999 * self._period):
+            self._period, self._grown_ns = min(2 * self._period, longest), now_ns
+        else:
+            self._period = min(self._period, longest)
+        soonest = [PROBE_AFTER - max(young)] if young else []
+        soonest += [SILENT_AFTER] if self._unresponsive else []
+        soonest += self._stall(graph, dead | self._dead)
+        self._schedule(min(max(min(soonest, default=self._period), 0.01), self._period))
+
+    def _stall(self, graph: WaitGraph, dead: set[str]) -> list[float]:
+        due = self.stalls.look(graph, dead, self._process.clock.monotonic_ns())
+        return [] if due is None else [due]
+
+    def _leaves(self, activity: ActivityView, graph: WaitGraph) -> bool:
+        """Whether an activity waits for another process."""
+        here = {a.serves for a in graph.activities.values()} | {c for q in graph.queues.values() for c in q.calls}
+        return any(call.id not in here for call in calls_of(activity.wait))
+
+    # other processes
+
+    def _pull(self) -> None:
+        """Ask all twice. Those who have not answered count as alive, so what the others tell may be enough."""
+        goes_on = False
+
+        def first(replies: list[bytes], is_all: bool) -> None:
+            nonlocal goes_on
+            before, answered = self._whole(replies)
+            if is_all:
+                self._unresponsive.compare(self.snapshot.take(), answered)
+            dead = () if goes_on else deadlocked(before)
+            if any(self._process.session.zid == before.activities[i].process for i in dead):
+                goes_on = True
+                self._ask(lambda again, _: self._conclude(before, self._whole(again)[0]))
+
+        self._ask(first)
+
+    def _ask(self, told: Callable[[list[bytes], bool], None]) -> None:
+        if self._is_closed:
+            return
+        self.pulls += 1
+        self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, told)
+
+    def _whole(self, replies: list[bytes]) -> tuple[WaitGraph, set[str]]:
+        """The waits of all, and who has answered."""
+        pictures, answered = [], {self._process.session.zid}
+        for reply in replies:
+            try:
+                data = json.loads(reply)
+                graph, process = from_json(data), str(data["process"])
+            except (ValueError, KeyError, TypeError, RecursionError) as error:
+                logger.debug("a picture of waits that cannot be read: %s", error)
+                continue
+            pictures.append(graph)
+            answered.add(process)
+        return joined([*pictures, self.snapshot.take()]), answered
+
+    def _look_again(self, replies: list[bytes], is_all: bool) -> None:
+        """Whether what was reported still stands in other processes."""
+        if not is_all:
+            return
+        whole, answered = self._whole(replies)
+        self._take_back(whole, deadlocked(whole), answered)
+
+    def _conclude(self, before: WaitGraph, now: WaitGraph) -> None:
+        self._dead = deadlocked(now, before)
+        self._foreign = {ring: foreign for ring, foreign in self._foreign.items() if ring <= self._dead}
+        for deadlock in explained(now, self._dead):
+            self._tell(deadlock, now)
+        if self.reports:  # to see when they are over
+            self._schedule(min(self._period, 2 * PROBE_AFTER))
+
+    # what is said
+
+    def _tell(self, deadlock: Deadlock, graph: WaitGraph) -> None:
+        members = [graph.activities[i] for i in deadlock.ring]
+        # What only the source code tells must have lasted: a setter may be about to run.
+        if deadlock.is_likely and not all(_is_old(a) for a in members):
+            return
+        ring, mine = frozenset(deadlock.ring), self._process.session.zid
+        who = " and ".join(title(a) for a in members)
+        # One that was told may have grown since, and another ring of it be found.
+        told = next((known for known in self.reports if known & ring), ring)
+        behind = [graph.activities[i] for i in (*deadlock.victims, *(ring - told))]
+        victims = {title(a) for a in behind if a.process == mine}
+        if self.policy == "break" and not deadlock.is_likely:
+            self._break(deadlock, graph)
+        processes = {a.process for a in members}
+        first = min(processes - set(graph.blocked) or processes)
+        if first != mine and ring not in self._behind:
+            self._process.session.ask_reports(answer_key(self._process.domain, LOOK, first), PULL_LIMIT, _nothing)
+        if first != mine and ring not in self._foreign:
+            held = frozenset((a.id, a.wait) for a in members if a.process == mine)
+            self._foreign[ring] = Foreign(first, who, processes, held)
+            if not self._is_watching:
+                self._is_watching = True
+                self._process.on_change(self._changed)
+        if first == mine and told not in self.reports:
+            involved = {a.process for a in behind} | processes
+            report = self.reports[ring] = Report(explanation(deadlock, graph), who, involved, deadlock.ring)
+            logger.error("%s", report.text)
+            self._behind[ring] = victims
+        for victim in sorted(victims - self._behind.setdefault(told, set())):
+            known = self.reports.get(told)
+            logger.warning("%s waits behind the deadlock of %s", victim, who if known is None else known.who)
+        self._behind[told] |= victims
+
+    def _is_reported(self, ring: Ring) -> bool:
+        """Whether it, or another ring through one of its members, has been reported and stands."""
+        return any(ring & known for known in self.reports)
+
+    def _break(self, deadlock: Deadlock, graph: WaitGraph) -> None:
+        """End the youngest call or goal of the ring, if it is of this process: all find the ring, and agree on one."""
+        ledger = self._process.ledger
+        ways = zip(deadlock.ring, deadlock.edges, strict=True)
+        calls = [(graph.activities[name], edge.via) for name, edge in ways if isinstance(edge.via, Call)]
+        if not calls:
+            return
+        activity, call = min(calls, key=lambda pair: (round(pair[0].age, 1), pair[0].id))
+        if activity.process != self._process.session.zid:
+            return
+        futures = [future for future, entry in ledger.calls.items() if id_of(entry) == call.id]
+        futures += [f for f, goal in ledger.goals.items() if goal_id(goal.goal_id) == call.id and f is not goal.ended]
+        for future in futures:
+            if not future.done():
+                future.set_exception(DeadlockError(explanation(deadlock, graph)))
+
+    def _take_back(self, graph: WaitGraph, dead: set[str], processes: set[str]) -> None:
+        """Take back reports of rings that are none any more.
+
+        Args:
+            processes: Those that have been looked at. Nothing is known of others that are there.
+        """
+        for ring, report in list(self.reports.items()):
+            unknown = report.processes - processes
+            if is_ring(report.order, graph, dead) or any(entity.zid in unknown for entity in self._process.cache):
+                continue
+            del self.reports[ring]
+            self._behind.pop(ring, None)
+            if not ring <= dead:  # otherwise they are in another, which is told now
+                logger.warning("the deadlock of %s has cleared", report.who)
+
+    def _changed(self, change: GraphChange) -> None:
+        """A process that was to report a deadlock may be going, and the deadlock with it."""
+        if change.alive:
+            return
+        leaving = {ring for ring, foreign in self._foreign.items() if foreign.reporter == change.entity.zid}
+        for ring in leaving:
+            foreign, known = self._foreign.pop(ring), self.snapshot.take().activities
+            # Those who wait for the process have been told that it has gone, and have not gone on yet.
+            if all(name in known and known[name].wait in (wait, FREE) for name, wait in foreign.waits):
+                clock = self._process.clock
+                clock.call_at(clock.monotonic_ns() + to_ns(GONE_AFTER), partial(self._say_gone, ring, foreign))
+
+    def _say_gone(self, ring: Ring, foreign: Foreign) -> None:
+        there = {entity.zid for entity in self._process.cache}
+        if foreign.reporter in there:
+            self._foreign[ring] = foreign  # something else of it went
+        elif not self._is_closed and self._process.session.zid == min(foreign.processes & there, default=""):
+            logger.warning("the deadlock of %s has cleared: a process of it has gone", foreign.who)
+
+    def look_now(self) -> None:
+        """Another process has found a deadlock that this one is to report. From any thread."""
+        if self.policy != "off":
+            with suppress(RuntimeError):  # the loop is closed
+                self._process.loop.call_soon_threadsafe(self._pull)
+
+    def _probe_blocked(self) -> None:
+        """The event loop is blocked: look from the thread that has noticed it."""
+        if self.policy == "off" or not self._lock.acquire(blocking=False):
+            return
+        try:
+            graph = self.snapshot.take()
+            for deadlock in explained(graph, deadlocked(graph)):
+                self._tell(deadlock, graph)
+                self._process.loop.call_soon_threadsafe(self.arm)  # to see it cleared
+        finally:
+            self._lock.release()
+
+
+def _nothing(*_: object) -> None:
+    """Nobody waits for the answers."""
+
+
+def _is_asked(graph: WaitGraph) -> bool:
+    """Whether somebody else waits for what this process is to answer."""
+    activities, queues = graph.activities.values(), graph.queues.values()
+    asked = {call for queue in queues for call in queue.calls} | {a.serves for a in activities if a.serves}
+    return not asked.issubset(call.id for a in activities for call in calls_of(a.wait))
+
+
+def _is_old(activity: ActivityView) -> bool:
+    """Whether it has waited long enough to be looked at."""
+    return activity.age >= 0.999 * PROBE_AFTER

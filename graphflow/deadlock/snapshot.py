@@ -1,0 +1,487 @@
+"""What the handlers and tasks of this process wait for, read off when somebody asks, as a `WaitGraph`.
+
+Nothing is written down while a handler runs, but for the entries of the ledger. What an activity waits for is read
+from the future that it awaits; where that tells nothing, from the coroutines between. A snapshot can be taken on any
+thread, so also while the event loop is blocked.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import queue
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePath
+from types import FrameType
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from graphflow.deadlock import asyncio_frames as aio
+from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
+from graphflow.deadlock.closed_world import Setters, cancellers, method_of, setters
+from graphflow.deadlock.protocols import Process, Subject
+from graphflow.deadlock.source import Unknown
+from graphflow.deadlock.user_code import innermost
+from graphflow.deadlock.watchdog import Watchdog
+from graphflow.errors import DecodeError, Place
+from graphflow.executor.activity import Activity
+from graphflow.executor.clock import ClockTimeout
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.ledger import PendingCall
+from graphflow.executor.runner import Run, Runner
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    GroupView,
+    Join,
+    QueueView,
+    SetBy,
+    Slot,
+    WaitGraph,
+    call_id,
+    goal_id,
+)
+from graphflow.times import to_ns
+from graphflow.wire import attachment
+from graphflow.wire.liveliness import Kind
+
+_ATTEMPTS = 5
+LOOP_LIMIT = 0.2
+"""Seconds that the loop gets to take a snapshot of itself."""
+
+
+class Snapshot:
+    """Takes the wait graph of one process, and remembers between two of them what has been seen before."""
+
+    def __init__(self, process: Process, watchdog: Watchdog) -> None:
+        self._process, self._watchdog = process, watchdog
+        self._count = 0
+        """Of tasks that have a number."""
+        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._lock = threading.RLock()
+        self._since: dict[tuple[str, Condition], int] = {}
+
+    def take(self) -> WaitGraph:
+        """The waits of this process, from any thread."""
+        with self._lock:
+            for _ in range(_ATTEMPTS):
+                try:
+                    return _Look(self._process, self, self._watchdog).graph()
+                except RuntimeError:  # something changed its size meanwhile
+                    continue
+        return WaitGraph()
+
+    def take_for_others(self) -> WaitGraph:
+        """The same, for another thread: taken on the loop, whose coroutines must not be looked into while they run."""
+        if threading.get_ident() == self._process.ledger.thread or self._watchdog.is_blocked:
+            return self.take()
+        taken: queue.SimpleQueue[WaitGraph] = queue.SimpleQueue()
+        try:
+            self._process.loop.call_soon_threadsafe(lambda: taken.put(self.take()))
+            return taken.get(timeout=LOOP_LIMIT)
+        except (queue.Empty, RuntimeError):  # the loop is blocked, and they stand still; or it is closed
+            return self.take()
+
+    def number_of(self, task: Any) -> int:
+        """A number that no other task ever has."""
+        if task not in self._numbers:
+            self._count += 1
+        return self._numbers.setdefault(task, self._count)
+
+    def age(self, activity: str, wait: Condition, now_ns: int) -> float:
+        """Seconds since this wait was first seen."""
+        return (now_ns - self._since.setdefault((activity, wait), now_ns)) / 1e9
+
+    def forget(self, keep: set[tuple[str, Condition]]) -> None:
+        """Keep account of these waits only."""
+        self._since = {key: when for key, when in self._since.items() if key in keep}
+
+
+def id_of(call: PendingCall) -> str:
+    """How wait graphs of all processes name a call."""
+    return call_id(call.gid, call.sequence)
+
+
+def place_of(task: Any) -> str:
+    """The user's line in which a suspended task waits: `(drive.py:12 in on_start)`; empty if there is none."""
+    frame = innermost(frames_of(task))
+    if frame is None:
+        return ""
+    return f"({Place(PurePath(frame.f_code.co_filename).name, frame.f_lineno)} in {frame.f_code.co_name})"
+
+
+class _Look:
+    """One wait graph being made."""
+
+    def __init__(self, process: Process, memory: Snapshot, watchdog: Watchdog) -> None:
+        self._process, self._memory, self._watchdog = process, memory, watchdog
+        self._ledger = process.ledger
+        self._zid = process.session.zid
+        self._now_ns = process.clock.monotonic_ns()
+        self._nodes = list(process.nodes)
+        self._runners = [(node, runner) for node in self._nodes for runner in list(node.runners)]
+        self._activities: dict[str, ActivityView] = {}
+        self._groups: dict[str, GroupView] = {}
+        self._queues: dict[str, QueueView] = {}
+        self._seen: set[tuple[str, Condition]] = set()
+        self._limit_ns: int | None = None
+        """When the activity that is looked at gives up waiting."""
+
+    @cached_property
+    def _servers(self) -> Counter[str]:
+        """How many servers there are, by service."""
+        return Counter(entity.name for entity in list(self._process.cache) if entity.kind is Kind.SERVICE)
+
+    def graph(self) -> WaitGraph:
+        arrived = self._arrived()
+        for node, runner in self._runners:
+            calls = [c for c in (self._call_of(runner, item) for item in list(runner.items)) if c]
+            calls += arrived.get(runner.number, [])
+            id_ = self.queue_id(runner)
+            self._queues[id_] = QueueView(
+                id_,
+                runner.title,
+                node.full_name,
+                self._slots(node, runner, runner.group),
+                tuple(calls),
+                len(runner.items) + len(arrived.get(runner.number, [])),
+                runner.spec.dropped(),
+                self._zid,
+                runner.spec.handler in node.handlers,
+            )
+            for run in sorted(runner.active, key=lambda run: run.number):
+                self._add_run(node, runner, run)
+        for node in self._nodes:
+            for task in list(node.tasks):
+                self._add_task(node, task)
+        blocker = self._blocker()
+        blocked = {} if blocker is None else {self._zid: blocker}
+        self._memory.forget(self._seen)
+        return WaitGraph(self._activities, self._groups, self._queues, blocked)
+
+    # ids
+
+    def run_id(self, run: Run) -> str:
+        return f"{self._zid}:{run.number}"
+
+    def task_id(self, task: Any) -> str:
+        return self.run_id(task) if isinstance(task, Run) else f"{self._zid}:t{self._memory.number_of(task)}"
+
+    def queue_id(self, runner: Runner) -> str:
+        return f"{self._zid}:q{runner.number}"
+
+    def _slots(self, node: Subject, runner: Runner, group: HandlerGroup | None) -> tuple[str, ...]:
+        """The ids of the groups of which a run in `group` takes a slot; its own queue is as good as one."""
+        named = () if group is None else (self._named(node, group),)
+        if not runner.is_serial:
+            return named
+        own = f"{self._zid}:own{runner.number}"
+        self._groups[own] = GroupView(own, "", node.full_name, 1)
+        return (*named, own)
+
+    def _named(self, node: Subject, group: HandlerGroup) -> str:
+        name = f"{self._zid}:{node.full_name}:{group.name}"
+        # A group that cancels what runs is never full for good.
+        limit = None if group.when_full == "cancel_running" else group.limit
+        known = group.name if group in node.groups.by_name.values() else ""  # it is the runtime's own
+        is_declared = known in node.groups.known
+        self._groups[name] = GroupView(name, known, node.full_name, limit, is_declared, group.is_threaded)
+        return name
+
+    def _call_of(self, runner: Runner, item: Any) -> str:
+        """The call or goal that an item of a queue is."""
+        if runner.spec.kind == "service":
+            try:
+                sequence, _, gid = attachment.fields((item.attachment or b"")[: attachment.SIZE])
+            except DecodeError:
+                return ""
+            return call_id(gid, sequence)
+        if runner.spec.kind == "reply":
+            return str(item.call)
+        return goal_id(item.goal_id) if runner.spec.kind == "action" else ""
+
+    def _arrived(self) -> dict[int, list[str]]:
+        """Calls that have arrived and that the loop has not seen yet, by the number of the runner that they are for."""
+        found: dict[int, list[str]] = {}
+        for runner, gid, sequence in self._process.arrived():
+            found.setdefault(runner.number, []).append(call_id(gid, sequence))
+        return found
+
+    # activities
+
+    def _add_run(self, node: Subject, runner: Runner, run: Run) -> None:
+        item = getattr(run, "item", None)
+        serves = "" if item is None else self._call_of(runner, item)
+        holds = self._slots(node, runner, run.group)
+        self._add(self.run_id(run), runner.title, node, run, holds, serves, is_inner=runner.spec.is_inner)
+
+    def _add_task(self, node: Subject, task: Any) -> None:
+        name = task.get_name().removeprefix(f"{node.full_name}.")
+        self._add(self.task_id(task), f"task {name}", node, task, (), "")
+
+    def _add(
+        self,
+        id_: str,
+        label: str,
+        node: Subject,
+        task: Any,
+        holds: tuple[str, ...],
+        serves: str,
+        *,
+        is_inner: bool = False,
+    ) -> None:
+        self._limit_ns = None
+        frame = innermost(self._frames_of(task))
+        wait = self._condition(task, _Way(node, task))
+        self._seen.add((id_, wait))
+        age, left = self._times(id_, wait)
+        self._activities[id_] = ActivityView(
+            id_,
+            label,
+            node.full_name,
+            holds,
+            wait,
+            serves,
+            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
+            "" if frame is None else frame.f_code.co_name,
+            age,
+            left,
+            self._zid,
+            is_inner,
+            frame is not None and aio.is_coroutine(frame),
+        )
+
+    def _times(self, id_: str, wait: Condition) -> tuple[float, float | None]:
+        """For how many seconds an activity has waited, and how many are left until it gives up; None for no limit."""
+        began, deadline = self._bounds(wait)
+        if wait is not FREE and self._limit_ns is not None:
+            deadline = min(self._limit_ns, deadline or self._limit_ns)
+        if began is None:
+            age = 0.0 if wait is FREE else self._memory.age(id_, wait, self._now_ns)
+        else:
+            age = (self._now_ns - began) / 1e9
+        return age, None if deadline is None else (deadline - self._now_ns) / 1e9
+
+    def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
+        """When the first of the calls that are waited for began, and when the first times out."""
+        wanted = set(_call_ids(wait))
+        found = [c for c in list(self._ledger.calls.values()) if id_of(c) in wanted]
+        deadlines = [c.deadline_ns for c in found if c.deadline_ns is not None]
+        began = [c.began_ns for c in found]
+        began += [g.began_ns for g in list(self._ledger.goals.values()) if goal_id(g.goal_id) in wanted]
+        return min(began, default=None), min(deadlines, default=None)
+
+    # conditions
+
+    def _condition(self, task: Any, way: _Way) -> Condition:
+        """What a task or an activity waits for, in the end; `way` leads to it."""
+        if id(task) in way.tasks or task.done():
+            return FREE
+        if isinstance(task, Activity) and task.returning_to is not None:
+            for owner in self._nodes:
+                if task.returning_to in owner.groups.by_name.values():
+                    return Slot(self._named(owner, task.returning_to), getattr(task, "number", 0))
+        waiter = waiter_of(task)
+        if waiter is None:
+            return FREE
+        frames = self._frames_of(task)
+        limit_ns = self._limit_of(task)
+        way = _Way(
+            way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, way.is_bounded or limit_ns is not None
+        )
+        if limit_ns is not None:
+            self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
+        for frame in reversed(frames):
+            together = aio.joint_wait(frame)
+            if together is not None:
+                return self._of_joint_wait(together, way)
+        return self._of_future(waiter, way)
+
+    def _of_joint_wait(self, wait: aio.JointWait, way: _Way) -> Condition:
+        ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and _has_failed(f)))]
+        if ends:
+            return FREE  # the waiter's next step is due
+        conditions = tuple(self._of_future(f, way) for f in wait.tasks if not f.done())
+        return All(conditions) if wait.wants == "all" else AnyOf(conditions)
+
+    def _frames_of(self, task: Any) -> list[FrameType]:
+        """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
+        frames = frames_of(task)
+        waiter = waiter_of(task)
+        thread = self._ledger.threads.get(aio.shielded(waiter) or waiter)
+        if thread is not None and thread.ident is not None:
+            frames += aio.stack_of(thread.ident)
+        return frames
+
+    def _limit_of(self, task: Any) -> int | None:
+        """When a task gives up waiting, in nanoseconds of the clock; None for never."""
+        found: list[float] = []
+        for coroutine in aio.coroutines(task):
+            found += aio.deadlines(coroutine)
+            for context in aio.entered(coroutine):
+                if isinstance(context, ClockTimeout):
+                    return context.until_ns
+        seconds = min(found, default=None)
+        return None if seconds is None else self._now_ns + to_ns(max(0.0, seconds - self._process.loop.time()))
+
+    def _of_future(self, future: Any, way: _Way) -> Condition:
+        ledger = self._ledger
+        if future in ledger.threads:
+            asking = ledger.asking.get(ledger.threads[future].ident or 0)
+            return self._closed_world(way, None) if asking is None else self._condition(asking, way)
+        if future in ledger.calls:
+            call = ledger.calls[future]
+            return Call(id_of(call), call.service) if self._servers[call.service] < 2 else FREE  # another may answer
+        if future in ledger.goals:
+            goal = ledger.goals[future]
+            if self._servers[f"{goal.action}/_action/send_goal"] > 1:
+                return FREE
+            return self._or_cancelled(Call(goal_id(goal.goal_id), goal.action), goal, way)
+        if future in ledger.served:
+            return Call(goal_id(ledger.served[future]), "")
+        if isinstance(future, Activity) or asyncio.isfuture(future):
+            if hasattr(future, "get_coro"):
+                known = self._known(future)
+                return known if known is not None else self._or_cancelled(self._condition(future, way), future, way)
+            together = aio.gathered(future)
+            if together is not None:
+                return self._of_joint_wait(together, way)
+            inner = aio.shielded(future)
+            return self._closed_world(way, future) if inner is None else self._of_future(inner, way)
+        return FREE
+
+    def _known(self, task: Any) -> Condition | None:
+        """An activity of the picture by its own name; any other task is looked into."""
+        for node in self._nodes:
+            if task in node.tasks:
+                return Join(self.task_id(task))
+        return None
+
+    def _closed_world(self, way: _Way, waiter: Any) -> Condition:
+        """A wait for something that, as far as the source code tells, only handlers of the node bring about."""
+        found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
+        if found is None or any(task.done() for task in found.tasks):
+            return FREE
+        ends = [self._of_future(task, way) for task in found.tasks]
+        if found.handlers or not ends:
+            ends.insert(0, self._set_by(found, way))
+        return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
+
+    def _or_cancelled(self, condition: Condition, thing: Any, way: _Way) -> Condition:
+        """The wait for a task or goal of the node's, which others of its handlers may cancel."""
+        if condition is FREE:
+            return FREE
+        try:
+            found = cancellers(thing, way.node)
+        except Unknown:
+            return FREE
+        return condition if found is None else AnyOf((condition, self._set_by(found, way)))
+
+    def _set_by(self, found: Setters, way: _Way) -> Condition:
+        node = way.node
+        runners = [r for n, r in self._runners if n is node and r.spec.handler in found.handlers]
+        # Runs under way count too, also those that have let go of their slot.
+        others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
+        others += [t for t in list(node.tasks) if t is not way.root and method_of(t) in found.handlers]
+        known = {r.spec.handler for r in runners} | {method_of(t) for t in list(node.tasks)}
+        if not found.handlers <= known:  # one of them is not there to be waited for
+            return FREE
+        is_held = False
+        if found.lock is not None:
+            inside = self._inside(found.lock)
+            is_held = len(inside) == found.places
+            if not is_held and not found.handlers:  # somebody else is in it, and nobody is seen to release it by hand
+                return FREE
+            others += inside
+        queues = sorted(self.queue_id(r) for r in runners)
+        activities = sorted({self.task_id(other) for other in others})
+        return SetBy(found.what, tuple(queues), tuple(activities), is_held)
+
+    def _inside(self, lock: Any) -> list[Any]:
+        """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
+        activities: list[Any] = [run for _, runner in self._runners for run in list(runner.active)]
+        activities += [task for node in self._nodes for task in list(node.tasks)]
+        return [task for task in activities for _ in range(aio.times_inside(task, lock))]
+
+    # the loop
+
+    def _blocker(self) -> str | None:
+        """The activity that blocks the event loop; None when it is not blocked, or this is its thread."""
+        if threading.get_ident() == self._ledger.thread or not self._watchdog.is_blocked:
+            return None
+        task, runner = current_task(self._process.loop), self._ledger.at_work
+        run = task if isinstance(task, Run) else None
+        if isinstance(runner, Runner):
+            item = runner.at_hand
+            run = run if run is not None and run.runner is runner else None
+        elif run is not None:
+            runner, item = run.runner, getattr(run, "item", None)
+        else:
+            return None
+        if item is None:  # a run that has ended, and whose result is being sent
+            return None
+        node = next((n for n, r in self._runners if r is runner), None)
+        if node is None:
+            return None
+        return self._add_blocker(node, runner, run, item)
+
+    def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Any) -> str:
+        stack = aio.stack_of(self._ledger.thread)
+        id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
+        frame = innermost(stack)
+        way = _Way(node, run, tuple(stack))
+        if self._ledger.blocking is None:
+            wait = self._closed_world(way, None)
+        else:
+            wait = self._of_future(self._ledger.blocking, way)
+        self._seen.add((id_, wait))
+        self._activities[id_] = ActivityView(
+            id_,
+            runner.title,
+            node.full_name,
+            self._slots(node, runner, runner.group),
+            wait,
+            self._call_of(runner, item),
+            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
+            "" if frame is None else frame.f_code.co_name,
+            self._watchdog.blocked_for,
+            None,
+            self._zid,
+            is_async=False,
+        )
+        return id_
+
+
+def _call_ids(condition: Condition) -> Iterator[str]:
+    match condition:
+        case Call(id=call):
+            yield call
+        case All(of=conditions) | AnyOf(of=conditions):
+            for inner in conditions:
+                yield from _call_ids(inner)
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """How a wait was come to: from a run of a handler, through the tasks that it waits for."""
+
+    node: Subject
+    root: Any
+    """The activity."""
+    frames: tuple[FrameType, ...] = ()
+    """Of all of them, the outermost first."""
+    tasks: frozenset[int] = frozenset()
+    """Their ids."""
+    is_bounded: bool = False
+    """Whether one of them gives up after some time."""
+
+
+def _has_failed(future: Any) -> bool:
+    return bool(future.cancelled() or future.exception() is not None)

@@ -1,0 +1,400 @@
+"""What the source of a node's class tells: its methods, who calls whom, and all that is done to an attribute.
+
+Read once for each class, from the files of the class and of its parents. Whatever may do more than it shows, such as
+`setattr`, a method that is handed on instead of called, or the node itself given to code of another file, makes the
+source say nothing at all: `Unknown`.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import tokenize
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from types import CodeType
+from typing import Any, Literal, NamedTuple
+
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
+Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
+_NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+_LOOKS = (
+    *(ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp, ast.If, ast.While, ast.Assert, ast.Await, ast.FormattedValue),
+    *(ast.For, ast.AsyncFor, ast.comprehension, ast.Match, ast.Expr),
+)
+_LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozenset", "hash", "id", "int", "isinstance"}
+_LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
+_LOOKING |= {"super", "tuple", "type", "zip"}
+_SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
+_SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
+_SAME |= {"diagonal", "copyto"}
+"""Functions of numpy that may give back another view of the same array, or write to it."""
+_BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
+
+
+class Unknown(Exception):
+    """The source does not tell."""
+
+
+class Function(NamedTuple):
+    """A method, or a function inside of one."""
+
+    syntax: FunctionNode
+    method: str
+    """The method that it is or stands in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """One mention of an attribute.
+
+    Attributes:
+        kind: What is done: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
+            of it is *called*; a *part* is looked at; it is *entered* by `with`; *read* where that cannot change it;
+            *invoked*, `self.x()`; or *given* to somebody, another name included.
+        name: The method that is called, or the part.
+        value: What is assigned, if that is an expression of its own.
+        is_nested: In a function or lambda inside of the method, which runs nobody knows when.
+        is_started: The call of an `async def` that is not awaited on the spot, and runs on its own.
+        is_registered: Given to one of the node's `create_...`, as a handler is.
+        part: The whole of what is looked at, where it is handed on: `self.x.y[2:]`.
+    """
+
+    method: str
+    syntax: ast.Attribute
+    kind: Kind
+    name: str = ""
+    value: ast.expr | None = None
+    is_nested: bool = False
+    is_started: bool = False
+    is_registered: bool = False
+    part: ast.expr | None = None
+
+
+@dataclass
+class ClassSource:
+    """The methods of a class and its parents."""
+
+    methods: dict[str, list[FunctionNode]] = field(default_factory=dict)
+    """By name: the child's, and its parents' where those are called by `super()`."""
+    rebound: set[str] = field(default_factory=set)
+    """Names of modules that some function binds anew."""
+    _others: dict[str, FunctionNode] = field(default_factory=dict)
+    """Functions of the files, by name."""
+    _functions: dict[tuple[str, int], Function] = field(default_factory=dict)
+    """By file and first line."""
+    _modules: list[ast.Module] = field(default_factory=list)
+    _uses: dict[str, list[Use]] = field(default_factory=dict)
+    _foreign: dict[str, list[Use]] = field(default_factory=dict)
+    """Mentions on anything but `self`, anywhere in the files."""
+    _callers: dict[str, set[str]] = field(default_factory=dict)
+    _properties: set[str] = field(default_factory=set)
+    _is_known: bool = True
+
+    def function(self, code: CodeType) -> Function | None:
+        """The source of a method, or of a function inside of one, by its code."""
+        return self._functions.get((code.co_filename, code.co_firstlineno))
+
+    def uses(self, attribute: str) -> list[Use]:
+        """All that the class's methods do to `self.attribute`.
+
+        Raises:
+            Unknown: Something may be done to it that is not written down.
+        """
+        if not self._is_known:
+            raise Unknown
+        return self._uses.get(attribute, [])
+
+    def foreign(self, attribute: str) -> list[Use]:
+        """What is done to an attribute of that name of anything but `self`."""
+        return self._foreign.get(attribute, [])
+
+    def above(self, methods: set[str], handlers: set[str]) -> set[str]:
+        """Those methods, and all that call them, directly or through each other.
+
+        Args:
+            methods: Names of methods.
+            handlers: Methods that graphflow calls, which may be given to it.
+
+        Raises:
+            Unknown: One of them may be called by somebody else.
+        """
+        found, todo = set(methods), list(methods)
+        while todo:
+            method = todo.pop()
+            self._refuse_strangers(method, method in handlers)
+            for caller in self._callers.get(method, set()) - found:
+                found.add(caller)
+                todo.append(caller)
+        return found
+
+    def below(self, method: str) -> set[str]:
+        """A method, and all that it calls."""
+        found, todo = {method}, [method]
+        while todo:
+            caller = todo.pop()
+            called = {name for name, callers in self._callers.items() if caller in callers} - found
+            found |= called
+            todo += called
+        return found
+
+    def may_fail(self, block: ast.AST, methods: set[str]) -> bool:
+        """Whether a block may be left by an error that is raised, as far as can be seen, in what it calls.
+
+        Args:
+            methods: Those that the block calls, and those that they call.
+        """
+        blocks = [block, *(function for name in methods for function in self.methods.get(name, []))]
+        called = {
+            n.func.id for b in blocks for n in ast.walk(b) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+        }
+        blocks += [self._others[name] for name in called & set(self._others)]
+        return any(isinstance(node, (ast.Raise, ast.Assert)) for b in blocks[1:] for node in ast.walk(b))
+
+    def _refuse_strangers(self, method: str, is_handler: bool) -> None:
+        for use in self.uses(method):
+            calls = use.kind == "invoked" or method in self._properties
+            if use.is_nested or use.is_started or not (calls or (is_handler and use.is_registered)):
+                raise Unknown
+        if self._foreign.get(method):
+            raise Unknown
+
+    # how it is read
+
+    def _add(self, cls: type, file: str, module: ast.Module, continued: set[str]) -> None:
+        """The methods of one class."""
+        if module not in self._modules:
+            self._modules.append(module)
+            self._others |= {item.name: item for item in module.body if isinstance(item, FunctionNode)}
+        for definition in ast.walk(module):
+            if not (isinstance(definition, ast.ClassDef) and definition.name == cls.__name__):
+                continue
+            for item in definition.body:
+                if not (isinstance(item, FunctionNode) and _is_of(cls, item)):
+                    continue
+                for inner in ast.walk(item):
+                    if isinstance(inner, FunctionNode):
+                        self._functions[file, _first_line(inner)] = Function(inner, item.name)
+                if item.name not in self.methods or item.name in continued:
+                    self.methods.setdefault(item.name, []).append(item)
+                    continued |= {node.attr for node in ast.walk(item) if _is_of_super(node)}  # type: ignore[attr-defined]
+
+    def _link(self) -> None:
+        """Find out what is done to which attribute, and who calls whom."""
+        inside: set[ast.AST] = set()
+        defined = {d.name for m in self._modules for d in ast.walk(m) if isinstance(d, (ast.ClassDef, *_NESTED[:2]))}
+        for name, functions in self.methods.items():
+            for function in functions:
+                decorators = {ast.unparse(decorator) for decorator in function.decorator_list}
+                if decorators & {"property", "cached_property", "functools.cached_property"}:
+                    self._properties.add(name)
+                if not decorators & {"staticmethod", "classmethod"} and (
+                    not function.args.args or function.args.args[0].arg != "self"
+                ):
+                    self._is_known = False
+                for node, parents in walk(function):
+                    inside.add(node)
+                    if isinstance(node, ast.Attribute):
+                        self._note(name, node, parents)
+                    elif isinstance(node, ast.Name):
+                        self._is_known &= node.id not in _BY_NAME
+                        if node.id == "self" and isinstance(parents[-1], (ast.Call, ast.keyword)):
+                            self._is_known &= _knows(parents, defined)
+        for module in self._modules:
+            imported = {alias.asname or alias.name for alias in _imports(module)}
+            for node, parents in walk(module):
+                if isinstance(node, ast.Global):
+                    self.rebound.update(node.names)
+                if isinstance(node, ast.Call) and _word(node.func) in ("setattr", "delattr") and node not in inside:
+                    self._set_by_name(node)
+                if not isinstance(node, ast.Attribute) or node in inside or is_own(node) or _is_super(node.value):
+                    continue
+                if not (isinstance(node.value, ast.Name) and node.value.id in imported):
+                    self._foreign.setdefault(node.attr, []).append(_use("", node, parents))
+
+    def _set_by_name(self, call: ast.Call) -> None:
+        """`setattr(other, "ready", True)`."""
+        match call:
+            case ast.Call(args=[ast.Name(id="self"), *_]):
+                pass  # of another class
+            case ast.Call(args=[owner, ast.Constant(value=str(name)), *_]):
+                syntax = ast.copy_location(ast.Attribute(owner, name, ast.Store()), call)
+                self._foreign.setdefault(name, []).append(Use("", syntax, "assigned"))
+            case _:
+                self._is_known = False
+
+    def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
+        use = _use(method, node, parents)
+        if not (is_own(node) or _is_super(node.value)):
+            self._foreign.setdefault(node.attr, []).append(use)
+            return
+        if node.attr == "__dict__":
+            self._is_known = False
+        if node.attr in self.methods:
+            is_async = any(isinstance(f, ast.AsyncFunctionDef) for f in self.methods[node.attr])
+            if is_async and use.kind == "invoked" and not _is_awaited(parents):
+                use = Use(method, node, use.kind, is_nested=use.is_nested, is_started=True)
+            if node.attr != method:
+                self._callers.setdefault(node.attr, set()).add(method)
+        if is_own(node):
+            self._uses.setdefault(node.attr, []).append(use)
+
+
+def source_of(instance: object) -> ClassSource:
+    """The source of an object's class."""
+    cls: Any = type(instance)
+    return _source_of(cls)
+
+
+@cache
+def _source_of(cls: Any) -> ClassSource:
+    """The source of a class; parents that are graphflow's or Python's own are left out."""
+    source, continued = ClassSource(), set[str]()
+    for parent in cls.__mro__:
+        if parent.__module__.partition(".")[0] in ("graphflow", "builtins", "typing", "abc"):
+            continue
+        try:
+            file = inspect.getsourcefile(parent) or ""
+            source._add(parent, file, _module(file), continued)
+        except (OSError, SyntaxError, TypeError, ValueError):  # there is none: nobody knows what its methods do
+            source._is_known = False
+    source._link()
+    return source
+
+
+def is_nested(parents: Sequence[ast.AST]) -> bool:
+    """Whether something stands in a function inside of what was walked."""
+    return any(isinstance(p, _NESTED) for p in parents[1:])
+
+
+def walk(top: ast.AST) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
+    """Every node below one, with what is around it, the outermost first."""
+    todo: list[tuple[ast.AST, list[ast.AST]]] = [(top, [])]
+    while todo:
+        node, parents = todo.pop()
+        yield node, parents
+        todo += [(child, [*parents, node]) for child in ast.iter_child_nodes(node)]
+
+
+def _use(method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> Use:
+    above = parents[-1]
+    nested = is_nested(parents)
+    if isinstance(node.ctx, (ast.Store, ast.Del)):
+        value = above.value if isinstance(above, (ast.Assign, ast.AnnAssign)) else None
+        names = {t.id for t in above.targets if isinstance(t, ast.Name)} if isinstance(above, ast.Assign) else set()
+        is_shared = isinstance(above, ast.Assign) and any(
+            isinstance(t, ast.Attribute) and t is not node for t in above.targets
+        )
+        if is_shared or not all(_only_looked_at(name, parents[0]) for name in names):
+            return Use(method, node, "given", is_nested=nested)
+        return Use(method, node, "assigned", value=value, is_nested=nested)
+    if isinstance(above, ast.Call) and above.func is node:
+        return Use(method, node, "invoked", is_nested=nested)
+    # `self.x.y[0].z`: up to the whole of it.
+    whole: ast.AST = node
+    around = list(parents)
+    while isinstance(around[-1], (ast.Attribute, ast.Subscript)) and around[-1].value is whole:
+        whole = around.pop()
+    if whole is not node:
+        name = above.attr if isinstance(above, ast.Attribute) else ""
+        if isinstance(whole.ctx, (ast.Store, ast.Del)):  # type: ignore[attr-defined]
+            kind: Kind = "changed"
+        elif isinstance(around[-1], ast.Call) and around[-1].func is whole:
+            kind = "called" if whole is above else "changed"
+        else:
+            kind = "part"
+        handed = whole if isinstance(whole, ast.expr) and kind == "part" and not looks(whole, around) else None
+        return Use(method, node, kind, name, is_nested=nested, part=handed)
+    if isinstance(above, ast.withitem) and above.context_expr is node:
+        return Use(method, node, "entered", is_nested=nested)
+    return Use(
+        method, node, "read" if looks(node, around) else "given", is_nested=nested, is_registered=_registers(above)
+    )
+
+
+def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
+    """Whether a mention cannot make known to anybody what is mentioned."""
+    above = parents[-1]
+    if isinstance(above, ast.Starred):
+        return looks(above, parents[:-1])
+    if isinstance(above, ast.IfExp):
+        return above.test is node
+    if isinstance(above, (ast.List, ast.Tuple, ast.Set)):  # asyncio.wait([self.x])
+        call = parents[-2] if len(parents) > 1 else None
+        return isinstance(call, ast.Call) and ast.unparse(call.func).startswith("asyncio.")
+    if isinstance(above, ast.Call):
+        function = ast.unparse(above.func)
+        if function.startswith("np."):
+            return function.removeprefix("np.") not in _SAME
+        return function in _LOOKING or function.startswith(("self.log.", "asyncio.", "math."))
+    return isinstance(above, _LOOKS)
+
+
+def _only_looked_at(name: str, function: ast.AST) -> bool:
+    """Whether a second name of something is never used but to look at it."""
+    return not any(
+        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
+        for node, parents in walk(function)
+    )
+
+
+def _word(function: ast.expr) -> str:
+    return function.id if isinstance(function, ast.Name) else ""
+
+
+def _registers(above: ast.AST) -> bool:
+    return isinstance(above, ast.Call) and ast.unparse(above.func).startswith("self.create_")
+
+
+def _is_awaited(parents: Sequence[ast.AST]) -> bool:
+    """Whether a call of a coroutine, whose function has these parents, runs where it stands and nowhere else."""
+    call, above = parents[-1], parents[-2]
+    if isinstance(above, (ast.AsyncFor, ast.comprehension)):
+        return above.iter is call
+    if isinstance(above, ast.Call) and ast.unparse(above.func) == "asyncio.wait_for":
+        above = parents[-3]
+    return isinstance(above, (ast.Await, ast.withitem, ast.Return))
+
+
+def _knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
+    """Whether the node, given to a call, is given to code that is read here too, or that only looks at it."""
+    call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]
+    return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | defined
+
+
+def _imports(module: ast.Module) -> Iterator[ast.alias]:
+    for node in ast.walk(module):
+        if isinstance(node, ast.Import):
+            yield from node.names
+
+
+def is_own(node: ast.AST) -> bool:
+    """Whether it is `self.something`."""
+    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
+
+
+def _is_super(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super"
+
+
+def _is_of_super(node: ast.AST) -> bool:
+    return isinstance(node, ast.Attribute) and _is_super(node.value)
+
+
+def _is_of(cls: type, item: FunctionNode) -> bool:
+    """Whether it is this class's method, and not that of another class of the same name."""
+    held: Any = vars(cls).get(item.name)
+    held = held.fget if isinstance(held, property) else getattr(held, "__func__", held)
+    code = getattr(inspect.unwrap(held), "__code__", None)
+    return code is not None and code.co_firstlineno == _first_line(item)
+
+
+def _first_line(item: FunctionNode) -> int:
+    return item.decorator_list[0].lineno if item.decorator_list else item.lineno
+
+
+@cache
+def _module(file: str) -> ast.Module:
+    with tokenize.open(file) as source:
+        return ast.parse(source.read())

@@ -1,0 +1,90 @@
+"""Groups that the same runs keep for long while other handlers wait: nothing that never ends, but worth a word."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+
+from graphflow.machines.explain import stall
+from graphflow.machines.wait_graph import ActivityView, QueueView, WaitGraph
+from graphflow.times import NANOSECONDS
+
+logger = logging.getLogger("graphflow")
+
+STALL_AFTER = 5.0
+"""Seconds that others wait before it is said."""
+LOOK_EVERY = 1.0
+"""Seconds between two looks whether it is over."""
+
+
+@dataclass
+class _Stall:
+    holders: frozenset[str]
+    since_ns: int
+    """When somebody was first seen to wait for them."""
+    dropped: dict[str, int]
+    """By queue: what it had dropped until then."""
+    text: str = ""
+    """What was said of it."""
+
+
+class Stalls:
+    """Who keeps whom waiting in one process. One per process."""
+
+    def __init__(self) -> None:
+        self._by_group: dict[str, _Stall] = {}
+
+    @property
+    def texts(self) -> list[str]:
+        """Those that last, as they were told."""
+        return [kept.text for kept in list(self._by_group.values()) if kept.text]
+
+    def look(self, graph: WaitGraph, dead: set[str], now_ns: int) -> float | None:
+        """Say what is to be said.
+
+        Args:
+            dead: Activities of which a deadlock tells.
+
+        Returns:
+            Seconds until there is to be another look; None if nobody keeps anybody waiting.
+        """
+        holders: dict[str, list[ActivityView]] = {}
+        for activity in graph.activities.values():
+            for name in activity.holds:
+                holders.setdefault(name, []).append(activity)
+        kept: dict[str, _Stall] = {}
+        due: list[float] = []
+        for name, waiting in _wanted(graph, holders).items():
+            by = holders[name]
+            if any(a.id in dead for a in by):
+                continue
+            ids = frozenset(a.id for a in by)
+            known = self._by_group.get(name)
+            if known is None or known.holders != ids:
+                known = _Stall(ids, now_ns, {queue.id: queue.dropped for queue in waiting})
+            kept[name] = known
+            seconds = (now_ns - known.since_ns) / NANOSECONDS
+            if not known.text and seconds >= 0.999 * STALL_AFTER:
+                known.text = stall(graph.groups[name], by, waiting, known.dropped, seconds)
+                logger.warning("%s", known.text)
+            due.append(LOOK_EVERY if known.text else STALL_AFTER - seconds)
+        for name, gone in self._by_group.items():
+            if gone.text and kept.get(name) is not gone and name in graph.groups:
+                group = graph.groups[name]
+                seconds = (now_ns - gone.since_ns) / NANOSECONDS
+                logger.warning("group '%s' of %s is free again after %.1f s", group.name, group.node, seconds)
+        self._by_group = kept
+        return min(due, default=None)
+
+
+def _wanted(graph: WaitGraph, holders: dict[str, list[ActivityView]]) -> dict[str, list[QueueView]]:
+    """Groups that have a name and no free slot, with the queues of handlers that want one and hold none."""
+    found: dict[str, list[QueueView]] = {}
+    for queue in graph.queues.values():
+        for name in queue.needs if queue.waiting else ():
+            group, by = graph.groups[name], holders.get(name, [])
+            is_full = group.limit is not None and len(by) >= group.limit
+            # That a handler's own runs come one after the other is what groups are for.
+            if group.name and is_full and any(a.label != queue.label for a in by):
+                found.setdefault(name, []).append(queue)
+    return found

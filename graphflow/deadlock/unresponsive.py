@@ -1,0 +1,102 @@
+"""Processes that somebody here waits for and that do not answer: stopped, out of reach, or held by a C extension.
+
+Nothing can be told of their deadlocks, so they count as alive; but whoever waits for them is to know why.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from graphflow.deadlock.protocols import Process
+from graphflow.machines.explain import title, where
+from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
+from graphflow.times import NANOSECONDS
+from graphflow.transport.base import Closable
+from graphflow.wire import process
+from graphflow.wire.liveliness import Kind
+from graphflow.wire.process import ProcessToken
+
+logger = logging.getLogger("graphflow")
+
+SILENT_AFTER = 1.0
+"""Seconds between two questions that were not answered, before it is said."""
+
+
+class Unresponsive:
+    """Who did not answer. One per process."""
+
+    def __init__(self, here: Process) -> None:
+        self._here = here
+        self._processes: dict[str, ProcessToken] = {}
+        self._since: dict[str, int] = {}
+        """When each that is silent was first found to be, in nanoseconds."""
+        self._told: set[str] = set()
+        self._watch: Closable | None = None
+
+    def __bool__(self) -> bool:
+        """Whether somebody is silent."""
+        return bool(self._since)
+
+    def compare(self, mine: WaitGraph, answered: set[str]) -> None:
+        """All processes were asked: see who of those that are waited for has answered.
+
+        Args:
+            mine: The waits of this process.
+            answered: Sessions.
+        """
+        if self._watch is None:  # those that are there are told soon, and looked for the next time
+            domain = self._here.domain
+            self._watch = self._here.session.watch(process.watch_key(domain), self._changed)
+        for zid in answered.intersection(self._since):
+            self._goes_on(zid, "answers again")
+        now = self._here.clock.monotonic_ns()
+        for zid, (activity, name) in self._waited_for(mine).items():
+            if zid in answered or zid not in self._processes:
+                continue
+            seconds = (now - self._since.setdefault(zid, now)) / NANOSECONDS
+            if seconds >= SILENT_AFTER and zid not in self._told:
+                self._told.add(zid)
+                server = self._processes[zid]
+                text = (
+                    f"NODE UNRESPONSIVE: {self._nodes(zid)} ({server}) has not answered for {seconds:.1f} s, and "
+                    f"{title(activity)} waits for {name}{where(activity)}: {server.why_silent}"
+                )
+                logger.warning("%s", text)
+
+    def _waited_for(self, mine: WaitGraph) -> dict[str, tuple[ActivityView, str]]:
+        """Sessions that are to answer calls, with one of those who wait, and for what."""
+        found: dict[str, tuple[ActivityView, str]] = {}
+        for activity in mine.activities.values():
+            for call in calls_of(activity.wait):
+                name = f"{call.name}/_action/send_goal" if call.id.startswith("goal:") else call.name
+                for server in self._here.cache.endpoints(Kind.SERVICE, name):
+                    found.setdefault(server.zid, (activity, call.name))
+        found.pop(self._here.session.zid, None)
+        return found
+
+    def _nodes(self, zid: str) -> str:
+        names = sorted({e.node_name for e in self._here.cache if e.zid == zid and not e.node_name.startswith("/_")})
+        return " and ".join(names) or "a process without nodes"
+
+    def _changed(self, text: str, alive: bool) -> None:
+        token = process.parse(text)
+        if token is None:
+            return
+        if alive:
+            self._processes[token.zid] = token
+        else:
+            self._goes_on(token.zid, "has gone")
+            self._processes.pop(token.zid, None)
+
+    def _goes_on(self, zid: str, how: str) -> None:
+        self._since.pop(zid, None)
+        if zid in self._told:
+            self._told.discard(zid)
+            logger.warning("%s (%s) %s", self._nodes(zid), self._processes[zid], how)
+
+
+def calls_of(wait: object) -> list[Call]:
+    """The calls in a condition."""
+    if isinstance(wait, Call):
+        return [wait]
+    return [call for inner in getattr(wait, "of", ()) for call in calls_of(inner)]

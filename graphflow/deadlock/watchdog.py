@@ -1,0 +1,111 @@
+"""Watches the event loop from a thread: how long it has not come round, and who keeps it.
+
+Looking costs a wake-up twice a second. An idle loop waits in its selector and is left alone; only one that is found
+busy is rung, and counts as blocked when it does not answer.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import time
+import traceback
+from asyncio import AbstractEventLoop
+from collections.abc import Callable
+
+logger = logging.getLogger("graphflow")
+
+LOOK_EVERY = 0.5
+"""Seconds between two looks at a loop that is idle."""
+ANSWER_WITHIN = 0.1
+"""Seconds after which a busy loop that was rung counts as late."""
+REPORT_AFTER = 1.0
+"""Seconds after which a blocked loop is reported with its stack."""
+_IDLE = ("select", "poll", "_poll", "run_forever", "_run_once", "run_until_complete")
+"""Functions in which a loop waits for something to happen."""
+
+
+class Watchdog:
+    """The watch over one process's event loop.
+
+    Args:
+        blocked: Called on the watching thread, again and again, while the loop is blocked.
+    """
+
+    def __init__(self, loop: AbstractEventLoop, blocked: Callable[[], None]) -> None:
+        self._loop, self._blocked = loop, blocked
+        self._loop_thread = threading.get_ident()
+        self._ended = threading.Event()
+        self._rung_at: float | None = None
+        self._reported = False
+        self.late = 0
+        """How often the loop has taken more than `ANSWER_WITHIN` seconds to come round."""
+        self.longest = 0.0
+        """The longest of those, in seconds."""
+        self._thread = threading.Thread(target=self._watch, name="graphflow-watchdog", daemon=True)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        self._thread.start()
+
+    @property
+    def blocked_for(self) -> float:
+        """Seconds since the loop was rung in vain; 0 when it is not."""
+        rung_at = self._rung_at
+        return 0.0 if rung_at is None else time.monotonic() - rung_at
+
+    @property
+    def is_blocked(self) -> bool:
+        return self.blocked_for > ANSWER_WITHIN
+
+    def _watch(self) -> None:
+        began = time.monotonic()
+        while not self._ended.wait(LOOK_EVERY):
+            held = time.monotonic() - began - LOOK_EVERY
+            if held > REPORT_AFTER:
+                logger.warning("nothing of this process could run for %.1f s: it was stopped, or C code held it", held)
+            if self._is_busy():
+                self._ring_and_wait()
+            began = time.monotonic()
+
+    def _is_busy(self) -> bool:
+        """Whether the loop is doing something just now."""
+        if not self._loop.is_running():  # whoever runs it has stopped, and may go on later
+            return False
+        frame = sys._current_frames().get(self._loop_thread)
+        return frame is not None and frame.f_code.co_name not in _IDLE
+
+    def _ring_and_wait(self) -> None:
+        answered = threading.Event()
+        self._rung_at = time.monotonic()
+        try:
+            self._loop.call_soon_threadsafe(answered.set)
+        except RuntimeError:  # the loop is closed
+            self._rung_at = None
+            return
+        while not answered.wait(ANSWER_WITHIN) and not self._ended.is_set():
+            self._blocked()
+            if self.blocked_for >= REPORT_AFTER and not self._reported:
+                self._reported = True
+                logger.error("%s", self._stack())
+        took = self.blocked_for
+        self._rung_at = None
+        if took > ANSWER_WITHIN:
+            self.late += 1
+            self.longest = max(self.longest, took)
+        if self._reported:
+            self._reported = False
+            logger.warning("the event loop goes on after %.1f s", took)
+
+    def _stack(self) -> str:
+        frame = sys._current_frames().get(self._loop_thread)
+        stack = "".join(traceback.format_stack(frame)[-6:]) if frame is not None else ""
+        return (
+            f"the event loop is blocked since {self.blocked_for:.1f} s: nothing else of this process can run.\n"
+            f"Await what takes long, or move it to a thread: thread=True, or await self.offload(...)\n{stack}"
+        )
+
+    def close(self) -> None:
+        """Watch no more."""
+        self._ended.set()

@@ -1,0 +1,119 @@
+"""Clocks: whoever wants to wait in graph time asks one, so that tests and simulations can own time."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from abc import ABC, abstractmethod
+from collections.abc import AsyncGenerator, Callable
+from types import TracebackType
+from typing import Protocol
+
+from graphflow.times import Time, to_ns
+
+
+class Alarm(Protocol):
+    """Something scheduled, until it is cancelled."""
+
+    def cancel(self) -> None: ...
+
+
+class Clock(ABC):
+    """Time and waiting. Subclasses say what time it is and how to be called at one."""
+
+    def now(self) -> Time:
+        """The time of day."""
+        return Time(self.time_ns())
+
+    @abstractmethod
+    def time_ns(self) -> int:
+        """The time of day in nanoseconds since 1970."""
+
+    @abstractmethod
+    def monotonic_ns(self) -> int:
+        """Nanoseconds since some fixed point; never goes back."""
+
+    @abstractmethod
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Call `callback` on the loop once `monotonic_ns()` has reached `when_ns`."""
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait for `seconds`."""
+        await self._sleep_until(self.monotonic_ns() + to_ns(seconds))
+
+    async def _sleep_until(self, when_ns: int) -> None:
+        future = asyncio.get_running_loop().create_future()
+        handle = self.call_at(when_ns, lambda: _wake(future))
+        try:
+            await future
+        finally:
+            handle.cancel()
+
+    async def every(self, period: float | None = None, *, hz: float | None = None) -> AsyncGenerator[int, None]:
+        """Count 0, 1, 2, ... once a period (seconds) or `hz` times a second; late turns are skipped, phase is kept."""
+        step = period_ns(period, hz)
+        start, n = self.monotonic_ns(), 0
+        while True:
+            yield n
+            n = max(n + 1, -(-(self.monotonic_ns() - start) // step))
+            await self._sleep_until(start + n * step)
+
+    def timeout(self, seconds: float) -> ClockTimeout:
+        """Cancel the block after `seconds` of this clock's time and raise TimeoutError, as `asyncio.timeout` does."""
+        return ClockTimeout(self, seconds)
+
+
+class ClockTimeout:
+    """A block that is given up after some time of a clock; made by `Clock.timeout`.
+
+    Attributes:
+        until_ns: When, by the clock; 0 before it is entered.
+    """
+
+    def __init__(self, clock: Clock, seconds: float) -> None:
+        self._clock, self._seconds = clock, seconds
+        self._scope = asyncio.timeout(None)
+        self.until_ns = 0
+
+    async def __aenter__(self) -> None:
+        loop = asyncio.get_running_loop()
+        self.until_ns = self._clock.monotonic_ns() + to_ns(self._seconds)
+        await self._scope.__aenter__()
+        self._alarm = self._clock.call_at(self.until_ns, lambda: self._scope.reschedule(loop.time()))
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._alarm.cancel()
+        await self._scope.__aexit__(kind, error, trace)
+
+
+def _wake(future: asyncio.Future[None]) -> None:
+    if not future.done():
+        future.set_result(None)
+
+
+def period_ns(period: float | None, hz: float | None) -> int:
+    """A period in nanoseconds, given in seconds or as a rate.
+
+    Raises:
+        ValueError: Both or neither are given, or the value is not a positive number.
+    """
+    if (period is None) == (hz is None):
+        raise ValueError("give a period in seconds or hz=, one of them")
+    value = period if hz is None else hz
+    assert value is not None
+    if not 0 < value < float("inf"):
+        raise ValueError(f"{'a period' if hz is None else 'hz'} must be a positive number, not {value!r}")
+    return max(1, to_ns(value if hz is None else 1 / value))
+
+
+class WallClock(Clock):
+    """The system's clocks: time of day for stamps, the loop's monotonic clock for waiting."""
+
+    time_ns = staticmethod(time.time_ns)
+    monotonic_ns = staticmethod(time.monotonic_ns)
+
+    def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
+        delay = max(0, when_ns - time.monotonic_ns()) / 1e9
+        return asyncio.get_running_loop().call_later(delay, callback)

@@ -1,0 +1,223 @@
+"""Concurrency groups at work: a node's, by name, and the slots that its handlers' runs hold."""
+
+from __future__ import annotations
+
+import asyncio
+from asyncio import AbstractEventLoop, CancelledError, Future
+from collections.abc import AsyncGenerator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from graphflow.errors import DeclarationError
+from graphflow.interface import NO_GROUP, GroupChange, WhenFull
+from graphflow.machines.group import GroupState
+from graphflow.names import did_you_mean
+
+
+class DeclaredGroup(Protocol):
+    """What a class says of a group."""
+
+    limit: int | None
+    when_full: WhenFull
+    thread: bool
+    name: str
+
+
+class Member(Protocol):
+    """What queues for a slot."""
+
+    def granted(self, group: HandlerGroup) -> None:
+        """A slot of `group` was handed over; it is held from now on."""
+
+    def yields(self) -> None:
+        """Drop what waits: newer work has come, in a group that keeps the newest only."""
+
+
+class HandlerGroup(GroupState[Member]):
+    """A group of one node. On the node it is what the class's `Group` declaration reads as."""
+
+    __slots__ = ("is_threaded",)
+
+    def __init__(
+        self, limit: int | None = 1, name: str = "", when_full: Any = "wait", *, is_threaded: bool = False
+    ) -> None:
+        super().__init__(limit, name, when_full)
+        self.is_threaded = is_threaded
+        """Whether `def` handlers run in threads."""
+
+    def give_back(self, loop: AbstractEventLoop) -> None:
+        """End of a run: the slot goes to whoever has waited longest."""
+        successor = self.release()
+        if successor is not None:
+            loop.call_soon(successor.granted, self)
+
+    def set_limit(self, limit: int | None, loop: AbstractEventLoop | None) -> None:
+        """Allow so many runs at one time from now on; runs under way stay."""
+        self.limit = limit
+        while loop is not None and (successor := self.grant()) is not None:
+            loop.call_soon(successor.granted, self)
+
+    @asynccontextmanager
+    async def released(self) -> AsyncGenerator[None, None]:
+        """Give the running handler's slot back for the length of the block, and queue for it again at the tail.
+
+            async with self.motion.released():
+                await self.planner.call(request)      # others of the group may run meanwhile
+
+        State that the group protects may have changed when the block ends. A handler that is cancelled in the block
+        waits for its slot too before it goes on to its clean-up, as `asyncio.Condition.wait` does.
+
+        Raises:
+            RuntimeError: The caller is no handler of this group, or a task that a handler has started.
+        """
+        run: Any = asyncio.current_task()
+        if getattr(run, "group", None) is not self:
+            raise RuntimeError(
+                f"group {self.name!r} cannot be released here: only a handler that runs in it can do that, in its own "
+                "body and not in a task that it has started"
+            )
+        loop = asyncio.get_running_loop()
+        run.group = None
+        self.give_back(loop)
+        loop.call_soon(run.runner.wake)  # its own handler may run again meanwhile
+        try:
+            yield
+        finally:
+            await self._take_again(run, loop)
+
+    async def _take_again(self, run: Any, loop: AbstractEventLoop) -> None:
+        returning = _Return(loop)
+        cancelled: CancelledError | None = None
+        if not self.admit(returning):
+            run.returning_to = self
+            run.runner.stalled()
+            while not returning.slot.done():
+                try:
+                    await asyncio.shield(returning.slot)
+                except CancelledError as error:
+                    cancelled = error
+            run.returning_to = None
+        run.group = self
+        if cancelled is not None:
+            raise cancelled
+
+    def statistics(self) -> dict[str, Any]:
+        """Limit, slots taken, members that wait, and the runs begun and failed in it since the start."""
+        members: list[Any] = self.members
+        return {
+            "limit": self.limit,
+            "running": self.running,
+            "waiting": len(self.waiting),
+            "runs": sum(m.runs for m in members),
+            "errors": sum(m.errors for m in members),
+        }
+
+
+class _Return:
+    """A run that comes back to its group."""
+
+    def __init__(self, loop: AbstractEventLoop) -> None:
+        self.slot: Future[None] = loop.create_future()
+
+    def granted(self, group: HandlerGroup) -> None:
+        self.slot.set_result(None)
+
+    def yields(self) -> None:
+        """A run under way is no work that waits to begin."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a handler runs."""
+
+    group: HandlerGroup | None
+    is_threaded: bool = False
+
+
+class Groups:
+    """The groups of one node and which handler is in which.
+
+    Args:
+        declared: The groups of the class by name.
+        default: The class's `default_group`.
+        changes: What a graph file says, by group name.
+    """
+
+    def __init__(
+        self, declared: Mapping[str, DeclaredGroup], default: DeclaredGroup | None, changes: Mapping[str, GroupChange]
+    ) -> None:
+        self.by_name: dict[str, HandlerGroup] = {}
+        self._of: dict[DeclaredGroup, HandlerGroup] = {}
+        self._default = default
+        self._chosen: dict[str, str] = {}
+        """Group names by handler, where a graph file has chosen."""
+        self._placed: list[str] = []
+        self._unnamed = 0
+        self.known = {*declared, *changes}
+        """Names that a graph file can speak of."""
+        for name, group in declared.items():
+            self._of[group] = self.by_name.setdefault(name, _made(group, name))
+        for name, change in changes.items():
+            self._change(name, change)
+
+    def _change(self, name: str, change: GroupChange) -> None:
+        if name != NO_GROUP:
+            group = self.by_name.setdefault(name, HandlerGroup(name=name))
+            if change.sets_limit:
+                group.limit = change.limit
+            if change.when_full is not None:
+                group.when_full = change.when_full
+            if change.thread is not None:
+                group.is_threaded = change.thread
+        for handler in change.handlers:
+            if handler in self._chosen:
+                raise DeclarationError(
+                    f"{handler} is put into two groups, {self._chosen[handler]!r} and {name!r}; it can be in one"
+                )
+            self._chosen[handler] = name
+
+    def place(self, handler: str, declared: DeclaredGroup | HandlerGroup | None) -> Placement:
+        """Where a handler runs, by name: as a graph file says, else as declared, else in the default group."""
+        self._placed.append(handler)
+        if handler in self._chosen:
+            group = self.by_name.get(self._chosen[handler])
+        else:
+            wanted = declared if declared is not None else self._default
+            group = None if wanted is None else self.at_work(wanted)
+        return Placement(group, group is not None and group.is_threaded)
+
+    def at_work(self, group: DeclaredGroup | HandlerGroup) -> HandlerGroup:
+        """What a declaration has become on this node; `self.motion` is that already."""
+        if isinstance(group, HandlerGroup):
+            return group
+        if group not in self._of:
+            name = group.name
+            if not name or name in self.by_name:
+                self._unnamed += 1
+                name = f"{group.name or 'group'}_{self._unnamed}"
+            self._of[group] = self.by_name[name] = _made(group, name)
+        return self._of[group]
+
+    def named(self, name: str) -> HandlerGroup | None:
+        """The group of that name, made if there is none; None for the word that means none.
+
+        Raises:
+            DeclarationError: No group can be called that.
+        """
+        if name == NO_GROUP:
+            return None
+        if not name.isidentifier():
+            raise DeclarationError(f"{name!r} is no name for a group; use letters, digits and _")
+        return self.by_name.setdefault(name, HandlerGroup(name=name))
+
+    def refuse_strays(self) -> None:
+        """Raises DeclarationError when a graph file has placed a handler that the node has not made."""
+        for handler, group in self._chosen.items():
+            if handler not in self._placed:
+                near = did_you_mean(handler, self._placed)
+                raise DeclarationError(f"group {group!r} names {handler!r}, which is no handler of this node{near}")
+
+
+def _made(group: DeclaredGroup, name: str) -> HandlerGroup:
+    return HandlerGroup(group.limit, name, group.when_full, is_threaded=group.thread)

@@ -1,0 +1,166 @@
+"""The ledger: which calls, goals and threads the handlers of one process wait for, and what runs on the loop just now.
+
+It is written as things happen, an entry per wait and none per message, and entered by `with`:
+
+    with ledger.call(future, gid, sequence, "/add", began_ns, deadline_ns):
+        await future
+
+Whoever looks for deadlocks reads it, from any thread. Entries are keyed by the future that is awaited, since that is
+what a suspended coroutine shows of its wait.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from abc import ABC, abstractmethod
+from asyncio import AbstractEventLoop, Future
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Self
+
+
+class PendingCall:
+    """A service call that waits for its answer; entered for as long as it does.
+
+    Attributes:
+        gid, sequence: The client's GID and its number of the call, which together name the call everywhere.
+        service: The full name of the service.
+        began_ns, deadline_ns: By the clock of the client's node; None for a call without a deadline.
+    """
+
+    __slots__ = ("_future", "_ledger", "began_ns", "deadline_ns", "gid", "sequence", "service")
+
+    def __init__(
+        self,
+        ledger: Ledger,
+        future: Future[Any],
+        gid: bytes,
+        sequence: int,
+        service: str,
+        began_ns: int,
+        deadline_ns: int | None,
+    ) -> None:
+        self._ledger, self._future = ledger, future
+        self.gid, self.sequence, self.service = gid, sequence, service
+        self.began_ns, self.deadline_ns = began_ns, deadline_ns
+
+    def __enter__(self) -> Self:
+        self._ledger.calls[self._future] = self
+        self._ledger.alert()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ledger.calls.pop(self._future, None)
+
+
+class PendingGoal(ABC):
+    """A goal that was sent from this process, and has not ended.
+
+    Attributes:
+        goal_id: 16 bytes.
+        action: The full name of the action.
+        began_ns: When it was sent, by the process's clock.
+        ended: Done when the goal has ended.
+    """
+
+    goal_id: bytes
+    action: str
+    began_ns: int
+    ended: Future[Any]
+
+    @property
+    @abstractmethod
+    def done(self) -> bool:
+        """Whether it has ended."""
+
+
+def _nothing() -> None:
+    """Nobody looks."""
+
+
+class Ledger:
+    """The waits of one process.
+
+    Attributes:
+        alert: Called when something begins to wait: a call, or work that finds no slot. Must cost next to nothing.
+        at_work: The runner whose handler has been called and has not returned or suspended yet.
+    """
+
+    __slots__ = ("alert", "asking", "at_work", "blocking", "calls", "goals", "loop", "served", "thread", "threads")
+
+    def __init__(self, loop: AbstractEventLoop) -> None:
+        self.loop = loop
+        self.thread = threading.get_ident()
+        """The event loop's."""
+        self.alert: Callable[[], None] = _nothing
+        self.at_work: object = None
+        self.calls: dict[Future[Any], PendingCall] = {}
+        """By the future of the answer."""
+        self.goals: dict[Future[Any], PendingGoal] = {}
+        """Goals that are waited for, by the future of their end or of news of them."""
+        self.served: dict[Future[Any], bytes] = {}
+        """Ids of goals of this process whose results are waited for."""
+        self.threads: dict[Future[Any], threading.Thread] = {}
+        """Threads that are waited for."""
+        self.asking: dict[int, asyncio.Task[Any]] = {}
+        """Calls that threads wait for, by the thread's number."""
+        self.blocking: Future[Any] | None = None
+        """What a call that blocks the event loop waits for."""
+
+    def call(
+        self,
+        future: Future[Any],
+        gid: bytes,
+        sequence: int,
+        service: str,
+        began_ns: int,
+        deadline_ns: int | None,
+    ) -> PendingCall:
+        """A call whose answer `future` waits for; an entry while it is entered."""
+        return PendingCall(self, future, gid, sequence, service, began_ns, deadline_ns)
+
+    @contextmanager
+    def goal(self, future: Future[Any], goal: PendingGoal) -> Iterator[None]:
+        """A wait for the end of a goal, or for news of it."""
+        self.goals[future] = goal
+        try:
+            yield
+        finally:
+            del self.goals[future]
+
+    @contextmanager
+    def serving(self, future: Future[Any], goal_id: bytes) -> Iterator[None]:
+        """A wait of this process's own for the end of a goal that it carries out, to tell its result."""
+        self.served[future] = goal_id
+        try:
+            yield
+        finally:
+            del self.served[future]
+
+    @contextmanager
+    def thread_work(self, future: Future[Any], thread: threading.Thread) -> Iterator[None]:
+        """A wait for a thread's end."""
+        self.threads[future] = thread
+        try:
+            yield
+        finally:
+            del self.threads[future]
+
+    @contextmanager
+    def asked_from(self, thread: int, task: asyncio.Task[Any]) -> Iterator[None]:
+        """A thread blocks until a task of the loop has its answer."""
+        self.asking[thread] = task
+        try:
+            yield
+        finally:
+            del self.asking[thread]
+
+    @contextmanager
+    def blocked_by(self, future: Future[Any]) -> Iterator[None]:
+        """The event loop itself blocks until a future is done, which it never will be."""
+        self.blocking = future
+        try:
+            yield
+        finally:
+            self.blocking = None

@@ -1,0 +1,325 @@
+"""A runner feeds the items of one queue to one handler, a run at a time or as many as the group allows."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+from asyncio import CancelledError
+from collections import deque
+from collections.abc import Callable, Coroutine
+from contextvars import Context, copy_context
+from dataclasses import dataclass
+from inspect import iscoroutine
+from types import CoroutineType
+from typing import Any, Literal
+
+from graphflow.executor.activity import Activity
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.ledger import Ledger
+
+BURST = 64
+"""Runs of one handler in a row before the loop gets a turn."""
+
+_next_number = itertools.count(1).__next__
+
+RunnerKind = Literal["", "timer", "subscription", "service", "action", "reply"]
+"""What runs are begun for; `reply` delivers answers to a client that is in a group, and nothing drops them."""
+
+
+class Run(Activity):
+    """An activity of a `Runner`, which it tells of its end. One is made for every message.
+
+    Attributes:
+        item: What it was begun for.
+        number: Rises from run to run through the whole process, and is never used twice.
+    """
+
+    __slots__ = ("item", "number", "runner")
+
+    def __init__(
+        self,
+        runner: Runner,
+        item: Any,
+        coroutine: Coroutine[Any, Any, Any],
+        context: Context,
+        group: HandlerGroup | None,
+    ) -> None:
+        # Written out: to call the constructor above would take a tenth of a run.
+        self.name = runner.name
+        self._loop = runner._loop
+        self._coroutine = coroutine
+        self._context = context
+        self._fut_waiter = None
+        self._must_cancel = False
+        self._cancel_message = None
+        self._cancel_requests = 0
+        self.group = group
+        self.returning_to = None
+        self.runner, self.item = runner, item
+        self.number = _next_number()
+
+    def _end(self, result: Any, error: BaseException | None) -> None:
+        self._coroutine = None
+        item = self.item
+        del self.item  # a message is free when its run has ended
+        runner = self.runner
+        runner.active.discard(self)
+        runner._ended(self.group, item, result, error)
+
+
+Finished = Callable[[Any, Any, BaseException | None], None]
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerSpec:
+    """What a runner runs, and whom it tells.
+
+    Attributes:
+        handler: The method, or what stands for one in messages.
+        invoke: Called with an item; returns a result, or a coroutine that will.
+        finished: Called with (item, result, error) after each run.
+        node: The full name of the node.
+        refused: Called with an item that is dropped because the group is full.
+        dropped: How many items were lost because the queue was full.
+        is_inner: Whether the handler belongs to graphflow, as every node's parameter services do.
+        is_serial: Whether its runs exclude each other whatever group they run in; None: when they run in none.
+    """
+
+    handler: str
+    invoke: Callable[[Any], Any]
+    finished: Finished
+    node: str = ""
+    kind: RunnerKind = ""
+    refused: Callable[[Any], None] | None = None
+    dropped: Callable[[], int] = int
+    is_inner: bool = False
+    is_serial: bool | None = None
+
+
+class Runner:
+    """Feeds a queue to a handler under a group.
+
+    Args:
+        items: The queue, filled by somebody else, who then calls `wake`.
+        group: Whose slots the runs take; None for a runner that queues behind itself only.
+    """
+
+    __slots__ = (
+        "_closed",
+        "_context",
+        "_finished",
+        "_idle",
+        "_invoke",
+        "_is_serial",
+        "_ledger",
+        "_loop",
+        "_scheduled",
+        "_waking",
+        "active",
+        "at_hand",
+        "errors",
+        "group",
+        "items",
+        "name",
+        "number",
+        "runs",
+        "spec",
+    )
+
+    def __init__(self, ledger: Ledger, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> None:
+        self.spec = spec
+        self.name = f"{spec.node}.{spec.handler}" if spec.node else spec.handler
+        """For messages."""
+        self.number = _next_number()
+        self.items = items
+        self.at_hand: Any = None
+        """The item that its handler was called with and has not returned or suspended over yet."""
+        self.runs = 0
+        """Runs begun since the start."""
+        self.errors = 0
+        """Runs that ended with an error."""
+        self.group = group
+        self.active: set[Run] = set()
+        """Runs that have begun and not ended."""
+        self._ledger, self._loop = ledger, ledger.loop
+        # What every run needs, without the way through the spec.
+        self._invoke, self._finished, self._is_serial = spec.invoke, spec.finished, spec.is_serial
+        # Every run begins with the variables of where the handler was made, never with those of an earlier run.
+        self._context = copy_context()
+        self._waking = False
+        self._scheduled = False
+        self._closed = False
+        self._idle: asyncio.Future[None] | None = None
+        if group is not None:
+            group.members.append(self)
+
+    def __repr__(self) -> str:
+        return f"<Runner {self.name}>"
+
+    @property
+    def title(self) -> str:
+        """Kind and handler, for people: `service add`."""
+        kind, handler = self.spec.kind, self.spec.handler
+        return handler if handler.startswith(f"{kind} ") else f"{kind} {handler}".strip()
+
+    @property
+    def is_serial(self) -> bool:
+        """Whether its runs come one after the other."""
+        return self.group is None if self._is_serial is None else self._is_serial
+
+    @property
+    def closed(self) -> bool:
+        """Whether `cancel` has been called."""
+        return self._closed
+
+    def stalled(self) -> None:
+        """Say that there is work and no slot for it."""
+        self._ledger.alert()
+
+    def wake(self) -> None:
+        """There may be something in the queue: run what the group allows."""
+        if self._waking or self._closed or self._scheduled:
+            return
+        group, active, items = self.group, self.active, self.items
+        self._waking = True
+        try:
+            for _ in range(BURST):
+                if not items or self._closed:
+                    return
+                if active and (group is None if self._is_serial is None else self._is_serial):
+                    self._ledger.alert()
+                    return
+                # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
+                if group is not None and (self._fills(group) or not group.admit(self)):
+                    if group.when_full != "wait" and self.spec.kind != "reply":
+                        self._overflow(group)
+                    self._ledger.alert()
+                    return
+                self.runs += 1
+                context = self._context.copy()
+                context.run(self._begin, items.popleft(), context, group)
+                group = self.group  # the handler may have moved itself
+        finally:
+            self._waking = False
+        if self.items:
+            self._scheduled = True
+            self._loop.call_soon(self._go_on)
+
+    def _fills(self, group: HandlerGroup) -> bool:
+        """Whether its own runs hold all slots of the group; those that have let go of theirs do not count."""
+        if group.limit is None or len(self.active) < group.limit:
+            return False
+        return sum(run.group is group for run in self.active) >= group.limit
+
+    def _go_on(self) -> None:
+        self._scheduled = False
+        self.wake()
+
+    def _overflow(self, group: HandlerGroup) -> None:
+        """The group is full, and not everything is to wait for it."""
+        if group.when_full == "drop_new":
+            group.withdraw(self)
+            self._refuse(0)
+            return
+        self._refuse(1)
+        for other in group.waiting:
+            if other is not self:
+                other.yields()
+        group.admit(self)
+        if group.when_full == "cancel_running":
+            members = [member for member in group.members if isinstance(member, Runner)]
+            runs = [run for member in members for run in member.active if run.group is group]
+            if runs and not any(run.cancelling() for run in runs):
+                min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
+
+    def _refuse(self, keep: int) -> None:
+        """Drop what waits, but for the newest."""
+        while len(self.items) > keep:
+            item = self.items.popleft()
+            if self.spec.refused is not None:
+                self.spec.refused(item)
+
+    def yields(self) -> None:
+        if self.spec.kind == "reply":  # somebody waits for it
+            return
+        if self.group is not None:
+            self.group.withdraw(self)
+        self._refuse(0)
+
+    def granted(self, group: HandlerGroup) -> None:
+        may_run = not self._closed and group is self.group and not (self._is_serial and self.active)
+        if self.items and may_run:
+            self.runs += 1
+            context = self._context.copy()
+            context.run(self._begin, self.items.popleft(), context, group)
+        else:
+            group.give_back(self._loop)
+        self.wake()
+
+    def move(self, group: HandlerGroup | None) -> None:
+        """Take the slots of another group from the next run on; runs under way keep what they hold."""
+        if self.group is not None:
+            self.group.withdraw(self)
+            self.group.members.remove(self)
+        self.group = group
+        if group is not None:
+            group.members.append(self)
+        self._loop.call_soon(self.wake)
+
+    def _begin(self, item: Any, context: Context, group: HandlerGroup | None) -> None:
+        """Run the handler, within its context, to its end or to its first suspension."""
+        ledger = self._ledger
+        around, ledger.at_work, self.at_hand = ledger.at_work, self, item
+        try:
+            try:
+                result = self._invoke(item)
+            except (KeyboardInterrupt, SystemExit):
+                raise
+            except BaseException as error:
+                self._ended(group, item, None, error)
+                return
+            if result.__class__ is not CoroutineType and not iscoroutine(result):
+                self._ended(group, item, result, None)
+                return
+            run = Run(self, item, result, context, group)
+            self.active.add(run)
+            run.step()
+        finally:
+            ledger.at_work, self.at_hand = around, None
+
+    def _ended(self, group: HandlerGroup | None, item: Any, result: Any, error: BaseException | None) -> None:
+        if error is not None and not isinstance(error, CancelledError):
+            self.errors += 1
+        try:
+            self._finished(item, result, error)
+        except Exception as failure:
+            message = f"{self.name}: the end of a run could not be reported"
+            self._loop.call_exception_handler({"message": message, "exception": failure})
+        if group is not None:
+            group.give_back(self._loop)
+        if self._idle is not None:
+            self._look_idle()
+        if self.items and not self._waking:
+            self.wake()
+
+    def cancel(self) -> asyncio.Future[None]:
+        """Begin no more runs and cancel those under way, but for those that clean up after having been cancelled.
+
+        Returns:
+            A future that is done when all have ended.
+        """
+        if not self._closed and self.group is not None:
+            self.group.withdraw(self)
+            self.group.members.remove(self)
+        self._closed = True
+        if self._idle is None:
+            self._idle = self._loop.create_future()
+        for run in list(self.active):
+            if not run.cancelling():
+                run.cancel()
+        self._look_idle()
+        return self._idle
+
+    def _look_idle(self) -> None:
+        if self._idle is not None and not self.active and not self._idle.done():
+            self._idle.set_result(None)

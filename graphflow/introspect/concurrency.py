@@ -1,0 +1,143 @@
+"""Who holds what and who waits, in all processes of a domain, as `graphflow waits`, `groups` and `doctor` show it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+from graphflow.introspect.view import View
+from graphflow.machines.explain import group_of, title
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import explained
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Join,
+    SetBy,
+    Slot,
+    WaitGraph,
+    joined,
+)
+from graphflow.machines.wait_graph_json import from_json
+
+
+@dataclass
+class ConcurrencyReport:
+    """The answers of all processes."""
+
+    graph: WaitGraph
+    reports: list[str]
+    """Deadlocks there are now, explained."""
+    nodes: dict[str, list[dict[str, Any]]]
+    """Groups by node."""
+    unreadable: int = 0
+    processes: set[str] = field(default_factory=set)
+    """Sessions of those that have answered."""
+    stalls: list[str] = field(default_factory=list)
+    """Groups that are kept for long while others wait, explained."""
+    blocked: list[tuple[str, float]] = field(default_factory=list)
+    """Nodes whose event loop is blocked now, and for how many seconds at least."""
+    late: list[tuple[str, int, float]] = field(default_factory=list)
+    """Nodes whose event loop was late: how often, and how many seconds at most."""
+
+
+def read(replies: list[bytes]) -> ConcurrencyReport:
+    """Put the answers together; one that cannot be read is counted."""
+    pictures, found = [], ConcurrencyReport(WaitGraph(), [], {})
+    for reply in replies:
+        try:
+            data = json.loads(reply)
+            pictures.append(from_json(data))
+            found.processes.add(str(data["process"]))
+            found.stalls += [str(text) for text in data["stalls"]]
+            found.reports += [str(text) for text in data["reports"]]
+            found.nodes |= dict(data["nodes"])
+            who = " and ".join(sorted(data["nodes"]))
+            if data["blocked_for"]:
+                found.blocked.append((who, float(data["blocked_for"])))
+            if data["late"]:
+                found.late.append((who, int(data["late"]), float(data["longest"])))
+        except (ValueError, KeyError, TypeError, RecursionError):
+            found.unreadable += 1
+    found.graph = joined(pictures)
+    return found
+
+
+def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
+    """Processes with nodes that have not answered, and why that may be."""
+    found = []
+    for zid, process in view.processes().items():
+        nodes = sorted({e.node_name for e in view.cache if e.zid == zid} & set(view.cache.nodes(hidden=False)))
+        if nodes and zid not in waits.processes:
+            found.append(f"NODE UNRESPONSIVE: {' and '.join(nodes)} ({process}) did not answer: {process.why_silent}")
+    return sorted(found)
+
+
+def stuck(waits: ConcurrencyReport) -> set[str]:
+    """Activities that seem to be in a deadlock. One picture only: who is asked to decide takes a second one."""
+    dead = deadlocked(waits.graph)
+    return {i for d in explained(waits.graph, dead) for i in (*d.ring, *d.victims)}
+
+
+def rows(waits: ConcurrencyReport) -> list[dict[str, Any]]:
+    """Every activity that holds a slot or waits for something, the longest waiting first."""
+    graph, dead = waits.graph, stuck(waits)
+    found = []
+    for a in sorted(graph.activities.values(), key=lambda a: -a.age):
+        group = group_of(a, graph)
+        if a.wait is FREE and not group:
+            continue
+        found.append(
+            {
+                "activity": title(a),
+                "holds": group,
+                "waits_for": words(a.wait, graph),
+                "since": round(a.age, 3),
+                "left": None if a.left is None else round(a.left, 3),
+                "place": f"{a.place} in {a.function}" if a.place.file else "",
+                "stuck": a.id in dead,
+            }
+        )
+    return found
+
+
+def queued(waits: ConcurrencyReport) -> list[dict[str, Any]]:
+    """Handlers with work that waits for a slot."""
+    found = []
+    for queue in waits.graph.queues.values():
+        if queue.waiting:
+            groups = [waits.graph.groups[name] for name in queue.needs if name in waits.graph.groups]
+            holders = [title(a) for a in waits.graph.activities.values() if set(a.holds) & set(queue.needs)]
+            name = f"{queue.label} of {queue.node}"
+            numbers = {"waiting": queue.waiting, "dropped": queue.dropped}
+            found.append(
+                {"handler": name, "group": next((g.name for g in groups if g.name), ""), "held_by": holders, **numbers}
+            )
+    return found
+
+
+def words(condition: Condition, graph: WaitGraph) -> str:
+    """A condition for people."""
+    match condition:
+        case Call(id=call, name=name):
+            server = next((a for a in graph.activities.values() if a.serves == call), None)
+            what = f"the {'goal' if call.startswith('goal:') else 'answer'} of {name}" if name else "the end of a goal"
+            return f"{what} ({title(server)} is at it)" if server is not None else what
+        case Slot(group=group):
+            return f"a slot of group {graph.groups[group].name!r}" if group in graph.groups else "a slot"
+        case Join(activity=activity):
+            other: ActivityView | None = graph.activities.get(activity)
+            return title(other) if other is not None else "another task"
+        case SetBy(what=what):
+            return what
+        case All(of=conditions):
+            return " and ".join(words(c, graph) for c in conditions)
+        case AnyOf(of=conditions):
+            return " or ".join(words(c, graph) for c in conditions)
+        case _:
+            return ""

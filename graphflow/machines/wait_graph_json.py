@@ -1,0 +1,189 @@
+"""Pictures of waits as JSON, for the way between processes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import astuple
+from typing import TypeAlias
+
+from graphflow.errors import Place
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    GroupView,
+    Join,
+    QueueView,
+    SetBy,
+    Slot,
+    WaitGraph,
+)
+
+Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
+VERSION = 3
+DEEPEST = 50
+"""Conditions inside each other, at most: what comes from the network must not exhaust the stack."""
+
+
+def to_json(graph: WaitGraph) -> dict[str, Json]:
+    """A picture as plain data that `from_json` reads back."""
+    return {
+        "v": VERSION,
+        "activities": [_activity(a) for a in graph.activities.values()],
+        "groups": [list(astuple(g)) for g in graph.groups.values()],
+        "queues": [
+            [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped, q.process, q.is_declared]
+            for q in graph.queues.values()
+        ],
+        "blocked": dict(graph.blocked),
+    }
+
+
+def _activity(a: ActivityView) -> Json:
+    head: list[Json] = [a.id, a.label, a.node, list(a.holds), _condition(a.wait), a.serves, list(a.place), a.function]
+    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async]
+
+
+def _condition(condition: Condition, depth: int = 0) -> Json:
+    match condition:
+        case All() | AnyOf() if depth >= DEEPEST:
+            return None  # which only makes the picture say less
+        case Call(id=call, name=name):
+            return ["call", call, name]
+        case Slot(group=group, ticket=ticket):
+            return ["slot", group, ticket]
+        case Join(activity=activity):
+            return ["join", activity]
+        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held):
+            return ["set", what, list(queues), list(activities), is_held]
+        case All(of=conditions):
+            return ["all", [_condition(c, depth + 1) for c in conditions]]
+        case AnyOf(of=conditions):
+            return ["any", [_condition(c, depth + 1) for c in conditions]]
+        case _:
+            return None
+
+
+def from_json(data: Mapping[str, object]) -> WaitGraph:
+    """Read a picture.
+
+    Raises:
+        ValueError, KeyError, TypeError: It is none.
+    """
+    if data["v"] != VERSION:
+        raise ValueError(f"a picture of version {data['v']!r}")
+    activities = [_read_activity(row) for row in _rows(data["activities"])]
+    groups = [_read_group(row) for row in _rows(data["groups"])]
+    queues = [_read_queue(row) for row in _rows(data["queues"])]
+    blocked = data["blocked"]
+    if not isinstance(blocked, dict):
+        raise TypeError("blocked is no mapping")
+    return WaitGraph(
+        {a.id: a for a in activities},
+        {g.id: g for g in groups},
+        {q.id: q for q in queues},
+        {_text(k): _text(v) for k, v in blocked.items()},
+    )
+
+
+def _read_group(row: list[object]) -> GroupView:
+    id_, name, node, limit, is_declared, is_threaded = row
+    return GroupView(_text(id_), _text(name), _text(node), _limit(limit), _bool(is_declared), _bool(is_threaded))
+
+
+def _read_queue(row: list[object]) -> QueueView:
+    id_, label, node, needs, calls, waiting, dropped, process, is_declared = row
+    head = _text(id_), _text(label), _text(node), _texts(needs), _texts(calls)
+    return QueueView(*head, _int(waiting), _int(dropped), _text(process), _bool(is_declared))
+
+
+def _read_activity(row: list[object]) -> ActivityView:
+    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async = row
+    file, line, column = _list(place)
+    return ActivityView(
+        _text(id_),
+        _text(label),
+        _text(node),
+        _texts(holds),
+        _read_condition(wait, 0),
+        _text(serves),
+        Place(_text(file), _int(line), _int(column)),
+        _text(function),
+        _number(age),
+        None if left is None else _number(left),
+        _text(process),
+        _bool(is_inner),
+        _bool(is_async),
+    )
+
+
+def _read_condition(data: object, depth: int) -> Condition:
+    if depth > DEEPEST:
+        raise ValueError("conditions are nested too deeply")
+    match data:
+        case None:
+            return FREE
+        case ["call", call, name]:
+            return Call(_text(call), _text(name))
+        case ["slot", group, ticket]:
+            return Slot(_text(group), _int(ticket))
+        case ["join", activity]:
+            return Join(_text(activity))
+        case ["set", what, queues, activities, is_held]:
+            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held))
+        case ["all", parts]:
+            return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+        case ["any", parts]:
+            return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
+    raise ValueError(f"{data!r} is no condition")
+
+
+def _rows(data: object) -> list[list[object]]:
+    return [_list(row) for row in _list(data)]
+
+
+def _list(data: object) -> list[object]:
+    if not isinstance(data, list):
+        raise TypeError(f"{data!r} is no list")
+    return data
+
+
+def _text(data: object) -> str:
+    if not isinstance(data, str):
+        raise TypeError(f"{data!r} is no text")
+    return data
+
+
+def _texts(data: object) -> tuple[str, ...]:
+    return tuple(map(_text, _list(data)))
+
+
+def _int(data: object) -> int:
+    if not isinstance(data, int) or isinstance(data, bool):
+        raise TypeError(f"{data!r} is no whole number")
+    return data
+
+
+def _bool(data: object) -> bool:
+    if not isinstance(data, bool):
+        raise TypeError(f"{data!r} is neither true nor false")
+    return data
+
+
+def _number(data: object) -> float:
+    if not isinstance(data, (int, float)) or isinstance(data, bool):
+        raise TypeError(f"{data!r} is no number")
+    try:
+        return float(data)
+    except OverflowError:
+        raise ValueError(f"{data!r} is too large") from None
+
+
+def _limit(data: object) -> int | None:
+    if data is not None and _int(data) < 1:
+        raise ValueError(f"{data!r} is no limit")
+    return None if data is None else _int(data)

@@ -1,0 +1,467 @@
+"""The workings of one node, behind `Node`: its parts, its life, what runs its handlers, and what becomes of errors."""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import inspect
+from asyncio import CancelledError
+from collections import deque
+from collections.abc import Callable, Coroutine, Mapping
+from contextlib import AsyncExitStack
+from functools import cache, partial
+from typing import Any, ClassVar, Protocol, TypeVar
+
+from graphflow.deadlock import races
+from graphflow.deadlock.snapshot import place_of
+from graphflow.deadlock.user_code import place_in, users_part
+from graphflow.errors import ClosedError, DeadlockError, DeclarationError, GraphflowError, ParameterError
+from graphflow.executor.clock import Clock
+from graphflow.executor.groups import Groups, HandlerGroup
+from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.executor.sim_time import SimClock
+from graphflow.interface import GroupChange, OnError, may_make
+from graphflow.msgs import registry
+from graphflow.names import Resolver, did_you_mean
+from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
+from graphflow.runtime import declared
+from graphflow.runtime.binding import Binding, Creator
+from graphflow.runtime.context import Context
+from graphflow.runtime.declare import Group
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.failures import ErrorBudget, Failures
+from graphflow.runtime.host import Part
+from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
+from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
+from graphflow.runtime.params import ParameterChange, Parameters
+from graphflow.runtime.rosout import Rosout, node_logger
+from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.topics import TopicSubscription
+from graphflow.times import NANOSECONDS, to_ns
+from graphflow.wire.liveliness import Entity, Kind
+
+P = TypeVar("P", bound=Part)
+
+SLOW_START = 5.0
+"""Seconds that `on_start` may take until it is said where it waits."""
+STOP_LIMIT = 2.0
+"""Seconds that cancelled handlers and tasks get for their cleanup."""
+
+
+class Instance(declared.NodeClass, Creator, Protocol):
+    """What the core needs of the user's object."""
+
+    error_budget: ClassVar[ErrorBudget | None]
+
+    async def on_start(self) -> None: ...
+
+    async def on_shutdown(self) -> None: ...
+
+
+class NodeCore:
+    """What a `Node` is made of: its parts' `Host`, and the search's `Subject`.
+
+    Args:
+        overrides: Parameter values from outside, by name, each with where it was written.
+        concurrency: What a graph file says of its groups.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        names: Resolver,
+        overrides: Mapping[str, tuple[Any, str]],
+        concurrency: Mapping[str, GroupChange],
+    ) -> None:
+        cls = type(instance)
+        self.instance = instance
+        self.names = names
+        self.id = 0
+        self.log = node_logger(self.full_name)
+        self.parameters = Parameters(overrides)
+        self.groups = Groups(declared.groups(cls), cls.default_group, concurrency)
+        self.tasks: set[asyncio.Task[Any]] = set()
+        """What `spawn` has started and has not ended."""
+        self.runners: list[Runner] = []
+        self.failure: BaseException | None = None
+        """The error that ended the node."""
+        self.failure_taken = False
+        """Whether somebody has waited for it."""
+        self.entered = AsyncExitStack()
+        """What is left after `on_shutdown`."""
+        self._made: dict[str, Any] = {}
+        """What `Node.__init__` has set on the instance."""
+        self._context: Context | None = None
+        self._ended: asyncio.Future[None] | None = None
+        self._parts: list[Part] = []
+        self._late: list[Part] | None = []
+        """What is opened once `on_start` has returned; None from then on."""
+        self._binding = Binding(instance, self, self.parameters)
+        self._failures = Failures(self, instance.error_budget, self._fail)
+        self._token: Any = None
+        self._own_services: set[str] = set()
+        self._rosout: Rosout | None = None
+        self._parameter_events: ParameterEvents | None = None
+        self._sim_clock: tuple[SimClock, TopicSubscription[Any]] | None = None
+
+    # who it is
+
+    @property
+    def name(self) -> str:
+        return self.names.name
+
+    @property
+    def namespace(self) -> str:
+        return self.names.namespace
+
+    @property
+    def full_name(self) -> str:
+        return self.names.full_name
+
+    @property
+    def is_running(self) -> bool:
+        return self._context is not None
+
+    @property
+    def context(self) -> Context:
+        if self._context is None:
+            raise ClosedError(f"node {self.full_name} is not running")
+        return self._context
+
+    @property
+    def clock(self) -> Clock:
+        return self.context.clock if self._sim_clock is None else self._sim_clock[0]
+
+    # what it has
+
+    @property
+    def held(self) -> Mapping[str, Any]:
+        """What the declarations of the class have become, by attribute."""
+        return self._binding.held
+
+    @property
+    def handlers(self) -> frozenset[str]:
+        return _handlers(type(self.instance))
+
+    @property
+    def hooks(self) -> frozenset[str]:
+        return _hooks(type(self.instance))
+
+    @property
+    def endpoints(self) -> list[Endpoint]:
+        """Everything it has on the network; of actions, the services and topics that they are made of."""
+        return [endpoint for part in self._parts for endpoint in part.endpoints]
+
+    def serves(self, service: str) -> bool:
+        return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
+
+    def statistics(self) -> dict[str, dict[str, Any]]:
+        """Numbers since the start, by the name of each handler, endpoint and group."""
+        found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
+        return found | {part.title: part.statistics() for part in self._parts if part.title}
+
+    # how it is made
+
+    def bind(self, *, parameter_services: bool, rosout: bool, logger_service: bool) -> None:
+        """Make what the class declares, and what every node has."""
+        self._made = dict(vars(self.instance))
+        self._binding.bind_parameters()
+        self.parameters.observe(self._parameters_changed)
+        if rosout:
+            self._rosout = self.add(Rosout(self))
+        if parameter_services:
+            for name, type_name, callback in ParameterServices(self.parameters).handlers():
+                self._serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
+            self._parameter_events = self.add(ParameterEvents(self, self.parameters))
+            if self.parameters.get("start_type_description_service"):
+                descriptions = TypeDescriptions(lambda: self.endpoints)
+                type_name = "type_description_interfaces/srv/GetTypeDescription"
+                self._serve("get_type_description", type_name, descriptions.get, SERVICES)
+        if logger_service:
+            levels = LoggerLevels(self.log)
+            self._serve("get_logger_levels", "rcl_interfaces/srv/GetLoggerLevels", levels.get, SERVICES)
+            self._serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
+        self._binding.bind()
+
+    def _serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
+        """One of the services that every node has; they are there before `on_start` runs."""
+        type_: Any = registry.interface_class(type_name)
+        self._own_services.add(f"~/{name}")
+        resolved = self.names.resolve(f"~/{name}", "service")
+        self.add(ServiceServer(self, type_, resolved, qos, callback, name, is_inner=True))
+
+    def add(self, part: P, *, late: bool = False) -> P:
+        """Take in a part, and open it if the time has come: `late` ones wait for `on_start`."""
+        self._parts.append(part)
+        if late and self._late is not None:
+            self._late.append(part)
+        elif self._context is not None:
+            part.open()
+        return part
+
+    def forget(self, part: Part) -> None:
+        if part in self._parts:
+            self._parts.remove(part)
+        if self._late and part in self._late:
+            self._late.remove(part)
+
+    def place(
+        self, callback: Callable[..., Any], label: str, group: Group | None, thread: bool
+    ) -> tuple[Callable[..., Any], HandlerGroup | None]:
+        """A handler as it is to be called, and the group whose slots its runs take."""
+        place = self.groups.place(label, group)
+        threaded = thread or (place.is_threaded and not inspect.iscoroutinefunction(callback))
+        return self._in_thread(callback) if threaded else callback, place.group
+
+    def _in_thread(self, fn: Callable[..., Any]) -> Callable[..., Coroutine[Any, Any, Any]]:
+        if inspect.iscoroutinefunction(fn):
+            raise ValueError(f"{fn.__qualname__}: thread=True is for `def`, an `async def` runs on the loop")
+
+        async def run(*args: Any) -> Any:
+            # A thread cannot be cancelled: until it has ended the run goes on, and holds its slot.
+            return await self.context.in_thread(fn, *args, stays=True)
+
+        return run
+
+    def runner(self, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> Runner:
+        made = Runner(self.context.ledger, spec, items, group)
+        self.runners[:] = [r for r in self.runners if not r.closed or r.active]
+        self.runners.append(made)
+        return made
+
+    def ensure_made(self) -> None:
+        """See that the node was made as it should be.
+
+        Raises:
+            DeclarationError: Its `__init__` has set what every node has.
+            ParameterError: A value was given for a parameter that it does not have.
+        """
+        for attribute, value in self._made.items():
+            if vars(self.instance).get(attribute) is not value:
+                cls = type(self.instance).__name__
+                raise DeclarationError(f"{cls}: every node has self.{attribute}; choose another name")
+        unused = self.parameters.unused_overrides()
+        if unused:
+            raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
+
+    # its life
+
+    async def start(self, context: Context) -> None:
+        """Go on the network: open what is declared, announce it, start timers and tasks.
+
+        Raises:
+            GraphflowError: An override names no parameter, `concurrency` no handler, or something cannot be opened;
+            nothing is left open.
+            ClosedError: The node is running already, or has been stopped.
+        """
+        if self._ended is not None:
+            state = "is running already" if self.is_running else "has been stopped; make a new one"
+            raise ClosedError(f"node {self.full_name} {state}")
+        self.ensure_made()
+        self._context = context
+        self.id = context.next_id()
+        self._ended = context.loop.create_future()
+        context.nodes.append(self)
+        if races.is_wanted():
+            races.watch(self.instance, self.full_name, self.log, frozenset(self._made))
+        try:
+            await self._open(context)
+        except BaseException:  # a cancellation too: nothing stays open
+            await self.stop()
+            raise
+        self.warn_unused_remaps()
+        for attribute, handler in declared.handlers(type(self.instance)).items():
+            if handler.kind == "task":
+                self.spawn(getattr(self.instance, attribute))
+
+    async def _open(self, context: Context) -> None:
+        zid = context.session.zid
+        node = Entity(context.domain, zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
+        self._token = context.session.announce(node.token)
+        assert self._late is not None
+        for part in [part for part in self._parts if part not in self._late]:
+            part.open()
+        if self.parameters.get("use_sim_time"):
+            self._follow_sim_time()
+        due_ns = context.clock.monotonic_ns() + to_ns(SLOW_START)
+        slow = context.clock.call_at(due_ns, partial(self._say_slow_start, asyncio.current_task()))
+        try:
+            await self.instance.on_start()
+        finally:
+            slow.cancel()
+        self.groups.refuse_strays()
+        late, self._late = self._late, None
+        for part in sorted(late, key=lambda part: part.opens_last):
+            part.open()
+
+    def _say_slow_start(self, task: Any) -> None:
+        self.log.warning(
+            "on_start has not returned for %.0f s %s; this node's handlers begin when it has: what waits for them, or "
+            "for nodes that wait for this one, belongs in a @task",
+            SLOW_START,
+            place_of(task),
+        )
+
+    def warn_unused_remaps(self) -> None:
+        """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""
+        known = {r.given for r in self.names.derivations.values()} - self._own_services
+        for rule in self.names.unused():
+            if may_make(self.instance.dynamic_names, self.names.full(rule.match)):
+                continue
+            if rule.match in self.parameters:
+                hint = f"; to set the parameter write -p {rule}"
+            else:
+                hint = did_you_mean(rule.match, known)
+            self.log.warning("the remap %s matches no name of this node%s", rule, hint)
+
+    def shutdown(self) -> None:
+        """End the node from within: whatever runs it will stop it."""
+        if self._ended is not None and not self._ended.done():
+            self._ended.set_result(None)
+
+    async def wait_ended(self) -> None:
+        """Wait until the node ends itself by `shutdown`, or fails; raises the error it failed with."""
+        assert self._ended is not None
+        try:
+            await asyncio.shield(self._ended)
+        finally:
+            self.failure_taken = True
+
+    async def stop(self, *, withdraw: bool = True) -> None:
+        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything.
+
+        Args:
+            withdraw: False when the context is closed right after, which withdraws all at once and cannot be held up
+                by peers that are going away too.
+        """
+        context = self._context
+        if context is None:
+            return
+        try:
+            await self._end_handlers()
+            if self._late is None:
+                await self._limited("on_shutdown", self.instance.on_shutdown)
+            await self._limited("leaving what was entered", self.entered.aclose)
+        finally:
+            # Also when this wait is cancelled: nothing stays open.
+            if self._rosout is not None:
+                self._rosout.detach()
+            if withdraw:
+                for part in list(reversed(self._parts)):
+                    part.close()
+                if self._token is not None:
+                    self._token.close()
+            if self._ended is not None and not self._ended.done():
+                self._ended.cancel()
+            if self in context.nodes:  # two may stop a node
+                context.nodes.remove(self)
+            self._context = None
+
+    async def _end_handlers(self) -> None:
+        """Cancel what runs, and give it time to clean up."""
+        ending: dict[asyncio.Future[Any], str] = {}
+        for runner in [*(part.begin_to_stop() for part in self._parts), *self._binding.runners()]:
+            if runner is not None:
+                ending[runner.cancel()] = runner.name
+        for task in self.tasks - {asyncio.current_task()}:
+            task.cancel()
+            ending[task] = task.get_name()
+        if ending:
+            _, stuck = await asyncio.wait(ending, timeout=STOP_LIMIT)
+            if stuck:
+                names = ", ".join(ending[future] for future in stuck)
+                self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
+
+    async def _limited(self, what: str, work: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        """A part of stopping: it may fail or take too long, and the rest is done all the same."""
+        try:
+            async with asyncio.timeout(STOP_LIMIT):
+                await work()
+        except TimeoutError:
+            self.log.warning("%s has taken more than %.0f s and was cancelled", what, STOP_LIMIT)
+        except Exception as error:
+            self.report_error(what, error)
+
+    # tasks and errors
+
+    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
+        """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
+        task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
+        self.tasks.add(task)
+        task.add_done_callback(self._task_done)
+        self.context.search.arm()
+
+    def _task_done(self, task: asyncio.Task[Any]) -> None:
+        self.tasks.discard(task)
+        if task.cancelled() or (error := task.exception()) is None:
+            return
+        if self._ended is not None and not self._ended.done():
+            self.report_error(f"task {task.get_name()}", error)
+            self._fail(error)
+
+    def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
+        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
+            return
+        if on_error is None or not self.is_running:  # it has not waited for this run
+            self.report_error(label, error)
+        else:
+            self._failures.failed(label, error, on_error)
+
+    def report_error(self, label: str, error: BaseException) -> None:
+        if isinstance(error, GraphflowError):
+            # A deadlock's own text says where.
+            place = "" if isinstance(error, DeadlockError) else place_in(error)
+            self.log.error("%s: %s%s", label, error, place and f" ({place})")
+        else:
+            trace = (type(error), error, users_part(error))
+            self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
+
+    def _fail(self, error: BaseException) -> None:
+        """End the node with an error."""
+        if self._ended is not None and not self._ended.done():
+            self.failure = error
+            self._ended.set_exception(error)
+            self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
+
+    # parameters and time
+
+    def _parameters_changed(self, changes: Mapping[str, ParameterChange]) -> None:
+        if self._context is None:
+            return
+        if "use_sim_time" in changes:
+            self._follow_sim_time()
+        if self._parameter_events is not None:
+            self._parameter_events.tell(changes)
+
+    def _follow_sim_time(self) -> None:
+        """Go by /clock, or by the context's clock, as the parameter `use_sim_time` says."""
+        former, wanted = self._sim_clock, self.parameters.get("use_sim_time")
+        if wanted and former is None:
+            from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
+
+            clock, topic = SimClock(self.context.loop), self.names.resolve("/clock")
+
+            def told(message: ClockMessage) -> None:
+                clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
+
+            heard = TopicSubscription(self, ClockMessage, topic, CLOCK, told)
+            self._sim_clock = (clock, self.add(heard))
+        elif not wanted and former is not None:
+            self._sim_clock = None
+            former[1].close()
+            former[0].retire(self.clock)
+        for part in self._parts:
+            part.clock_changed()
+            for endpoint in part.endpoints:
+                if endpoint is not part:
+                    endpoint.clock_changed()
+
+
+@cache
+def _handlers(cls: type) -> frozenset[str]:
+    return frozenset(declared.handlers(cls))
+
+
+@cache
+def _hooks(cls: type) -> frozenset[str]:
+    return declared.hooks(cls)

@@ -1,0 +1,349 @@
+"""Clients of services at work: calls with a deadline, whose failures have names."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from asyncio import CancelledError, Future
+from collections import deque
+from collections.abc import Callable
+from contextlib import closing, nullcontext
+from types import EllipsisType
+from typing import Any, Generic, NamedTuple
+
+from graphflow.errors import (
+    CallError,
+    CallTimeout,
+    ClosedError,
+    DeadlockError,
+    DecodeError,
+    EncodeError,
+    LoopBlockedError,
+    RemoteError,
+    ServerBusy,
+    ServerLost,
+    ServiceUnavailable,
+    printable,
+)
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.machines.wait_graph import call_id
+from graphflow.msgs import registry
+from graphflow.msgs.base import Request, Response, Service
+from graphflow.names import did_you_mean
+from graphflow.qos import DEFAULT, Qos
+from graphflow.runtime.direct import ClientLine
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.host import Host
+from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
+from graphflow.runtime.services import NOTE_LIMIT, STOPPING
+from graphflow.times import to_ns
+from graphflow.transport.base import Answer, Caller
+from graphflow.wire import attachment
+from graphflow.wire.liveliness import Entity, Kind
+
+DISCOVERY_GRACE = 1.0
+"""Seconds a call waits for a server that nobody has announced yet."""
+
+
+class _Reply(NamedTuple):
+    """An answer that waits for a slot."""
+
+    call: str
+    deliver: Callable[[], None]
+
+
+class ServiceClient(Endpoint, Generic[Request, Response]):
+    """A client at work.
+
+    Args:
+        group: Whose slots answers take, as in ROS 2; None delivers them at once.
+    """
+
+    kind = Kind.CLIENT
+
+    def __init__(
+        self,
+        host: Host,
+        type_: type[Service[Request, Response]],
+        name: str,
+        qos: Qos,
+        group: HandlerGroup | None = None,
+    ) -> None:
+        super().__init__(host, type_.NAME, name, qos)
+        self.type = type_
+        self._group = group
+        self._replies: deque[_Reply] = deque()
+        self.runner: Runner | None = None
+        """Delivers answers that wait for a slot of the client's group."""
+        service = registry.service_schema(type_.NAME)
+        self._request: type[Any] = registry.interface_class(service.request.name)
+        self._encode = registry.codec(service.request.name).encode
+        self._decode = registry.codec(service.response.name).decode
+        self._sequence = 0
+        self._service_events = ServiceEvents(host, type_, name)
+        self._caller: Caller | None = None
+        self._line: ClientLine | None = None
+        """To the server, while there is only one."""
+        self._pending: set[Future[Answer]] = set()
+        self._waiting: set[Future[None]] = set()
+
+    def _open(self, key: str) -> None:
+        self._caller = self.host.context.session.open_caller(key, self._look_ready)
+        self._declared.append(self._caller)
+        if self._group is not None:
+            label = self.name.rpartition("/")[2]
+            spec = RunnerSpec(label, _deliver, _delivered, self.host.full_name, "reply")
+            self.runner = self.host.runner(spec, self._replies, self._group)
+        self._service_events.open()
+
+    def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
+        """As `ServiceServer.configure_introspection`."""
+        self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
+
+    def service_is_ready(self) -> bool:
+        """Whether a server of this name and type is in the graph and can be reached."""
+        self._announced()
+        # A token may come before what it announces: only both together make sure of the first call.
+        return bool(self.matched) and self._caller is not None and self._caller.has_server
+
+    async def wait_ready(self, timeout: float | None = None) -> None:
+        """Wait until there is a server.
+
+        Args:
+            timeout: Seconds; None for as long as it takes.
+
+        Raises:
+            ServiceUnavailable: None came in time.
+            ClosedError: The node is not running, or stopped meanwhile.
+        """
+        if self.service_is_ready():
+            return
+        future: Future[None] = self.host.context.loop.create_future()
+        self._waiting.add(future)
+        try:
+            async with self.host.clock.timeout(timeout) if timeout is not None else nullcontext():
+                await future
+        except TimeoutError:
+            raise ServiceUnavailable(self._nobody()) from None
+        finally:
+            self._waiting.discard(future)
+
+    def _look_ready(self) -> None:
+        if self._waiting and self.entity is not None and self.service_is_ready():
+            for future in self._waiting:
+                if not future.done():
+                    future.set_result(None)
+
+    def _matched(self, other: Entity, alive: bool) -> None:
+        if self._line is not None and not alive and other == self._line.server:
+            self._line.close()
+            self._line = None
+        if self._line is None and len(self.matched) == 1:
+            (server,) = self.matched.values()
+            self._line = ClientLine(self.host.context.switchboard, self._announced(), server)
+        self._look_ready()
+
+    def _nobody(self) -> str:
+        services = self.host.context.cache.services()
+        if self.name in services:
+            offered = [e.type for e in self.host.context.cache.endpoints(Kind.SERVICE, self.name)]
+            if offered and self.type_name not in offered:
+                return f"service {self.name} is a {offered[0]}, not a {self.type_name}"
+        if self.host.serves(self.name):
+            return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
+        offers = {e.name for e in self.host.context.cache.endpoints(Kind.SERVICE)}
+        return f"nobody offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
+
+    async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
+        """Ask, and wait for the response.
+
+        Args:
+            request: An instance of the service's `Request`.
+            timeout: Seconds until the call gives up; None waits for ever; left out, as long as the graph says (10 s).
+
+        Raises:
+            ServiceUnavailable: There is no server, and none came within `DISCOVERY_GRACE`.
+            ServerLost: The server stopped or went away while the call waited.
+            CallTimeout: The deadline passed.
+            RemoteError: The handler raised.
+            EncodeError: The request does not fit its type.
+            DecodeError: The response is malformed.
+        """
+        return (await self.call_noted(request, timeout=timeout))[0]
+
+    async def call_noted(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> tuple[Response, str]:
+        """As `call`, with the note that a server of graphflow's has added; empty where there is none."""
+        if request.__class__ is not self._request:
+            raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
+        payload = self._encode(request)
+        if timeout is ...:
+            timeout = self.host.context.call_timeout
+        started = self.host.clock.monotonic_ns()
+        if not self._reaches_server():
+            await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+        self._sequence += 1
+        sequence, gid = self._sequence, self._announced().gid
+        self._service_events.tell(ServiceEvent.REQUEST_SENT, gid, sequence, request=request)
+        beside = attachment.pack(sequence, self.host.context.clock.time_ns(), gid)
+        answer = await self._ask(
+            sequence, payload, beside, started, None if timeout is None else started + to_ns(timeout), timeout
+        )
+        message: Response = self._decode(answer.payload)
+        self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
+        note = (answer.attachment or b"")[attachment.SIZE : attachment.SIZE + NOTE_LIMIT]
+        return message, printable(note.decode(errors="replace")) if note else ""
+
+    def _reaches_server(self) -> bool:
+        self._announced()
+        return self._caller is not None and self._caller.has_server
+
+    async def _ask(
+        self,
+        sequence: int,
+        payload: bytes,
+        beside: bytes,
+        started_ns: int,
+        deadline_ns: int | None,
+        timeout: float | None,
+    ) -> Answer:
+        future: Future[Answer] = self.host.context.loop.create_future()
+
+        def answered(answer: Answer | None) -> None:
+            if future.done():
+                return
+            if answer is None:
+                future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
+            elif answer.is_error:
+                future.set_exception(_error_of(answer.payload, self.name))
+            elif _sequence_of(answer) == sequence:
+                future.set_result(answer)
+
+        def expired() -> None:
+            if not future.done():
+                future.set_exception(CallTimeout(f"{self.name} did not answer within {timeout:g} s"))
+
+        context, gid = self.host.context, self._announced().gid
+        alarm = None if deadline_ns is None else self.host.clock.call_at(deadline_ns, expired)
+        self._pending.add(future)
+        give_up = _nothing
+        try:
+            with context.ledger.call(future, gid, sequence, self.name, started_ns, deadline_ns) as call:
+                arrived = answered if self.runner is None else self._queued(answered, call_id(gid, sequence))
+                give_up = self._send(sequence, payload, beside, context.search.chain(call), arrived)
+                return await future
+        except (CallTimeout, ClosedError, CancelledError):
+            give_up()
+            raise
+        finally:
+            self._pending.discard(future)
+            if alarm is not None:
+                alarm.cancel()
+
+    def _send(
+        self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]
+    ) -> Callable[[], None]:
+        """Put a request on its way; returns what gives the answer up."""
+        if self._line is not None and self._line.is_open and len(self.matched) == 1:
+            return self._line.call(sequence, payload, beside + chain, arrived)
+        assert self._caller is not None
+        # Other servers than this process's own may not know what stands behind the attachment.
+        return self._caller.call(payload, beside + chain if self._is_own() else beside, arrived)
+
+    def _queued(self, answered: Callable[[Answer | None], None], call: str) -> Callable[[Answer | None], None]:
+        """Have answers wait for a slot of the client's group."""
+        runner = self.runner
+        assert runner is not None
+
+        def queue(answer: Answer | None) -> None:
+            if answer is not None and answer.is_error and isinstance(_error_of(answer.payload, ""), DeadlockError):
+                answered(answer)  # it would wait for its own caller
+            elif answer is not None:
+                self._replies.append(_Reply(call, lambda: answered(answer)))
+                runner.wake()
+            elif not any(reply.call == call for reply in self._replies):
+                answered(None)
+
+        return queue
+
+    def call_sync(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
+        """Ask from a thread, and block it until the response is there. For `def` handlers with `thread=True`.
+
+        Arguments and errors as `call`.
+
+        Raises:
+            LoopBlockedError: This is the event loop's thread, where nothing could ever be received. With the deadlock
+                policy `report`, which is for teaching, it blocks all the same.
+        """
+        context = self.host.context
+        if (thread := threading.get_ident()) != context.ledger.thread:
+            asking = self._ask_for(thread, request, timeout)
+            return asyncio.run_coroutine_threadsafe(asking, context.loop).result()
+        if context.search.policy != "report":
+            raise LoopBlockedError(
+                f"{self.name}: call_sync would block the event loop, which has to receive the answer; "
+                "await client.call(...) in an `async def`, or run the handler in a thread (thread=True)"
+            )
+        return self._block(request, context.call_timeout if timeout is ... else timeout)
+
+    async def _ask_for(self, thread: int, request: Request, timeout: float | EllipsisType | None) -> Response:
+        task = asyncio.current_task()
+        assert task is not None
+        with self.host.context.ledger.asked_from(thread, task):
+            return await self.call(request, timeout=timeout)
+
+    def _block(self, request: Request, timeout: float | None) -> Response:
+        """Send a request and wait for its answer where it cannot arrive."""
+        asking = self.call(request, timeout=timeout)
+        with closing(asking), self.host.context.ledger.blocked_by(asking.send(None)):
+            threading.Event().wait(timeout)
+        raise CallTimeout(f"{self.name} could not answer within {timeout:g} s: the event loop was blocked")
+
+    def _is_own(self) -> bool:
+        """Whether its only server is in this process."""
+        servers = self.matched.values()
+        return len(servers) == 1 and all(server.zid == self.host.context.session.zid for server in servers)
+
+    def begin_to_stop(self) -> Runner | None:
+        return self.runner
+
+    def close(self) -> None:
+        """Withdraw it. Calls that are waiting end with ClosedError."""
+        self._service_events.close()
+        waiting: list[Future[Any]] = [*self._pending, *self._waiting]
+        for future in waiting:
+            if not future.done():
+                future.set_exception(ClosedError(f"the client of {self.name} was closed while a call waited"))
+        if self._line is not None:
+            self._line.close()
+            self._line = None
+        super().close()
+
+
+def _deliver(reply: _Reply) -> None:
+    reply.deliver()
+
+
+def _delivered(*_: Any) -> None:
+    """The future of the call has what there is to be told."""
+
+
+def _nothing() -> None:
+    """There is nothing to be given up yet."""
+
+
+def _error_of(payload: bytes, service: str) -> CallError:
+    """What an error reply means to the caller."""
+    error = RemoteError.from_payload(payload, service)
+    if error.type == STOPPING.type:
+        return ServerLost(f"the server of {service} stopped before it answered")
+    if error.type == DeadlockError.__name__:
+        return DeadlockError(error.message)
+    return ServerBusy(error.message) if error.type == ServerBusy.__name__ else error
+
+
+def _sequence_of(answer: Answer) -> int | None:
+    try:
+        return attachment.unpack((answer.attachment or b"")[: attachment.SIZE]).sequence
+    except DecodeError:
+        return None

@@ -1,0 +1,1023 @@
+"""How handlers run: asyncio works inside them from their first line, and groups hold them apart."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import weakref
+from asyncio import CancelledError
+from collections import deque
+from collections.abc import Awaitable, Callable, Coroutine, Generator
+from contextvars import ContextVar
+from random import Random
+from typing import Any
+
+import pytest
+
+from graphflow.executor.activity import Activity
+from graphflow.executor.groups import HandlerGroup
+from graphflow.executor.ledger import Ledger
+from graphflow.executor.runner import BURST, Runner, RunnerSpec
+from graphflow.testing.clock import settle
+
+Handler = Callable[[Any], Any]
+
+
+class Bench:
+    """A runner with a queue to fill, and a record of how its runs ended."""
+
+    def __init__(self, handler: Handler, group: HandlerGroup | None = None, name: str = "bench") -> None:
+        self.loop = asyncio.get_running_loop()
+        self.items: deque[Any] = deque()
+        self.ended: list[tuple[Any, Any, BaseException | None]] = []
+        self._enough: tuple[int, asyncio.Future[None]] | None = None
+        slots: HandlerGroup = group if group is not None else HandlerGroup(1)
+        spec = RunnerSpec(name, handler, self._finished)
+        self.runner = Runner(Ledger(self.loop), spec, self.items, slots)
+
+    def _finished(self, item: Any, result: Any, error: BaseException | None) -> None:
+        self.ended.append((item, result, error))
+        if self._enough is not None and len(self.ended) >= self._enough[0]:
+            self._enough[1].set_result(None)
+            self._enough = None
+
+    def put(self, *items: Any) -> None:
+        """Have items arrive as they do in life: by the loop, outside of every task."""
+        self.items.extend(items)
+        self.loop.call_soon(self.runner.wake)
+
+    async def until(self, count: int) -> None:
+        """Wait for so many ends of runs, where threads have a part in them."""
+        if len(self.ended) < count:
+            self._enough = count, self.loop.create_future()
+            await self._enough[1]
+
+    @property
+    def results(self) -> list[Any]:
+        return [result for _, result, _ in self.ended]
+
+    @property
+    def errors(self) -> list[BaseException | None]:
+        return [error for _, _, error in self.ended]
+
+
+async def outcome(body: Callable[[], Awaitable[Any]]) -> Any:
+    """What a handler returns, or raises, whose first line is the body's."""
+
+    async def handler(_: object) -> Any:
+        return await body()
+
+    bench = Bench(handler)
+    bench.put(0)
+    await bench.until(1)
+    [(_, result, error)] = bench.ended
+    if error is not None:
+        raise error
+    return result
+
+
+# what asyncio offers
+
+
+async def test_current_task_is_the_run(graphflow_runner: asyncio.Runner) -> None:
+    """The run is the current task from the first line on and after every suspension, and has a name."""
+    seen: list[Any] = []
+
+    async def handler(item: object) -> None:
+        seen.append(asyncio.current_task())
+        await asyncio.sleep(0)
+        seen.append(asyncio.current_task())
+
+    test = asyncio.current_task()
+    bench = Bench(handler, name="/talker.greet")
+    bench.put(0)
+    await settle()
+
+    assert isinstance(seen[0], Activity)
+    assert seen[0] is seen[1]
+    assert seen[0].get_name() == "/talker.greet"
+    assert seen[0].get_loop() is asyncio.get_running_loop()
+    assert seen[0].done()
+    assert asyncio.current_task() is test
+
+
+async def test_a_timeout_that_expires(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.timeout` cancels the wait and raises TimeoutError, and the handler goes on."""
+
+    async def body() -> str:
+        try:
+            async with asyncio.timeout(0):
+                await asyncio.Event().wait()
+        except TimeoutError:
+            await asyncio.sleep(0)
+            task = asyncio.current_task()
+            assert task is not None
+            return f"late, {task.cancelling()} cancellations left"
+        return "in time"
+
+    assert await outcome(body) == "late, 0 cancellations left"
+
+
+async def test_a_timeout_that_does_not_expire(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.timeout` around what is quick enough changes nothing."""
+
+    async def body() -> str:
+        async with asyncio.timeout(3600) as scope:
+            await asyncio.sleep(0)
+        assert not scope.expired()
+        return "in time"
+
+    assert await outcome(body) == "in time"
+
+
+async def test_a_timeout_inside_a_timeout(graphflow_runner: asyncio.Runner) -> None:
+    """The outer one's expiry passes through the inner as a cancellation."""
+
+    async def body() -> str:
+        try:
+            async with asyncio.timeout(0):
+                async with asyncio.timeout(3600):
+                    await asyncio.Event().wait()
+        except TimeoutError:
+            return "outer"
+        return "none"
+
+    assert await outcome(body) == "outer"
+
+
+async def test_a_task_group_waits_for_its_children(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.TaskGroup` runs children beside each other and ends when they have."""
+
+    async def child(n: int) -> int:
+        await asyncio.sleep(0)
+        return n * n
+
+    async def body() -> list[int]:
+        async with asyncio.TaskGroup() as group:
+            children = [group.create_task(child(n)) for n in range(3)]
+        return [c.result() for c in children]
+
+    assert await outcome(body) == [0, 1, 4]
+
+
+@pytest.mark.parametrize("waits", [False, True])
+async def test_a_child_error_cancels_the_group(graphflow_runner: asyncio.Runner, waits: bool) -> None:
+    """One child's error cancels its siblings and the block, and arrives as a group of errors, as in any task."""
+    cancelled: list[str] = []
+
+    async def sibling() -> None:
+        try:
+            await asyncio.Event().wait()
+        except CancelledError:
+            cancelled.append("sibling")
+            raise
+
+    async def wrong() -> None:
+        raise ValueError("wrong")
+
+    async def body() -> tuple[str, int]:
+        try:
+            async with asyncio.TaskGroup() as group:
+                group.create_task(sibling())
+                group.create_task(wrong())
+                if waits:
+                    try:
+                        await asyncio.Event().wait()
+                    except CancelledError:
+                        cancelled.append("block")
+                        raise
+        except* ValueError as errors:
+            text = str(errors.exceptions)
+        await asyncio.sleep(0)
+        task = asyncio.current_task()
+        assert task is not None
+        return text, task.cancelling()
+
+    text, cancelling = await outcome(body)
+
+    assert text == "(ValueError('wrong'),)"
+    assert sorted(cancelled) == (["block", "sibling"] if waits else ["sibling"])
+    # How many cancellations are left over differs between Python's versions.
+    assert (text, cancelling) == await asyncio.create_task(body())
+
+
+async def test_wait_for(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.wait_for` gives the result, or TimeoutError after cancelling what it waited for."""
+    cleaned: list[str] = []
+
+    async def never() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            cleaned.append("up")
+
+    async def body() -> tuple[str, str]:
+        quick = await asyncio.wait_for(asyncio.sleep(0, "quick"), 3600)
+        try:
+            await asyncio.wait_for(asyncio.ensure_future(never()), 0.001)
+        except TimeoutError:
+            return quick, "late"
+        return quick, "?"
+
+    assert await outcome(body) == ("quick", "late")
+    assert cleaned == ["up"]
+
+
+async def test_gather(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.gather` gives results in order, and errors as results if asked to."""
+
+    async def wrong() -> None:
+        raise ValueError("wrong")
+
+    async def body() -> Any:
+        return await asyncio.gather(asyncio.sleep(0, 1), wrong(), asyncio.sleep(0, 2), return_exceptions=True)
+
+    first, error, last = await outcome(body)
+    assert (first, str(error), last) == (1, "wrong", 2)
+
+
+async def test_shield(graphflow_runner: asyncio.Runner) -> None:
+    """A cancelled run leaves what it shielded alone."""
+    gate = asyncio.Event()
+    inner: list[asyncio.Task[str]] = []
+
+    async def work() -> str:
+        await gate.wait()
+        return "done"
+
+    async def handler(_: object) -> None:
+        inner.append(asyncio.ensure_future(work()))
+        await asyncio.shield(inner[0])
+
+    bench = Bench(handler)
+    bench.put(0)
+    await settle()
+    bench.runner.cancel()
+    await settle()
+    assert isinstance(bench.errors[0], CancelledError)
+
+    gate.set()
+    assert await inner[0] == "done"
+
+
+async def test_to_thread(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.to_thread` gives the thread's result, and its error; the context goes with it."""
+    where: ContextVar[str] = ContextVar("where", default="nowhere")
+
+    def wrong() -> None:
+        raise ValueError("in the thread")
+
+    async def body() -> tuple[int, str, str]:
+        where.set("here")
+        try:
+            await asyncio.to_thread(wrong)
+        except ValueError as error:
+            text = str(error)
+        return await asyncio.to_thread(pow, 2, 10), await asyncio.to_thread(where.get), text
+
+    assert await outcome(body) == (1024, "here", "in the thread")
+
+
+async def test_events_queues_and_locks(graphflow_runner: asyncio.Runner) -> None:
+    """asyncio's own means of waiting for one another work between handlers."""
+    queue: asyncio.Queue[int] = asyncio.Queue(maxsize=1)
+    event, lock = asyncio.Event(), asyncio.Lock()
+    log: list[str] = []
+
+    async def produce(n: int) -> None:
+        async with lock:
+            await queue.put(n)
+            log.append(f"put {n}")
+        if n == 2:
+            event.set()
+
+    async def consume(_: object) -> None:
+        await event.wait() if queue.empty() and log else None
+        for _ in range(3):
+            log.append(f"got {await queue.get()}")
+
+    producer, consumer = Bench(produce, HandlerGroup(None)), Bench(consume)
+    producer.put(0, 1, 2)
+    consumer.put(0)
+    await settle()
+
+    assert [line for line in log if line.startswith("got")] == ["got 0", "got 1", "got 2"]
+    assert [line for line in log if line.startswith("put")] == ["put 0", "put 1", "put 2"]
+    assert event.is_set()
+    assert not lock.locked()
+
+
+async def test_a_condition_and_a_semaphore(graphflow_runner: asyncio.Runner) -> None:
+    """Waiters are woken once and permits are given back."""
+    condition, permits = asyncio.Condition(), asyncio.Semaphore(1)
+    awake: list[int] = []
+
+    async def handler(n: int) -> None:
+        async with permits:
+            pass
+        async with condition:
+            await condition.wait()
+            awake.append(n)
+
+    bench = Bench(handler, HandlerGroup(None))
+    bench.put(1, 2)
+    await settle()
+    async with condition:
+        condition.notify(1)
+    await settle()
+    assert awake == [1]
+    async with condition:
+        condition.notify_all()
+    await settle()
+
+    assert awake == [1, 2]
+
+
+async def test_sleep_zero_gives_the_loop_a_turn(graphflow_runner: asyncio.Runner) -> None:
+    """`asyncio.sleep(0)` lets others run in between."""
+    log: list[str] = []
+
+    async def handler(name: str) -> None:
+        for n in range(2):
+            log.append(f"{name}{n}")
+            await asyncio.sleep(0)
+
+    bench = Bench(handler, HandlerGroup(None))
+    bench.put("a", "b")
+    await settle()
+
+    assert log == ["a0", "b0", "a1", "b1"]
+
+
+@pytest.mark.parametrize("suspends", [False, True])
+@pytest.mark.parametrize("queued", [False, True])
+async def test_context_variables_stay_in_their_run(
+    graphflow_runner: asyncio.Runner, suspends: bool, queued: bool
+) -> None:
+    """What one run sets the next one, and another handler it wakes, do not see; it itself does."""
+    variable: ContextVar[str] = ContextVar("variable", default="clean")
+    seen: list[str] = []
+
+    async def handler(n: int) -> None:
+        seen.append(variable.get())
+        variable.set(f"of run {n}")
+        if suspends:
+            await asyncio.sleep(0)
+        assert variable.get() == f"of run {n}"
+        other.put(n)
+
+    async def look(_: object) -> None:
+        seen.append(variable.get())
+
+    bench, other = Bench(handler), Bench(look)
+    if queued:
+        bench.put(1, 2, 3)
+        await settle()
+    else:
+        for n in range(3):
+            bench.put(n)
+            await settle()
+
+    assert seen == ["clean"] * 6
+    assert bench.errors == [None] * 3
+
+
+async def test_context_variables_of_a_plain_function_stay_in_their_run(graphflow_runner: asyncio.Runner) -> None:
+    """A `def` handler's settings do not outlive it either."""
+    variable: ContextVar[str] = ContextVar("variable", default="clean")
+    seen: list[str] = []
+
+    def handler(n: int) -> None:
+        seen.append(variable.get())
+        variable.set(f"of run {n}")
+
+    bench = Bench(handler)
+    bench.put(1, 2)
+    await settle()
+
+    assert seen == ["clean", "clean"]
+
+
+async def test_runs_begin_with_the_context_of_where_the_runner_was_made(graphflow_runner: asyncio.Runner) -> None:
+    """What the program set before it made the handler is there in every run."""
+    variable: ContextVar[str] = ContextVar("variable", default="nothing")
+    variable.set("the program")
+    seen: list[str] = []
+
+    async def handler(_: object) -> None:
+        seen.append(variable.get())
+
+    bench = Bench(handler)
+    variable.set("something later")
+    bench.put(1)
+    await settle()
+
+    assert seen == ["the program"]
+
+
+async def test_awaiting_something_foreign_is_an_error_there(graphflow_runner: asyncio.Runner) -> None:
+    """An awaitable that asyncio does not know raises RuntimeError at the await, and the queue goes on."""
+
+    class Foreign:
+        def __await__(self) -> Generator[object, None, None]:
+            yield "something"
+
+    bench = Bench(lambda item: Foreign().__await__() if item is None else handler(item))
+
+    async def handler(item: object) -> str:
+        try:
+            await Foreign()
+        except RuntimeError as error:
+            return str(error)
+        return "?"
+
+    bench.put(1)
+    await settle()
+
+    assert "'something', which is nothing asyncio knows" in bench.results[0]
+
+
+# cancellation
+
+
+async def test_a_suspended_run_is_cancelled_at_its_await(graphflow_runner: asyncio.Runner) -> None:
+    """CancelledError comes where the run waits, `finally` blocks run, and the future tells the end of it all."""
+    log: list[str] = []
+
+    async def handler(_: object) -> None:
+        try:
+            await asyncio.Event().wait()
+        except CancelledError:
+            log.append("cancelled")
+            raise
+        finally:
+            await asyncio.sleep(0)
+            log.append("cleaned up")
+
+    bench = Bench(handler)
+    bench.put(1, 2)
+    await settle()
+    idle = bench.runner.cancel()
+    assert not idle.done()
+    await idle
+
+    assert log == ["cancelled", "cleaned up"]
+    assert [item for item, _, _ in bench.ended] == [1]
+    assert isinstance(bench.errors[0], CancelledError)
+    assert not bench.runner.active
+
+
+async def test_cancelling_an_idle_runner_is_done_at_once(graphflow_runner: asyncio.Runner) -> None:
+    """There is nothing to wait for, and what arrives later is not run."""
+    bench = Bench(lambda item: item)
+
+    assert bench.runner.cancel().done()
+    bench.put(1)
+    await settle()
+
+    assert bench.ended == []
+
+
+async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio.Runner) -> None:
+    """Both who cancel hear of the end."""
+    gate = asyncio.Event()
+
+    async def handler(_: object) -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            await gate.wait()
+
+    bench = Bench(handler)
+    bench.put(1)
+    await settle()
+    first = bench.runner.cancel()
+    await settle()
+    gate.set()
+    await first
+    second = bench.runner.cancel()
+
+    assert second.done()
+
+    other = Bench(handler)
+    gate.clear()
+    other.put(1)
+    await settle()
+    early = other.runner.cancel()
+    await settle()
+    late = other.runner.cancel()  # the cleanup goes on undisturbed
+    await settle()
+    assert not early.done()
+    assert not late.done()
+
+    gate.set()
+    await settle()
+    assert early.done()
+    assert late.done()
+
+
+def activity(coroutine: Coroutine[Any, Any, Any]) -> tuple[Activity, list[tuple[Any, BaseException | None]]]:
+    ended: list[tuple[Any, BaseException | None]] = []
+    made = Activity(
+        asyncio.get_running_loop(), coroutine, "activity", lambda result, error: ended.append((result, error))
+    )
+    return made, ended
+
+
+async def begin(run: Activity) -> None:
+    asyncio.get_running_loop().call_soon(run.start)
+    await settle()
+
+
+async def test_cancelled_before_its_first_step(graphflow_runner: asyncio.Runner) -> None:
+    """A run that is cancelled before it began does not begin."""
+    log: list[str] = []
+
+    async def body() -> None:
+        log.append("began")
+
+    run, ended = activity(body())
+    assert run.cancel("no more")
+    await begin(run)
+
+    assert log == []
+    assert isinstance(ended[0][1], CancelledError)
+    assert ended[0][1].args == ("no more",)
+    assert not run.cancel()
+
+
+async def test_cancelled_at_each_of_its_awaits(graphflow_runner: asyncio.Runner) -> None:
+    """Wherever a run waits, cancellation arrives there and nowhere else, and its `finally` blocks all run."""
+
+    async def body(log: list[str]) -> None:
+        loop = asyncio.get_running_loop()
+        try:
+            log.append("sleep")
+            await asyncio.sleep(0)
+            log.append("future")
+            await loop.create_future()
+            log.append("lock")
+            async with asyncio.Lock():
+                log.append("child")
+                await loop.create_task(asyncio.Event().wait())
+        finally:
+            log.append("finally")
+            await asyncio.sleep(0)
+            log.append("end")
+
+    steps = ["sleep", "future", "lock", "child"]
+    for count in (1, 2, 4):
+        log: list[str] = []
+        run, ended = activity(body(log))
+        asyncio.get_running_loop().call_soon(run.start)
+        while len(log) < count:
+            await asyncio.sleep(0)
+            if log[-1:] == ["future"] and count > 2 and run._fut_waiter is not None:
+                run._fut_waiter.set_result(None)
+        run.cancel()
+        await settle()
+
+        assert log == [*steps[:count], "finally", "end"]
+        assert isinstance(ended[0][1], CancelledError)
+        assert run.done()
+
+
+async def test_cancelled_in_its_finally(graphflow_runner: asyncio.Runner) -> None:
+    """A second cancellation interrupts the cleanup at its await."""
+    log: list[str] = []
+
+    async def body() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            log.append("cleaning")
+            try:
+                await asyncio.Event().wait()
+            finally:
+                log.append("interrupted")
+
+    run, ended = activity(body())
+    await begin(run)
+    run.cancel()
+    await settle()
+    assert log == ["cleaning"]
+    run.cancel()
+    await settle()
+
+    assert log == ["cleaning", "interrupted"]
+    assert isinstance(ended[0][1], CancelledError)
+
+
+@pytest.mark.parametrize("waits", [False, True])
+async def test_cancelled_by_itself(graphflow_runner: asyncio.Runner, waits: bool) -> None:
+    """A run that cancels itself goes on to its next await, be it one that would last for ever."""
+    log: list[str] = []
+
+    async def body() -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        task.cancel()
+        log.append("still here")
+        await (asyncio.Event().wait() if waits else asyncio.sleep(0))
+        log.append("not here")
+
+    run, ended = activity(body())
+    await begin(run)
+
+    assert log == ["still here"]
+    assert isinstance(ended[0][1], CancelledError)
+
+
+async def test_cancelled_when_what_it_waits_for_is_done(graphflow_runner: asyncio.Runner) -> None:
+    """A cancellation between the result and the step that would bring it still cancels."""
+    future = asyncio.get_running_loop().create_future()
+
+    async def body() -> object:
+        return await future
+
+    run, ended = activity(body())
+    await begin(run)
+    future.set_result("result")
+    run.cancel()
+    await settle()
+
+    assert isinstance(ended[0][1], CancelledError)
+
+
+async def test_a_cancellation_that_is_caught_is_over(graphflow_runner: asyncio.Runner) -> None:
+    """A run may refuse to end, and its result counts."""
+
+    async def body() -> str:
+        try:
+            await asyncio.Event().wait()
+        except CancelledError:
+            task = asyncio.current_task()
+            assert task is not None
+            assert task.uncancel() == 0
+        await asyncio.sleep(0)
+        return "stayed"
+
+    run, ended = activity(body())
+    await begin(run)
+    run.cancel()
+    assert run.cancelling() == 1
+    await settle()
+
+    assert ended == [("stayed", None)]
+
+
+@pytest.mark.parametrize("fails", [False, True])
+async def test_an_ended_run_keeps_nothing_alive(graphflow_runner: asyncio.Runner, fails: bool) -> None:
+    """What a message held is free when its run has ended, without waiting for the garbage collector."""
+
+    class Payload:
+        pass
+
+    async def handler(_: Payload) -> None:
+        await asyncio.sleep(0)
+        if fails:
+            raise ValueError("wrong")
+
+    bench = Bench(handler)
+    bench.runner._finished = lambda *_: None
+    gc.collect()
+    gc.disable()
+    try:
+        payload = Payload()
+        gone = weakref.ref(payload)
+        bench.put(payload)
+        del payload
+        await settle()
+        assert gone() is None
+    finally:
+        gc.enable()
+
+
+# errors
+
+
+class Unusual(BaseException):
+    """Derives from what `except Exception` does not catch."""
+
+
+@pytest.mark.parametrize("error", [ValueError, CancelledError, Unusual])
+@pytest.mark.parametrize("when", ["def", "at once", "later"])
+async def test_an_error_does_not_stop_later_messages(
+    graphflow_runner: asyncio.Runner, error: type[BaseException], when: str
+) -> None:
+    """Whatever a run raises is reported with its item, and the next item is run."""
+
+    async def at_once(item: int) -> int:
+        if item == 1:
+            raise error("wrong")
+        return item
+
+    async def later(item: int) -> int:
+        await asyncio.sleep(0)
+        return await at_once(item)
+
+    def plain(item: int) -> int:
+        if item == 1:
+            raise error("wrong")
+        return item
+
+    bench = Bench({"def": plain, "at once": at_once, "later": later}[when])
+    bench.put(0, 1, 2, 3)
+    await settle()
+
+    assert bench.results == [0, None, 2, 3]
+    assert [type(e) for e in bench.errors] == [type(None), error, type(None), type(None)]
+
+
+async def test_an_error_in_the_report_does_not_stop_later_messages(graphflow_runner: asyncio.Runner) -> None:
+    """When `finished` itself fails, the loop is told and the slot is free again."""
+    loop = asyncio.get_running_loop()
+    told: list[str] = []
+    loop.set_exception_handler(lambda _, context: told.append(str(context.get("exception"))))
+    runs: list[int] = []
+
+    def fail(item: int, result: Any, error: BaseException | None) -> None:
+        raise ValueError(f"report {item}")
+
+    bench = Bench(runs.append)
+    bench.runner._finished = fail
+    bench.put(1, 2)
+    await settle()
+
+    assert runs == [1, 2]
+    assert told == ["report 1", "report 2"]
+
+
+# groups
+
+
+async def test_a_handler_queues_behind_itself(graphflow_runner: asyncio.Runner) -> None:
+    """In a group of its own a handler has one run at a time, in the order of arrival, across every await."""
+    log: list[str] = []
+
+    async def handler(n: int) -> None:
+        log.append(f"+{n}")
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        log.append(f"-{n}")
+
+    bench = Bench(handler)
+    bench.put(1, 2, 3)
+    await settle()
+
+    assert log == ["+1", "-1", "+2", "-2", "+3", "-3"]
+
+
+async def test_handlers_of_different_groups_do_not_wait_for_each_other(graphflow_runner: asyncio.Runner) -> None:
+    """One that is stuck leaves the other alone."""
+
+    async def stuck(_: object) -> None:
+        await asyncio.Event().wait()
+
+    first, second = Bench(stuck), Bench(lambda item: item)
+    first.put(1)
+    second.put(1, 2)
+    await settle()
+
+    assert second.results == [1, 2]
+    assert len(first.runner.active) == 1
+    await first.runner.cancel()
+
+
+async def test_a_shared_group_of_one_excludes(graphflow_runner: asyncio.Runner) -> None:
+    """Two handlers of one group never run at one time, and take turns."""
+    group: HandlerGroup = HandlerGroup(1)
+    inside: list[str] = []
+    log: list[str] = []
+
+    async def handler(item: str) -> None:
+        inside.append(item)
+        assert len(inside) == 1
+        await asyncio.sleep(0)
+        assert inside == [item]
+        log.append(item)
+        inside.remove(item)
+
+    first, second = Bench(handler, group), Bench(handler, group)
+    first.put("a1", "a2", "a3")
+    second.put("b1", "b2", "b3")
+    await settle()
+
+    assert log == ["a1", "b1", "a2", "b2", "a3", "b3"]
+    assert first.errors == second.errors == [None] * 3
+    assert group.running == 0
+
+
+@pytest.mark.parametrize(("limit", "most"), [(None, 6), (2, 2), (4, 4)])
+async def test_as_many_runs_as_the_group_allows(graphflow_runner: asyncio.Runner, limit: int | None, most: int) -> None:
+    """A group's limit counts the runs of all its handlers together; None sets none."""
+    group: HandlerGroup = HandlerGroup(limit)
+    now = peak = 0
+
+    async def handler(_: object) -> None:
+        nonlocal now, peak
+        now += 1
+        peak = max(peak, now)
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        now -= 1
+
+    benches = [Bench(handler, group), Bench(handler, group)]
+    for bench in benches:
+        bench.put(1, 2, 3)
+    await settle()
+
+    assert peak == most
+    assert [len(b.ended) for b in benches] == [3, 3]
+    assert group.running == 0
+
+
+async def test_a_slot_is_held_until_the_cleanup_has_ended(graphflow_runner: asyncio.Runner) -> None:
+    """The `finally` of a run is over before the next one of its group begins."""
+    group: HandlerGroup = HandlerGroup(1)
+    log: list[str] = []
+
+    async def first(_: object) -> None:
+        try:
+            log.append("body")
+            raise ValueError("wrong")
+        finally:
+            await asyncio.sleep(0)
+            log.append("cleanup")
+
+    one, two = Bench(first, group), Bench(lambda _: log.append("second"), group)
+    one.put(1)
+    two.put(1)
+    await settle()
+
+    assert log == ["body", "cleanup", "second"]
+
+
+async def test_a_cancelled_waiter_passes_its_slot_on(graphflow_runner: asyncio.Runner) -> None:
+    """A handler that ends after a slot was handed to it, and before it ran, gives the slot to the next."""
+    group: HandlerGroup = HandlerGroup(1)
+    gate = asyncio.Event()
+
+    async def holds(_: object) -> None:
+        await gate.wait()
+
+    holder = Bench(holds, group)
+    waiter, last = Bench(lambda item: item, group), Bench(lambda item: item, group)
+    holder.put(1)
+    waiter.put(1)
+    last.put(1)
+    await settle()
+    assert group.waiting == (waiter.runner, last.runner)
+
+    gate.set()
+    while waiter.runner in group.waiting:  # until the slot has just been handed over
+        await asyncio.sleep(0)
+    waiter.runner.cancel()
+    await settle()
+
+    assert waiter.ended == []
+    assert last.results == [1]
+    assert group.running == 0
+
+
+async def test_a_cancelled_handler_takes_its_ticket_back(graphflow_runner: asyncio.Runner) -> None:
+    """Nobody waits behind a handler that no longer wants to run."""
+    group: HandlerGroup = HandlerGroup(1)
+    gate = asyncio.Event()
+
+    async def holds(_: object) -> None:
+        await gate.wait()
+
+    holder, waiter = Bench(holds, group), Bench(lambda item: item, group)
+    holder.put(1)
+    waiter.put(1)
+    await settle()
+    waiter.runner.cancel()
+    assert group.waiting == ()
+    gate.set()
+    await settle()
+
+    assert group.running == 0
+
+
+@pytest.mark.parametrize("seed", range(60))
+async def test_any_schedule(graphflow_runner: asyncio.Runner, seed: int) -> None:
+    """With random handlers, arrivals, errors and cancellations no run is lost, doubled or out of order."""
+    random = Random(seed)
+    limit = random.choice([1, 1, 2, 3, None])
+    group: HandlerGroup = HandlerGroup(limit)
+    now = 0
+    begun: list[list[int]] = [[], [], [], []]
+
+    def make(index: int) -> Handler:
+        async def handler(item: int) -> None:
+            nonlocal now
+            now += 1
+            begun[index].append(item)
+            try:
+                assert limit is None or now <= limit
+                for _ in range(random.randrange(3)):
+                    await asyncio.sleep(0)
+                if random.random() < 0.2:
+                    raise ValueError("now and then")
+            finally:
+                try:
+                    if random.random() < 0.3:
+                        await asyncio.sleep(0)
+                finally:
+                    now -= 1
+
+        def plain(item: int) -> None:
+            begun[index].append(item)
+
+        return plain if index == 3 else handler
+
+    benches = [Bench(make(index), group) for index in range(4)]
+    put = [0, 0, 0, 0]
+    for _ in range(120):
+        index = random.randrange(4)
+        count = random.randrange(1, 4)
+        benches[index].put(*range(put[index], put[index] + count))
+        put[index] += count
+        for _ in range(random.randrange(3)):
+            await asyncio.sleep(0)
+        if seed % 3 == 0 and random.random() < 0.01:
+            benches[index].runner.cancel()
+    await settle()
+
+    for bench, items, count in zip(benches, begun, put, strict=True):
+        closed = bench.runner._closed
+        assert items == list(range(len(items)))
+        assert closed or len(items) == count
+        assert len(bench.ended) == len(items) == bench.runner.runs
+        assert all(isinstance(e, (type(None), ValueError, CancelledError)) for e in bench.errors)
+    assert group.running == now == 0
+    assert group.waiting == ()
+
+
+# fairness
+
+
+@pytest.mark.parametrize("suspends", [False, True])
+async def test_a_busy_handler_gives_the_loop_its_turns(graphflow_runner: asyncio.Runner, suspends: bool) -> None:
+    """Between two turns of the loop a handler has at most BURST runs, however much is in its queue."""
+    runs = 0
+
+    def plain(_: object) -> None:
+        nonlocal runs
+        runs += 1
+
+    async def handler(item: object) -> None:
+        plain(item)
+        if suspends:
+            await asyncio.sleep(0)
+
+    bench = Bench(handler if suspends else plain)
+    bench.put(*range(10 * BURST))
+    before = 0
+    while runs < 10 * BURST:
+        await asyncio.sleep(0)
+        assert runs - before <= BURST
+        before = runs
+
+
+async def test_arrivals_do_not_add_up_to_longer_bursts(graphflow_runner: asyncio.Runner) -> None:
+    """A handler that never catches up still leaves the loop its turns, however often it is woken."""
+    runs = 0
+
+    def handler(_: object) -> None:
+        nonlocal runs
+        runs += 1
+
+    bench = Bench(handler)
+    before = most = 0
+    for _ in range(20):
+        bench.put(*range(3 * BURST))
+        await asyncio.sleep(0)
+        most = max(most, runs - before)
+        before = runs
+
+    assert most <= BURST
+    await settle()
+    assert runs == 20 * 3 * BURST
+
+
+async def test_a_busy_topic_does_not_starve_a_timer_of_its_group(graphflow_runner: asyncio.Runner) -> None:
+    """A handler that waits for its turn in a shared group gets it after one run of the busy one."""
+    group: HandlerGroup = HandlerGroup(1)
+    log: list[str] = []
+
+    async def busy(_: object) -> None:
+        log.append("topic")
+        await asyncio.sleep(0)
+
+    topic, timer = Bench(busy, group), Bench(lambda _: log.append("timer"), group)
+    topic.put(*range(100))
+    await asyncio.sleep(0)
+    await asyncio.sleep(0)
+    timer.put(1)
+    behind = len(log)
+    await settle()
+
+    assert log.index("timer") <= behind + 1
+    assert log.count("topic") == 100
