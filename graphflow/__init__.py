@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False  # what type checkers go by; importing `typing` would take longer than all of this file
 if TYPE_CHECKING:
     from graphflow.errors import (
         Abort,

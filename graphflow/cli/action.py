@@ -109,7 +109,7 @@ def _types(view: View, name: str) -> list[str]:
 def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float) -> int:
     """Send a goal: VALUES are its fields in YAML, such as "{theta: 1.57}". Ctrl-C cancels the goal.
 
-    Exit code 0: it succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost.
+    Exit code 0: it succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost; 4: no server came.
     """
     from graphflow.cli.sending import send
     from graphflow.msgs import registry

@@ -9,7 +9,7 @@ from typing import Any
 
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
-from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected
+from graphflow.errors import GoalAborted, GoalCanceled, GoalLost, GoalRejected, ServiceUnavailable
 from graphflow.introspect.echo import block, plain
 from graphflow.msgs.base import Message
 from graphflow.runtime.action_client import ClientGoalHandle
@@ -25,7 +25,11 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
     async def work(node: Node) -> int:
         client = node.create_action_client(type_, name)
         output.data("Waiting for an action server to become available...")
-        await client.wait_ready(timeout)
+        try:
+            await client.wait_ready(timeout)
+        except ServiceUnavailable as error:
+            output.error(str(error))
+            return exits.TIMEOUT
         output.data(f"Sending goal:\n{_shown(goal)}")
         try:
             return await _follow(client.send(goal, timeout=timeout), show_feedback)
@@ -72,6 +76,7 @@ async def _result(sent: ClientGoalHandle[Any, Any, Any]) -> int:
         result = await sent.result()
         code = exits.OK
     except (GoalAborted, GoalCanceled) as error:
+        output.talk(str(error))
         result = error.result
     except GoalLost as error:
         output.error(str(error))

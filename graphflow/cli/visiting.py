@@ -7,7 +7,8 @@ import os
 from collections.abc import Awaitable, Callable
 
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node import Node
 from graphflow.runtime.run import catch_signals
 from graphflow.transport import loop
 

@@ -13,11 +13,11 @@ from graphflow.msgs import build
 from graphflow.msgs.values import checked
 from graphflow.names import did_you_mean
 from graphflow.wire import idl
-from graphflow.wire.cdr import Codec, compile_codec
-from graphflow.wire.codegen import Types
+from graphflow.wire.cdr import Codec
+from graphflow.wire.codegen import FORMATS, Types
 from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import Action, Interface, Message, Service
-from graphflow.wire.typehash import type_hash
+from graphflow.wire.typehash import referenced, type_hash
 
 KINDS = ("msg", "srv", "action")
 BUNDLED = Path(__file__).parent
@@ -227,8 +227,15 @@ def interface_class(name: str) -> type:
 
 @cache
 def codec(name: str) -> Codec:
-    """The compiled codec of a message."""
-    return compile_codec(message_schema(name), Types(message_schema, interface_class, checked))
+    """The codec of a message."""
+    return Codec(message_schema(name), Types(message_schema, interface_class, checked))
+
+
+def has_numeric_arrays(name: str) -> bool:
+    """Whether a message type, or a part of a service or action, holds arrays of numbers, for which numpy is loaded."""
+    whole = whole_schema(name)
+    schemas = [whole, *referenced(whole, message_schema).values()]
+    return any(field.type.array and field.type.base in FORMATS for schema in schemas for field in schema.fields)
 
 
 def forget() -> None:

@@ -118,7 +118,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self.host, self.type, self.name = host, type_, name
         self.rules = GoalRules() if rules is None else rules
         self.result_class: type[Any] = registry.interface_class(f"{type_.NAME}_Result")
-        self._encode_result = registry.codec(f"{type_.NAME}_Result").encode
+        self._results = registry.codec(f"{type_.NAME}_Result")
         self.book = GoalBook(self.rules, to_ns(RESULT_KEPT), to_ns(STATUS_KEPT), RESULTS_KEPT)
         self.goals: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
         """Those that were accepted, by id."""
@@ -385,7 +385,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
 
     def _why_unfit(self, result: Any) -> Exception | None:
         try:
-            self._encode_result(result)
+            self._results.encode(result)
         except (EncodeError, AttributeError) as error:
             return error
         return None
@@ -439,13 +439,13 @@ class _GoalService(ServiceServer[Any, Any]):
 
     def _invoke(self, request: Any) -> Any:
         asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
-        return self._callback(self._decode(request.payload), asked.gid)  # type: ignore[call-arg]
+        return self._callback(self._requests.decode(request.payload), asked.gid)  # type: ignore[call-arg]
 
     def _note(self, request: Any) -> bytes:
         """For graphflow's own clients, which understand it: why a goal was aborted whose result they ask for."""
         if not (isinstance(request, DirectRequest) and self.name.endswith("/get_result")):
             return b""
-        return self._server.why_aborted(self._decode(request.payload)).encode()[:NOTE_LIMIT]
+        return self._server.why_aborted(self._requests.decode(request.payload)).encode()[:NOTE_LIMIT]
 
     def _matched(self, other: Entity, alive: bool) -> None:
         super()._matched(other, alive)

@@ -206,12 +206,21 @@ class NodeCore:
             self._late.remove(part)
 
     def place(
-        self, callback: Callable[..., Any], label: str, group: Group | None, thread: bool
-    ) -> tuple[Callable[..., Any], HandlerGroup | None]:
-        """A handler as it is to be called, and the group whose slots its runs take."""
+        self, callback: Callable[..., Any] | None, otherwise: str, group: Group | None, thread: bool
+    ) -> tuple[str, Any, HandlerGroup | None]:
+        """A handler's name, how to call it, and the group whose slots its runs take.
+
+        Args:
+            callback: None for a subscription that is iterated.
+            otherwise: What stands for a handler without a name, such as a lambda.
+        """
+        name = getattr(callback, "__name__", "")
+        label = name if name and name != "<lambda>" else otherwise
+        if callback is None:
+            return label, None, None
         place = self.groups.place(label, group)
         threaded = thread or (place.is_threaded and not inspect.iscoroutinefunction(callback))
-        return self._in_thread(callback) if threaded else callback, place.group
+        return label, self._in_thread(callback) if threaded else callback, place.group
 
     def _in_thread(self, fn: Callable[..., Any]) -> Callable[..., Coroutine[Any, Any, Any]]:
         if inspect.iscoroutinefunction(fn):
@@ -465,3 +474,15 @@ def _handlers(cls: type) -> frozenset[str]:
 @cache
 def _hooks(cls: type) -> frozenset[str]:
     return declared.hooks(cls)
+
+
+def core_of(node: object) -> NodeCore:
+    """The workings of a `Node`, for what runs it.
+
+    Raises:
+        DeclarationError: Its `__init__` did not call `super().__init__`.
+    """
+    core = vars(node).get("_core")
+    if not isinstance(core, NodeCore):
+        raise DeclarationError(f"{type(node).__name__}.__init__ must call super().__init__(...)")
+    return core

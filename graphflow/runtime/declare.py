@@ -275,6 +275,10 @@ class Param(Held, Generic[V]):
     def __set__(self, node: Bound, value: V) -> None:
         node._core.parameters.set({self.parameter.name: value}, source="node")
 
+    def with_typing(self, *, dynamic: bool) -> Parameter:
+        """The parameter that is declared, which may take values of every type and be deleted."""
+        return replace(self.parameter, dynamic=dynamic)
+
     def check(self, fn: F) -> F:
         """Have the method called with each new value before it is set; a ValueError that it raises refuses the value.
 

@@ -6,7 +6,6 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator, Sequence
-from collections.abc import Set as AbstractSet
 from typing import Any, ClassVar, Protocol
 
 from graphflow.errors import DeclarationError, Place
@@ -91,12 +90,25 @@ def hooks(cls: type) -> frozenset[str]:
     return frozenset(found | {hook.__name__ for hook in called if inspect.isfunction(hook)})
 
 
-def check_attributes(cls: type, taken: AbstractSet[str]) -> None:
+_REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on_start", "on_shutdown", "group"}
+"""What subclasses may say anew. A group that is running can also be released by its own name."""
+
+
+def reserved(node: type) -> set[str]:
+    """What users call on a node, which no declaration and no method may hide."""
+    return {name for name in dir(node) if not name.startswith("_")} - _REDEFINED | {"_core", "log", "parameters"}
+
+
+def check_attributes(cls: type, node: type) -> None:
     """See that no declaration hides something that users call on a node, nor a method that does not call on it.
+
+    Args:
+        node: The class `Node` itself.
 
     Raises:
         DeclarationError: One does.
     """
+    taken = reserved(node)
     found: dict[str, Any] = {**held(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
         if inspect.isfunction(value) and not attribute.startswith("__") and "super" not in value.__code__.co_names:

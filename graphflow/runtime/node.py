@@ -5,10 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
-from dataclasses import replace
 from typing import Any, ClassVar, TypeVar
 
-from graphflow.errors import DeclarationError
 from graphflow.executor.clock import Clock, period_ns
 from graphflow.executor.groups import HandlerGroup
 from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, OnError
@@ -28,7 +26,7 @@ from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceServer
-from graphflow.runtime.timer import Timer, TimerInfo
+from graphflow.runtime.timer import Timer
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.wire.attachment import MessageInfo
 
@@ -38,8 +36,6 @@ T = TypeVar("T")
 
 class Node:
     """A ROS 2 node as an async Python class. Subclass it, declare what it holds and does, and `graphflow.run` it.
-
-    Making a node sets it up and runs nothing.
 
     Args:
         name: Its name; without one, the class's in snake case.
@@ -100,13 +96,11 @@ class Node:
         super().__init_subclass__(**kwargs)
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declared.class_line()
-        declared.check_attributes(cls, RESERVED)
+        declared.check_attributes(cls, Node)
         declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.full_name}{' running' if self.is_running else ''}>"
-
-    # who it is
 
     @property
     def name(self) -> str:
@@ -120,6 +114,11 @@ class Node:
     def full_name(self) -> str:
         """Namespace and name: `/turtle1/follower`."""
         return self._core.full_name
+
+    @property
+    def names(self) -> Resolver:
+        """Its names: `names.resolve("pose")` is what a remap has made of one."""
+        return self._core.names
 
     @property
     def context(self) -> Context:
@@ -164,8 +163,6 @@ class Node:
         """Numbers since the start, by the name of each handler, endpoint and group."""
         return self._core.statistics()
 
-    # create_*: rclpy's names and argument order
-
     def create_publisher(
         self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
     ) -> TopicPublisher[M]:
@@ -196,9 +193,8 @@ class Node:
             on_event: Called with each `QosEvent`.
             on_error: What an error of the callback means for the node.
         """
-        core, label = self._core, _label(callback, f"subscription {name}")
-        call, slots = (None, None) if callback is None else core.place(callback, label, group, thread)
-        resolved = core.names.resolve(name)
+        core, resolved = self._core, self._core.names.resolve(name)
+        label, call, slots = core.place(callback, f"subscription {name}", group, thread)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
         made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
         return core.add(made, late=callback is not None)
@@ -220,9 +216,8 @@ class Node:
             introspection: What is published of each call on `name`/_service_event: nothing, its metadata, or
                 request and response too.
         """
-        core, label = self._core, _label(callback, f"service {name}")
-        resolved = core.names.resolve(name, "service")
-        call, slots = core.place(callback, label, group, thread)
+        core, resolved = self._core, self._core.names.resolve(name, "service")
+        label, call, slots = core.place(callback, f"service {name}", group, thread)
         made = ServiceServer(core, type_, resolved, Qos.of(qos), call, label, slots)
         made.configure_introspection(introspection)
         return core.add(made, late=True)
@@ -270,9 +265,8 @@ class Node:
             on_client_loss: What becomes of a goal whose client has gone.
             cleanup_timeout: Seconds that a cancelled body gets; then its goal counts as aborted.
         """
-        core, label = self._core, _label(callback, f"action {name}")
-        call, slots = core.place(callback, label, group, thread)
-        resolved = core.names.resolve(name, "service")
+        core, resolved = self._core, self._core.names.resolve(name, "service")
+        label, call, slots = core.place(callback, f"action {name}", group, thread)
         rules = GoalRules(policy, on_client_loss, cleanup_timeout=cleanup_timeout)
         options: dict[str, Any] = {"rules": rules, "accept": accept, "cancellable": cancellable}
         return core.add(ActionServer(core, type_, resolved, call, label, slots, **options), late=True)
@@ -299,13 +293,10 @@ class Node:
             ValueError: The period is not positive.
         """
         nanoseconds = period_ns(period, None)
-        core, label = self._core, _label(callback, "timer")
-        call, slots = core.place(callback, label, group, thread)
+        label, call, slots = self._core.place(callback, "timer", group, thread)
 
-        def run(info: TimerInfo) -> Any:
-            return call(info) if takes_info else call()
-
-        return core.add(Timer(core, nanoseconds, run, label, slots, on_error), late=True)
+        made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
+        return self._core.add(made, late=True)
 
     def declare_parameter(self, name: str, default: Any, *, dynamic: bool = False, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
@@ -316,8 +307,7 @@ class Node:
         Raises:
             ParameterError: It exists, or the value given from outside does not fit.
         """
-        parameter = Param(default, name=name, **limits).parameter
-        return self.parameters.declare(replace(parameter, dynamic=dynamic))
+        return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
         """Take away a parameter that `declare_parameter` has made.
@@ -334,8 +324,6 @@ class Node:
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
         """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
         self._core.spawn(fn, *args)
-
-    # its life
 
     async def on_start(self) -> None:
         """For subclasses: prepare. Publishers and clients work; no handler, timer or task runs before it returns.
@@ -356,25 +344,6 @@ class Node:
         """End the node from within: what runs it will stop it, and a process with nothing else to run ends."""
         self._core.shutdown()
 
-
-def core_of(node: Node) -> NodeCore:
-    """The workings of a node, for what runs it.
-
-    Raises:
-        DeclarationError: Its `__init__` did not call `super().__init__`.
-    """
-    core = vars(node).get("_core")
-    if not isinstance(core, NodeCore):
-        raise DeclarationError(f"{type(node).__name__}.__init__ must call super().__init__(...)")
-    return core
-
-
-_REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on_start", "on_shutdown", "group"}
-"""What subclasses may say anew. A group that is running can also be released by its own name."""
-RESERVED = ({name for name in dir(Node) if not name.startswith("_")} | {"_core", "log", "parameters"}) - _REDEFINED
-"""What users call on a node, which no declaration and no method may hide."""
-
-
-def _label(callback: Callable[..., Any] | None, otherwise: str) -> str:
-    name = getattr(callback, "__name__", "")
-    return name if name and name != "<lambda>" else otherwise
+    async def wait_ended(self) -> None:
+        """Wait until the node ends itself by `shutdown`, or fails; raises the error it failed with."""
+        await self._core.wait_ended()

@@ -15,7 +15,8 @@ from graphflow.deadlock.user_code import users_part
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.transport import loop
 
@@ -139,7 +140,8 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
 
     Args:
         nodes: Nodes, or node classes, which are then made with what the command line says.
-        args: Instead of the command line's words; `--ros-args -r from:=to -p name:=value` are understood.
+        args: Instead of the command line's words; `--ros-args -r from:=to -p name:=value` are understood. They are for
+            classes: a node that has been made has its names and values.
 
     Raises:
         SystemExit: With 1 and a message when a node failed, with 2 when the arguments are wrong.
@@ -147,6 +149,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     setup_console()
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
+        _refuse_unused(ros, nodes)
         setup_console(log_level(ros.log_level))
     except GraphflowError as error:
         print_error(error)
@@ -171,6 +174,20 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
             raise
         print_error(error)
         raise SystemExit(1) from None
+
+
+def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
+    """See that remaps and parameters of the command line reach every node.
+
+    Raises:
+        GraphflowError: One has been made already.
+    """
+    made = [node for node in nodes if isinstance(node, Node)]
+    if made and (ros.remaps or ros.params or ros.params_files):
+        name = type(made[0]).__name__
+        raise GraphflowError(
+            f"-r and -p cannot change {name}(), which has been made already; give the class: graphflow.run({name})"
+        )
 
 
 def print_error(error: GraphflowError) -> None:

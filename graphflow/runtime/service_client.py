@@ -78,8 +78,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         """Delivers answers that wait for a slot of the client's group."""
         service = registry.service_schema(type_.NAME)
         self._request: type[Any] = registry.interface_class(service.request.name)
-        self._encode = registry.codec(service.request.name).encode
-        self._decode = registry.codec(service.response.name).decode
+        self._requests, self._responses = registry.codec(service.request.name), registry.codec(service.response.name)
         self._sequence = 0
         self._service_events = ServiceEvents(host, type_, name)
         self._caller: Caller | None = None
@@ -176,7 +175,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         """As `call`, with the note that a server of graphflow's has added; empty where there is none."""
         if request.__class__ is not self._request:
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
-        payload = self._encode(request)
+        payload = self._requests.encode(request)
         if timeout is ...:
             timeout = self.host.context.call_timeout
         started = self.host.clock.monotonic_ns()
@@ -189,7 +188,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         answer = await self._ask(
             sequence, payload, beside, started, None if timeout is None else started + to_ns(timeout), timeout
         )
-        message: Response = self._decode(answer.payload)
+        message: Response = self._responses.decode(answer.payload)
         self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
         note = (answer.attachment or b"")[attachment.SIZE : attachment.SIZE + NOTE_LIMIT]
         return message, printable(note.decode(errors="replace")) if note else ""

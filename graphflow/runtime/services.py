@@ -64,8 +64,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._label = label or f"service {name}"
         self._group = group
         service = registry.service_schema(type_.NAME)
-        self._decode = registry.codec(service.request.name).decode
-        self._encode = registry.codec(service.response.name).encode
+        self._requests, self._responses = registry.codec(service.request.name), registry.codec(service.response.name)
         self._response: type[Any] = registry.interface_class(service.response.name)
         self.runner: Runner | None = None
         self.refused = 0
@@ -127,7 +126,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _invoke(self, request: Any) -> Any:
         asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
-        message = self._decode(request.payload)
+        message = self._requests.decode(request.payload)
         self._service_events.tell(ServiceEvent.REQUEST_RECEIVED, asked.gid, asked.sequence, request=message)
         return self._callback(message)
 
@@ -142,7 +141,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                     raise TypeError(
                         f"the handler of {self.name} returned {result!r}, not {self._response.__qualname__}"
                     )
-                payload = self._encode(result)
+                payload = self._responses.encode(result)
             except (TypeError, EncodeError) as wrong:
                 error = wrong
         if error is not None:

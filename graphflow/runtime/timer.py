@@ -33,9 +33,11 @@ class Timer(Part):
         self,
         host: Host,
         period_ns: int,
-        callback: Callable[[TimerInfo], Any],
+        callback: Callable[..., Any],
         label: str,
         group: HandlerGroup | None = None,
+        *,
+        takes_info: bool = False,
         on_error: OnError = "budget",
     ) -> None:
         self.host = host
@@ -44,6 +46,7 @@ class Timer(Part):
         self._period_ns = period_ns
         self._label = label
         self._callback = callback
+        self._takes_info = takes_info
         self._group = group
         self._on_error = on_error
         self._next_ns = 0
@@ -81,7 +84,7 @@ class Timer(Part):
 
     def open(self) -> None:
         """Start. Done by the node."""
-        tell = (self._callback, self._finished, self.host.full_name)
+        tell = (self._invoke, self._finished, self.host.full_name)
         self.runner = self.host.runner(RunnerSpec(self._label, *tell, "timer", self._refused), self._due, self._group)
         self.reset()
 
@@ -118,6 +121,9 @@ class Timer(Part):
         self._due.append(TimerInfo(due, now, self._missed))
         self._missed = 0
         self.runner.wake()
+
+    def _invoke(self, info: TimerInfo) -> Any:
+        return self._callback(info) if self._takes_info else self._callback()
 
     def _finished(self, info: TimerInfo, result: Any, error: BaseException | None) -> None:
         if error is not None:

@@ -40,7 +40,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         self.type = type_
         self.published = 0
         """Messages sent since the start; also the last sequence number."""
-        self._encode = registry.codec(self.type_name).encode
+        self._codec = registry.codec(self.type_name)
         self._sender: Sender = _NOT_OPEN
         self._gid = bytes(16)
         self._now_ns: Callable[[], int] = int
@@ -82,7 +82,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
         sender = self._sender
         if sender.is_wanted:
-            payload = self._encode(message)
+            payload = self._codec.encode(message)
             self.published += 1
             sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
         else:
@@ -198,7 +198,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._label = label or f"subscription {name}"
         self._group = group
         self._on_error = on_error
-        self._decode = registry.codec(self.type_name).decode
+        self._codec = registry.codec(self.type_name)
         self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unreadable
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
@@ -343,7 +343,7 @@ class TopicSubscription(Endpoint, Generic[M]):
                 self.expired += 1
                 return None
         try:
-            return self._decode(payload), fields
+            return self._codec.decode(payload), fields
         except DecodeError as error:
             self._count_malformed(error)
             return None

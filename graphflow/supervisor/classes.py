@@ -89,12 +89,16 @@ def _where(error: BaseException) -> str:
 
 
 def interfaces(class_paths: list[str]) -> dict[str, Any]:
-    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`."""
+    """Interfaces as JSON by class path; for a class that cannot be imported, `{"problem": text}`.
+
+    Beside each stands `needs_numpy`: whether nodes of the class will load it.
+    """
     found: dict[str, Any] = {}
     for path in class_paths:
         try:
-            cls = import_class(path)
-            found[path] = cls.interface().to_json()
+            interface = import_class(path).interface()
+            has_arrays = any(registry.has_numeric_arrays(endpoint.type) for endpoint in interface.endpoints)
+            found[path] = {**interface.to_json(), "needs_numpy": has_arrays or "numpy" in sys.modules}
         except GraphflowError as error:
             found[path] = {"problem": str(error)}
     return found

@@ -122,14 +122,11 @@ class _Preload:
 
         load_ext()  # Zenoh starts no thread before a session is opened
         for name in _WARM:
-            service = registry.service_schema(name)
+            registry.service_schema(name)
             registry.hash_of(name)
             registry.interface_class(name)
-            registry.codec(service.request.name)
-            registry.codec(service.response.name)
         for name in ("rcl_interfaces/msg/Log", "rcl_interfaces/msg/ParameterEvent"):
             registry.interface_class(name)
-            registry.codec(name)
             registry.hash_of(name)
         rehearse()
         keep_freed_memory()
@@ -181,7 +178,10 @@ class _Preload:
         if not done:
             os.kill(pid, signal.SIGKILL)
         os.waitpid(pid, 0)
-        return probe_result(data, done, request["classes"])
+        result = probe_result(data, done, request["classes"])
+        if any(found.get("needs_numpy") for found in result.values()):
+            import numpy  # noqa: F401 - once, for all workers
+        return result
 
     def _spawn(self, request: dict[str, Any]) -> None:
         fresh = any(name.startswith(_FRESH) for name in request["env"])

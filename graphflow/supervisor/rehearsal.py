@@ -11,9 +11,10 @@ from contextlib import suppress
 
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.context import Context
+from graphflow.runtime.core import core_of
 from graphflow.runtime.declare import Param, Publisher
 from graphflow.runtime.handlers import subscription, timer
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.node import Node
 from graphflow.transport.loop import new_event_loop
 from graphflow.transport.memory import Network
 

@@ -10,7 +10,8 @@ from graphflow.graph.plan import PlannedStep
 from graphflow.msgs import registry
 from graphflow.msgs.values import from_plain
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node import Node
 from graphflow.wire.liveliness import Kind
 
 

@@ -12,7 +12,8 @@ from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Respon
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node import Node
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network

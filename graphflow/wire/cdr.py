@@ -13,7 +13,8 @@ and ignored when read, surplus bytes at the end are ignored.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
 from graphflow.errors import DecodeError
 from graphflow.wire.codegen import HEADER, Types
@@ -25,28 +26,32 @@ Encode = Callable[[Any], bytes]
 Decode = Callable[[bytes], Any]
 
 
-class Codec(NamedTuple):
+class Codec:
     """`encode(message) -> payload` and `decode(payload) -> message` for one type.
 
-    Arrays of a decoded message are read-only views of the payload.
+    Each is written and compiled when it is first asked for, which takes about half a millisecond, and for types with
+    numeric arrays loads numpy. Arrays of a decoded message are read-only views of the payload.
 
     `encode` raises EncodeError naming the field; `decode` raises DecodeError and nothing else.
     """
 
-    encode: Encode
-    decode: Decode
+    def __init__(self, message: Message, types: Types) -> None:
+        self._message, self._types = message, types
 
+    @cached_property
+    def encode(self) -> Encode:
+        return compile_encode(self._message, self._types)
 
-def compile_codec(message: Message, types: Types) -> Codec:
-    """Write and compile the codec of one message type. Takes about a millisecond; the result is to be kept."""
-    decode_big = None
+    @cached_property
+    def decode(self) -> Decode:
+        return compile_decode(self._message, self._types, "<", self._decode_any_order)
 
-    def decode_any_order(payload: bytes) -> Any:
-        nonlocal decode_big
+    @cached_property
+    def _decode_big(self) -> Decode:
+        return compile_decode(self._message, self._types, ">", None)
+
+    def _decode_any_order(self, payload: bytes) -> Any:
         if len(payload) < HEADER or payload[0] != 0 or payload[1] > 1:
-            raise DecodeError(f"{message.name}: payload begins with {payload[:4].hex() or 'nothing'}, not a CDR header")
-        if decode_big is None:
-            decode_big = compile_decode(message, types, ">", None)
-        return decode_big(payload)
-
-    return Codec(compile_encode(message, types), compile_decode(message, types, "<", decode_any_order))
+            head = payload[:4].hex() or "nothing"
+            raise DecodeError(f"{self._message.name}: payload begins with {head}, not a CDR header")
+        return self._decode_big(payload)

@@ -102,7 +102,7 @@ def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) ->
         "-c",
         "import asyncio\n"
         "from graphflow import Context, Node\n"
-        "from graphflow.runtime.node import core_of\n"
+        "from graphflow.runtime.core import core_of\n"
         "from graphflow.msgs.std_msgs.msg import String\n"
         "async def main():\n"
         "    context = await Context.open()\n"

@@ -32,7 +32,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.runtime.timer import Timer
 from graphflow.testing.simulation import LoopClock, World, simulate
 from graphflow.transport.base import EARLY

@@ -39,7 +39,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.msgs.turtlesim.msg import Pose
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from tests.deadlock.cast import Caplog, Dialler, Driver, DrivesByPose, Planner, Promised, Robot, Waiter, reports, say
 from tests.runtime.cast import Log

@@ -36,7 +36,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
 from graphflow.wire import attachment, chain

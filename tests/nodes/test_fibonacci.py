@@ -8,7 +8,7 @@ import pytest
 
 from graphflow import GoalRejected
 from graphflow.msgs.example_interfaces.action import Fibonacci
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from nodes.fibonacci_client import FibonacciClient
 from nodes.fibonacci_server import FibonacciServer

@@ -11,7 +11,7 @@ from typing import TextIO
 import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from nodes.turtle_teleop import TurtleTeleop
 

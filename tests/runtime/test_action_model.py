@@ -53,7 +53,7 @@ from graphflow.qos import ACTION_STATUS
 from graphflow.runtime import action_client, actions
 from graphflow.runtime.action_client import CANCEL_TIMEOUT, LOST_GRACE, RESULT_LONGEST, ClientGoalHandle
 from graphflow.runtime.actions import RESULT_KEPT
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import Seeded, World, simulate
 from graphflow.times import NANOSECONDS

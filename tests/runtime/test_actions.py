@@ -31,7 +31,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
 from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.actions import ActionServer
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 from tests.runtime.cast import Log

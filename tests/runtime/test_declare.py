@@ -28,8 +28,8 @@ from graphflow.interface import GroupInfo, Interface
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Durability, Qos
+from graphflow.runtime.core import core_of
 from graphflow.runtime.declared import snake_case
-from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 
 X: Any = None

@@ -9,7 +9,7 @@ import pytest
 
 from graphflow import Node, ServerLost, service
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Inbox

@@ -107,19 +107,19 @@ async def test_what_the_full_queue_drops_is_no_loss(graph: Graph) -> None:
     assert (listening.dropped, listening.lost) == (3, 0)
 
 
-async def test_nobody_listens_so_nothing_is_encoded(graph: Graph) -> None:
+async def test_nobody_listens_so_nothing_is_encoded(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a subscription a message costs no encoding, and yet it is counted: the first heard is number 3."""
     talker, listener = Node("talker"), Node("listener")
     publisher = talker.create_publisher(Int32, "n")
     await graph.start(talker)
     encoded: list[Any] = []
-    encode = publisher._encode
+    encode = publisher._codec.encode
 
     def counted(message: Any) -> bytes:
         encoded.append(message)
         return encode(message)
 
-    publisher._encode = counted
+    monkeypatch.setattr(publisher._codec, "encode", counted)
     publisher.publish(Int32(data=1))
     publisher.publish(Int32(data=2))
     assert encoded == []

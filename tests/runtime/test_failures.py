@@ -7,7 +7,7 @@ import pytest
 from graphflow import ErrorBudget, Node, timer
 from graphflow.errors import TooManyErrors
 from graphflow.interface import OnError
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 
 

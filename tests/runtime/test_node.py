@@ -28,7 +28,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import Remap
 from graphflow.runtime import core
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.memory import MemorySession
 from graphflow.wire.liveliness import Kind

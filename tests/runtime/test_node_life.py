@@ -14,7 +14,7 @@ from graphflow.errors import ServiceUnavailable
 from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime import core
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.runtime.run import serve
 from graphflow.testing import Graph
 

@@ -9,7 +9,7 @@ import pytest
 from graphflow import Node, Publisher, ServiceUnavailable, service, task
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph, ManualClock, Tap
 from graphflow.testing.graph import TRANSIENT_LOCAL
 

@@ -22,7 +22,7 @@ from graphflow import (
 from graphflow.msgs.example_interfaces.srv import AddTwoInts, AddTwoInts_Request, AddTwoInts_Response
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.timer import Timer

@@ -1,0 +1,5 @@
+"""`python -m graphflow` is `graphflow`."""
+
+from graphflow.cli.entry import main
+
+main()

@@ -1,0 +1,23 @@
+"""The way in: Ctrl-C ends the process quietly from here on, even while commands are still being imported."""
+
+import os
+import signal
+
+
+def _end(*_: object) -> None:
+    os._exit(0)  # nothing has been done yet, and nothing is to be cleaned up
+
+
+_IS_HEARD = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+"""Whether Ctrl-C is for this process: shells have what they start in the background ignore it."""
+if _IS_HEARD:
+    signal.signal(signal.SIGINT, _end)
+
+
+def main() -> None:
+    """Run the command that the command line names."""
+    from graphflow.cli.main import main
+
+    if _IS_HEARD:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    main()
