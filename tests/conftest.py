@@ -25,6 +25,22 @@ LIMIT = 45.0
 """Seconds that anything here may take before the test fails."""
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--cases`: see `tests.cases`."""
+    parser.addoption("--cases", metavar="few|full|N", help="how many generated cases are tried; N: so many new ones")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Tell the modules of tests, which are imported next."""
+    if config.getoption("--cases"):
+        os.environ["GRAPHFLOW_CASES"] = config.getoption("--cases")
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """With `-n auto`, two workers a core: tests of real processes wait more than they work."""
+    return 2 * (os.cpu_count() or 1)
+
+
 class Program:
     """A command under way, with its output lines as they come."""
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import re
 from asyncio import CancelledError, Task
 from collections import Counter
@@ -20,7 +19,7 @@ from random import Random
 from typing import Any, Literal, NamedTuple
 
 import pytest
-from hypothesis import HealthCheck, Phase, event, given, settings
+from hypothesis import event, given
 from hypothesis import strategies as st
 
 from graphflow import CallError, DeadlockError, GoalError, Group, Node
@@ -37,9 +36,10 @@ from graphflow.runtime.timer import Timer
 from graphflow.testing.simulation import LoopClock, World, simulate
 from graphflow.transport.base import EARLY
 from graphflow.transport.memory import MemorySession, Network
+from tests.cases import cases, count, limit
 
-CASES = int(os.environ.get("GRAPHFLOW_CASES", "300"))
-"""Systems that are tried; always the same ones unless the environment gives their number."""
+CASES = count(few=60, full=300)
+"""Systems that are tried."""
 REPORTED_WITHIN = 1.5
 """Seconds from the last step of anybody in a ring to its report: a quarter of one, and two questions to others.
 
@@ -927,18 +927,7 @@ def systems(draw: st.DrawFn, *, ends: bool = False, replies: bool = True) -> Sys
 
 
 SEEDS = st.integers(0, 1000)
-long = pytest.mark.timeout(120 + CASES // 5)
-
-
-def cases(number: int) -> settings:
-    return settings(
-        max_examples=number,
-        derandomize="GRAPHFLOW_CASES" not in os.environ,
-        deadline=None,
-        suppress_health_check=[HealthCheck.too_slow],
-        phases=set(Phase) - {Phase.explain},  # it takes longer than it is worth
-    )
-
+long = limit(CASES)
 
 SEEN: Counter[str] = Counter()
 """What has come of the systems that were tried."""

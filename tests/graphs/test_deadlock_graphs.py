@@ -1,14 +1,17 @@
-"""The deadlocks of `graphs/deadlock/`, between real processes: each is explained, and its fix ends it."""
+"""The deadlocks of `graphs/deadlock/`: each is explained, and its fix ends it, in memory and in real processes."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
+from graphflow.graph.resolve import load
+from graphflow.supervisor.classes import add_root
+from graphflow.supervisor.worker import make_node
+from graphflow.testing import Graph
 from tests.conftest import PROJECT, Machine
-
-pytestmark = pytest.mark.real
 
 FOLDER = PROJECT / "graphs" / "deadlock"
 
@@ -101,9 +104,61 @@ PAIRS = {
 }
 
 
-@pytest.mark.parametrize("name", PAIRS)
-def test_a_broken_graph_is_explained(machine: Machine, name: str) -> None:
+BLOCKING = ("blocked_loop", "goal_on_loop", "goal_in_threads")
+"""What blocks a loop or a thread does so in real time."""
+REAL = (*BLOCKING, "self_call", "crossing")
+"""Those that run in real processes too, or only."""
+LONGEST = 60.0
+"""Seconds of a graph's time in which it must have said what is expected."""
+
+
+async def bring_up(graph: Graph, file: Path) -> None:
+    """Start the nodes of a graph file in memory, each as if in a process of its own."""
+    plan = load(file)
+    add_root(str(PROJECT))
+    graph.deadlock = plan.deadlock
+    for planned in plan.nodes:
+        node = make_node(planned)
+        await graph.start(node)
+        node.context.call_timeout = plan.call_timeout
+
+
+def said(caplog: pytest.LogCaptureFixture) -> str:
+    """The log as the console shows it, without the times."""
+    return "\n".join(f"[{r.name.removeprefix('graphflow.node.')}]: {r.getMessage()}" for r in caplog.records)
+
+
+async def wait_for(graph: Graph, caplog: pytest.LogCaptureFixture, text: str) -> str:
+    """Let time pass until something is said; returns all that was."""
+    for _ in range(round(LONGEST / 0.05)):
+        if text in (log := said(caplog)):
+            return log
+        await graph.clock.advance(0.05)
+    raise AssertionError(f"no {text!r} in:\n{said(caplog)}")
+
+
+@pytest.mark.parametrize("name", [name for name in PAIRS if name not in BLOCKING])
+async def test_a_broken_graph_is_explained(graph: Graph, caplog: pytest.LogCaptureFixture, name: str) -> None:
     """Who holds what and waits for what, in which line, and what would end it."""
+    caplog.set_level("INFO", "graphflow")
+    await bring_up(graph, FOLDER / f"{name}_broken.yaml")
+    for text in (PAIRS[name].headline, *PAIRS[name].details):
+        await wait_for(graph, caplog, text)
+
+
+@pytest.mark.parametrize("name", [name for name in PAIRS if name not in BLOCKING])
+async def test_a_fixed_graph_works(graph: Graph, caplog: pytest.LogCaptureFixture, name: str) -> None:
+    """And nothing is reported."""
+    caplog.set_level("INFO", "graphflow")
+    await bring_up(graph, FOLDER / f"{name}_fixed.yaml")
+    log = await wait_for(graph, caplog, PAIRS[name].works)
+    assert "DEADLOCK" not in log
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("name", REAL)
+def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: str) -> None:
+    """The same, by processes that have found it together."""
     pair = PAIRS[name]
     up = machine.start("up", str(FOLDER / f"{name}_broken.yaml"))
     up.wait_for(pair.headline)
@@ -112,15 +167,17 @@ def test_a_broken_graph_is_explained(machine: Machine, name: str) -> None:
     assert up.end() == 0
 
 
-@pytest.mark.parametrize("name", PAIRS)
-def test_a_fixed_graph_works(machine: Machine, name: str) -> None:
-    """And nothing is reported."""
+@pytest.mark.real
+@pytest.mark.parametrize("name", REAL)
+def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> None:
+    """And nothing is reported there either."""
     up = machine.start("up", str(FOLDER / f"{name}_fixed.yaml"))
     up.wait_for(PAIRS[name].works)
     assert "DEADLOCK" not in up.text
     assert up.end() == 0
 
 
+@pytest.mark.real
 @pytest.mark.parametrize(
     ("name", "note"),
     [
@@ -146,6 +203,7 @@ def test_every_pair_is_here() -> None:
         assert f"include: {name}_broken.yaml" in fixed
 
 
+@pytest.mark.real
 def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     """`waits` and `doctor` show it; `groups move` ends it in the running graph and prints the lines for good."""
     up = machine.start("up", str(FOLDER / "arrival_broken.yaml"))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from random import Random
 
 import pytest
-from hypothesis import HealthCheck, event, given, settings
+from hypothesis import event, given
 from hypothesis import strategies as st
 
 from graphflow.machines.reduction import deadlocked
@@ -28,6 +27,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
     joined,
 )
+from tests.cases import cases, count, limit
 from tests.machines.tiny_graph import (
     Ask,
     Both,
@@ -44,8 +44,8 @@ from tests.machines.tiny_graph import (
     stuck_for_ever,
 )
 
-CASES = int(os.environ.get("GRAPHFLOW_CASES", "1000"))
-"""Tiny graphs that are tried; always the same ones unless the environment gives their number."""
+CASES = count(few=150, full=1000)
+"""Tiny graphs that are tried."""
 
 
 def run(
@@ -608,16 +608,7 @@ def life(graph: TinyGraph, schedule: Sequence[int]) -> Iterator[State]:
 
 
 SCHEDULES = st.lists(st.integers(0, 11), max_size=15)
-long = pytest.mark.timeout(120 + CASES // 5)
-
-
-def cases(number: int) -> settings:
-    return settings(
-        max_examples=number,
-        derandomize="GRAPHFLOW_CASES" not in os.environ,
-        deadline=None,
-        suppress_health_check=[HealthCheck.too_slow],
-    )
+long = limit(CASES)
 
 
 @long

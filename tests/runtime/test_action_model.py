@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
-import os
 import threading
 import warnings
 from asyncio import CancelledError, Task
@@ -20,7 +19,7 @@ from functools import partial
 from typing import Any, Literal
 
 import pytest
-from hypothesis import HealthCheck, event, given, settings
+from hypothesis import event, given
 from hypothesis import strategies as st
 
 from graphflow import (
@@ -57,10 +56,11 @@ from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import Seeded, World, simulate
 from graphflow.times import NANOSECONDS
+from tests.cases import cases, count, limit
 from tests.machines.rcl_goals import NEXT
 
-CASES = int(os.environ.get("GRAPHFLOW_CASES", "180"))
-"""Programs that are tried; always the same ones unless the environment gives their number."""
+CASES = count(few=40, full=180)
+"""Programs that are tried."""
 CLEANUP = 2.0537
 """Seconds that cancelled bodies get. Nothing that they do takes just as long."""
 RULES = GoalRules()
@@ -984,13 +984,8 @@ def play(setting: Setting, steps: Sequence[Step]) -> None:
     assert not failures, failures[0]
 
 
-@pytest.mark.timeout(120 + CASES // 5)
-@settings(
-    max_examples=CASES,
-    derandomize="GRAPHFLOW_CASES" not in os.environ,
-    deadline=None,
-    suppress_health_check=[HealthCheck.too_slow],
-)
+@limit(CASES)
+@cases(CASES)
 @given(SETTINGS, st.lists(STEPS, min_size=8, max_size=40))
 def test_against_the_model(setting: Setting, steps: list[Step]) -> None:
     """What servers, clients and bystanders see of each goal is what the model says, at every step of every program."""

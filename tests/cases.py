@@ -1,0 +1,33 @@
+"""How many generated cases are tried: a few by default, with `--cases full` all that CI tries, with `--cases N` N new."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from hypothesis import HealthCheck, Phase, settings
+
+VARIABLE = "GRAPHFLOW_CASES"
+"""How the option reaches test modules, which need it while they are imported."""
+_WANTED = os.environ.get(VARIABLE, "few")
+
+
+def count(few: int, full: int) -> int:
+    """The number of cases to try."""
+    return {"few": few, "full": full}.get(_WANTED) or int(_WANTED)
+
+
+def cases(number: int) -> settings:
+    """So many cases; always the same ones, unless new ones were asked for by number."""
+    return settings(
+        max_examples=number,
+        derandomize=_WANTED in ("few", "full"),
+        deadline=None,
+        suppress_health_check=[HealthCheck.too_slow],
+        phases=set(Phase) - {Phase.explain},  # it takes longer than it is worth
+    )
+
+
+def limit(number: int) -> pytest.MarkDecorator:
+    """The time that so many cases may take."""
+    return pytest.mark.timeout(120 + number // 5)
