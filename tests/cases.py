@@ -1,4 +1,4 @@
-"""How many generated cases are tried: a few by default, with `--cases full` all that CI tries, with `--cases N` N new."""
+"""How many generated cases are tried: by default a few, with `--cases full` all that CI tries, else N new ones."""
 
 from __future__ import annotations
 

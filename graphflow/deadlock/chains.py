@@ -2,7 +2,7 @@
 
 A request carries who waits for it. If its server's group is full of runs that do, it can never be answered.
 
-Source: tier 1 of docs/architecture.md, "The life of a deadlock report".
+Source: docs/architecture.md, "The life of a call".
 """
 
 from __future__ import annotations

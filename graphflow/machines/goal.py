@@ -292,8 +292,10 @@ class GoalBook:
         """Whether one more goal may be accepted now."""
         if self.rules.policy == "reject":
             return self.active() == 0
+        if self.rules.policy != "queue":
+            return True
         waiting = sum(record.phase in (Phase.ANSWERING, Phase.QUEUED) for record in self.goals.values())
-        return self.rules.policy != "queue" or waiting < self.rules.queue_depth
+        return waiting < self.rules.queue_depth
 
     def ask(self, goal_id: bytes, client: bytes) -> GoalRecord:
         """Enter a goal, to be decided.

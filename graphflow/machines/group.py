@@ -5,7 +5,8 @@ before each run and gives it back after. While the group is full it holds one ti
 work it has; when a slot is given back it goes straight to the head of the queue, so that nobody can take it in
 between. With n members of which each re-queues after a run, one that has work runs after at most n - 1 other runs.
 
-Source: rules G3, G8, G9 of the concurrency design; rclpy's MutuallyExclusiveCallbackGroup is a limit of 1.
+Source: docs/architecture.md, "The rules of groups": slots, tickets, hand-over. rclpy's MutuallyExclusiveCallbackGroup
+is a limit of 1.
 """
 
 from __future__ import annotations

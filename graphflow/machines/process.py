@@ -8,7 +8,7 @@ Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the l
 `exit` is the only way to ENDED, so nothing is called ended that may still run. An end that nobody asked for is told
 apart by how it came: `failed` is true when the process left by a signal or with another code than 0.
 
-Source: sections D.4 S3 and S6 of the supervision design; systemd's and Erlang's stop sequences.
+Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's stop sequences.
 """
 
 from __future__ import annotations

@@ -317,7 +317,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         assert self.runner is not None
         match do:
             case Do.PREEMPT_OTHERS:
-                for other in [other for other in self.goals.values() if other is not goal]:
+                for other in [other for other in self.goals.values() if other is not goal and not other.is_over]:
                     self._step(other, GoalEvent.NEWER)
             case Do.ENQUEUE:
                 self._waiting.append(goal)

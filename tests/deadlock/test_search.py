@@ -1,6 +1,6 @@
 """Deadlocks as they happen: what is reported, once, with the right line, and what is not.
 
-The tests go through the matrix of the concurrency design, row by row; "row 5" in a docstring is its number there.
+The tests go through the table of docs/architecture.md, "What the search must tell apart", by the numbers of its rows.
 """
 
 from __future__ import annotations

@@ -1,0 +1,44 @@
+"""The page about how graphflow is built names what is there."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from graphflow.machines.goal import Phase
+from tests.conftest import PROJECT
+from tests.test_layers import DOORS, ROOMS
+
+PAGE = (PROJECT / "docs" / "architecture.md").read_text(encoding="utf-8")
+NOT_YET = {"tui", "bag"}
+"""Rooms that the table of rooms has a place for, and nothing in."""
+FILES = sorted(set(re.findall(r"`([a-z_]+/[a-z_/]+\.py)`", PAGE)))
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_every_file_that_it_names_is_there(file: str) -> None:
+    """As a file of the package, or of the repository."""
+    assert (PROJECT / "graphflow" / file).exists() or (PROJECT / file).exists()
+
+
+def test_every_room_is_in_the_picture() -> None:
+    """In the order in which imports go down."""
+    picture = PAGE[PAGE.index("```text") : PAGE.index("The core decides")]
+    rooms = [room for room in reversed(ROOMS) if room not in NOT_YET and (PROJECT / "graphflow" / room).is_dir()]
+    places = [picture.index(f"  {room}/ ") for room in rooms]
+    assert places == sorted(places)
+    assert set(DOORS) - NOT_YET <= set(rooms)
+
+
+def test_the_life_of_a_goal_is_that_of_the_table() -> None:
+    """Every phase is in it."""
+    assert all(phase.name in PAGE for phase in Phase if phase is not Phase.REJECTED)
+
+
+def test_every_row_that_a_test_cites_is_there() -> None:
+    """`(row 5)` in the docstring of a test of the search."""
+    rows = {int(n) for cell in re.findall(r"^\| ([\d, ]+) \|", PAGE, re.MULTILINE) for n in cell.split(",")}
+    assert rows == set(range(1, 31))
+    for path in (PROJECT / "tests").rglob("test_*.py"):
+        assert {int(n) for n in re.findall(r"\(row (\d+)\)", path.read_text(encoding="utf-8"))} <= rows
