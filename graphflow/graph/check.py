@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, Interface, may_make
+from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, GroupInfo, Interface, may_make
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
@@ -54,6 +54,13 @@ def _check_groups(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         if group.change.thread and here and all(h.is_async for h in here):
             names = ", ".join(h.name for h in here)
             yield Problem(group.place, f"thread: true is for `def` handlers, and {names} of {name!r} run on the loop")
+        declared = interface.groups.get(name, GroupInfo())
+        limit = group.change.limit if group.change.sets_limit else declared.limit
+        when_full = group.change.when_full or declared.when_full
+        if limit is None and when_full != "wait":
+            yield Problem(
+                group.place, f"{name!r} has no limit and is never full: when_full: {when_full} would never act"
+            )
 
 
 def _at(place: Place) -> str:

@@ -109,6 +109,10 @@ def test_what_fits_is_no_problem(line: str) -> None:
             "concurrency: {m: {handlers: [control], thread: true}}",
             "4:19: thread: true is for `def` handlers, and control of 'm' run on the loop",
         ),
+        (
+            "concurrency: {m: {handlers: [control], limit: none, when_full: drop_old}}",
+            "4:19: 'm' has no limit and is never full: when_full: drop_old would never act",
+        ),
         ("remap: {~/goal: /x}", "4:13: Chaser has no topic or service '~/goal'; did you mean 'goal'?"),
     ],
 )
