@@ -17,7 +17,7 @@ import sys
 import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Iterable, Iterator
-from types import CodeType, FrameType, MethodType
+from types import CodeType, FrameType, FunctionType, MethodType
 from typing import Any, Literal, NamedTuple
 
 FUTURE = ("set_result", "set_exception", "cancel")
@@ -47,24 +47,23 @@ _WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
 _WAIT_FOR = asyncio.wait_for.__code__
 _CONDITION_WAIT = asyncio.Condition.wait.__code__
 _ENTER = asyncio.Lock.__aenter__.__code__
+_EXITS = ("__aexit__", "__exit__")
 
 
 def coroutines(task: Any) -> Iterator[Any]:
-    """The coroutine of a suspended task and those that it awaits, the outermost first."""
+    """The coroutine of a suspended task and those that it awaits, the outermost first.
+
+    They end before an asynchronous generator: its loops can be left by who iterates over it, and so tell nothing.
+    """
     coroutine = task.get_coro()
     while coroutine is not None:
         yield coroutine
-        coroutine = (
-            getattr(coroutine, "cr_await", None)
-            or getattr(coroutine, "gi_yieldfrom", None)
-            or getattr(coroutine, "ag_await", None)
-        )
+        coroutine = getattr(coroutine, "cr_await", None) or getattr(coroutine, "gi_yieldfrom", None)
 
 
 def frame_of(coroutine: Any) -> FrameType | None:
-    """Where a coroutine is suspended; None of one that runs or has ended."""
-    frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
-    return frame or getattr(coroutine, "ag_frame", None)
+    """Where a coroutine is suspended; None of one that has ended."""
+    return getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
 
 
 def frames_of(task: Any) -> list[FrameType]:
@@ -73,10 +72,21 @@ def frames_of(task: Any) -> list[FrameType]:
 
 
 def entered(coroutine: Any) -> Iterator[Any]:
-    """What a suspended coroutine has entered by `with`: CPython keeps the method that leaves it on the stack."""
+    """What a suspended coroutine has entered by `with`: CPython keeps the method that leaves it on the stack.
+
+    Until 3.13 that is a bound method. Since 3.14 it is a function with its object above it.
+    """
+    below: Any = None
     for referent in gc.get_referents(coroutine):
-        if isinstance(referent, MethodType) and referent.__name__ in ("__aexit__", "__exit__"):
+        if isinstance(referent, MethodType) and referent.__name__ in _EXITS:
             yield referent.__self__
+        elif isinstance(below, FunctionType) and below.__name__ in _EXITS and _is_method_of(below, referent):
+            yield referent
+        below = referent
+
+
+def _is_method_of(function: FunctionType, thing: object) -> bool:
+    return any(vars(cls).get(function.__name__) is function for cls in type(thing).__mro__)
 
 
 def stack_of(thread: int) -> list[FrameType]:
@@ -136,20 +146,24 @@ def _returns_errors(children: Iterable[Any]) -> bool:
     """Whether `asyncio.gather` was called with `return_exceptions`, told by the callback that it hangs on its parts."""
     for child in children:
         for callback in _callbacks(child):
-            names = getattr(getattr(callback, "__code__", None), "co_freevars", ())
-            if "return_exceptions" in names:
-                return bool(callback.__closure__[names.index("return_exceptions")].cell_contents)
+            found = _enclosed(callback, "return_exceptions")
+            if found is not None:
+                return bool(found)
     return False
 
 
 def shielded(outer: Any) -> Any:
     """What `asyncio.shield` protects, told by the callback that it hangs on the outer future; None if it is none."""
     for callback in _callbacks(outer):
-        if getattr(callback, "__name__", "") == "_outer_done_callback" and callback.__closure__:
-            for cell in callback.__closure__:
-                if asyncio.isfuture(cell.cell_contents) and cell.cell_contents is not outer:
-                    return cell.cell_contents
+        if getattr(callback, "__name__", "") == "_outer_done_callback":
+            return _enclosed(callback, "inner")  # since 3.14 the closure has whoever shields, too
     return None
+
+
+def _enclosed(function: Any, name: str) -> Any:
+    """The variable of that name in the closure of a function; None if it has none."""
+    names = getattr(getattr(function, "__code__", None), "co_freevars", ())
+    return function.__closure__[names.index(name)].cell_contents if name in names else None
 
 
 def _callbacks(future: Any) -> Iterator[Any]:

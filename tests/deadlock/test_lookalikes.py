@@ -677,6 +677,17 @@ class EndsWithALocalList(Driver):
             await self.clock.sleep(0.1)
 
 
+class ShieldsInATask(Robot):
+    """The task waits for what it shields, and not for itself."""
+
+    async def go(self, _: String) -> None:
+        await self.clock.sleep(3.0)
+
+    @task
+    async def work(self) -> None:
+        await asyncio.shield(asyncio.ensure_future(self.clock.sleep(4.0)))
+
+
 class EndsWithItsGenerator(Driver):
     async def three_turns(self) -> AsyncIterator[int]:
         for n in range(3):
@@ -1131,6 +1142,7 @@ def legal(program: type[Robot]) -> Any:
         legal(EndsByAFunction),
         legal(EndsWithATask),
         legal(EndsWithALocalList),
+        legal(ShieldsInATask),
         legal(EndsWithItsGenerator),
         legal(EndsWithAMessage),
         legal(EndsWithAGoal),
