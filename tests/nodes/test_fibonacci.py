@@ -8,7 +8,6 @@ import pytest
 
 from graphflow import GoalRejected
 from graphflow.msgs.example_interfaces.action import Fibonacci
-from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from nodes.fibonacci_client import FibonacciClient
 from nodes.fibonacci_server import FibonacciServer
@@ -27,7 +26,7 @@ async def test_the_sequence_grows_by_one_a_second(graph: Graph, caplog: pytest.L
         "Received feedback: [0, 1, 1, 2, 3]",
         "Result: [0, 1, 1, 2, 3]",
     ]
-    await core_of(client).wait_ended()
+    await client.wait_ended()
 
 
 async def test_impatience_cancels(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:

@@ -11,7 +11,6 @@ from typing import TextIO
 import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
-from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from nodes.turtle_teleop import TurtleTeleop
 
@@ -62,7 +61,7 @@ async def test_q_ends_it_and_gives_the_terminal_back(press: Callable[[bytes], in
     assert termios.tcgetattr(sys.stdin) != before
 
     press(key)
-    await core_of(node).wait_ended()
+    await node.wait_ended()
 
     assert termios.tcgetattr(sys.stdin) == before
 
@@ -85,7 +84,7 @@ async def test_without_a_terminal_it_says_what_to_do(
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     node = TurtleTeleop()
     await graph.start(node)
-    await core_of(node).wait_ended()
+    await node.wait_ended()
 
     assert node.name == "teleop_turtle"
     assert any("run teleop_turtle in one of its own" in m for m in caplog.messages)

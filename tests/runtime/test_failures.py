@@ -40,7 +40,7 @@ async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None
     await graph.clock.advance(0.1)
 
     with pytest.raises(TooManyErrors, match=r"21 errors of handlers within 10 s, the last in failing: ValueError: aga"):
-        await core_of(node).wait_ended()
+        await node.wait_ended()
 
 
 async def test_rare_errors_are_borne_for_ever(graph: Graph) -> None:

@@ -9,7 +9,6 @@ import pytest
 from graphflow import Node, Publisher, ServiceUnavailable, service, task
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.runtime.core import core_of
 from graphflow.testing import Graph, ManualClock, Tap
 from graphflow.testing.graph import TRANSIENT_LOCAL
 
@@ -159,7 +158,7 @@ def test_a_failed_node_fails_its_test(graphflow_runner: asyncio.Runner, taken: b
         await graph.start(broken, other)
         if taken:
             with pytest.raises(ValueError, match="broken"):
-                await core_of(broken).wait_ended()
+                await broken.wait_ended()
         await graph.close()
 
     if taken:
