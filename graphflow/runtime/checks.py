@@ -34,7 +34,8 @@ def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
             hint = "; give the service's class, as in AddTwoInts, not its Request"
         elif isinstance(type_, str):
             hint = "; the type comes first, then the name"
-        raise DeclarationError(f"{place}: {what} needs a {kind.__name__.lower()} class, not {type_!r}{hint}")
+        wanted = f"{'an' if kind is base.Action else 'a'} {kind.__name__.lower()} class"
+        raise DeclarationError(f"{place}: {what} needs {wanted}, not {type_!r}{hint}")
 
 
 def check_name(name: Any, what: str, place: Place) -> None:
