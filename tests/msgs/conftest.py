@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -41,3 +41,8 @@ def save(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Save:
         return file
 
     return save
+
+
+def make(name: str, **fields: Any) -> Any:
+    """A message by the name of its type."""
+    return registry.interface_class(name)(**fields)

@@ -1,4 +1,4 @@
-"""Actions: goals accepted, run, cancelled, pre-empted and remembered, as their clients see it."""
+"""Actions: goals accepted, run, cancelled, pre-empted and remembered."""
 
 from __future__ import annotations
 
@@ -8,90 +8,23 @@ from typing import Any
 
 import pytest
 
-from graphflow import (
-    Abort,
-    ActionClient,
-    GoalAborted,
-    GoalCanceled,
-    GoalLost,
-    GoalRejected,
-    GoalStatus,
-    Group,
-    Node,
-    ServiceUnavailable,
-    action,
-    task,
-)
-from graphflow.errors import EncodeError
+from graphflow import Abort, GoalAborted, GoalCanceled, GoalRejected, GoalStatus, Group, Node, action
 from graphflow.interface import GoalPolicy
 from graphflow.machines.goal import GoalEvent
 from graphflow.msgs.action_msgs.msg import GoalStatusArray
 from graphflow.msgs.action_msgs.srv import CancelGoal
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.registry import interface_class
-from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from tests.runtime.cast import Log
-
-Goal = ClientGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
-
-
-class Asker(Node):
-    fibonacci = ActionClient(Fibonacci, "fibonacci")
-
-    async def order(self, order: int) -> Goal:
-        return await self.fibonacci.send_goal(Fibonacci.Goal(order=order))
-
-
-class Server(Node):
-    """Counts like rabbits, one generation a second, until cancelled."""
-
-    rabbits = Group(None)
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(**options)
-        self.told = Log()
-        self.bodies = 0
-
-    def fits(self, goal: Fibonacci.Goal) -> bool:
-        if goal.order == 13:
-            raise ValueError("unlucky")
-        return goal.order < 100
-
-    def may_end(self, goal: Fibonacci.Handle) -> bool:
-        return goal.request.order != 7
-
-    @action(Fibonacci, "fibonacci", group=rabbits, accept=fits, cancellable=may_end)
-    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
-        sequence = [0, 1]
-        self.bodies += 1
-        assert self.bodies == 1
-        try:
-            while len(sequence) < goal.request.order:
-                await self.clock.sleep(1.0)
-                sequence.append(sequence[-1] + sequence[-2])
-                goal.feedback(Fibonacci.Feedback(sequence=sequence.copy()))
-                goal.partial = Fibonacci.Result(sequence=sequence.copy())
-            return Fibonacci.Result(sequence=sequence)
-        except asyncio.CancelledError as error:
-            self.told(str(error))
-            raise
-        finally:
-            self.bodies -= 1
+from tests.runtime.cast import Log, pair
 
 
 def at_work(server: Node) -> ActionServer[Any, Any, Any]:
     [found] = [part for part in core_of(server)._parts if isinstance(part, ActionServer)]
     return found
-
-
-async def pair(graph: Graph, server: Node | None = None) -> tuple[Any, Asker]:
-    made, asker = server or Server(), Asker()
-    await graph.start(made, asker)
-    return made, asker
 
 
 async def test_a_goal_succeeds(graph: Graph) -> None:
@@ -114,57 +47,6 @@ async def test_a_goal_succeeds(graph: Graph) -> None:
     assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
     assert result == [[0, 1, 1, 2, 3]]
     assert [[s.status for s in m.status_list] for m in states if m.status_list] == [[1], [2], [4]]
-
-
-async def test_leaving_the_block_cancels(graph: Graph) -> None:
-    """The body gets CancelledError once, and the client the partial result."""
-    server, asker = await pair(graph)
-    ended = Log()
-
-    async def give_up() -> None:
-        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
-            async for _ in goal.feedback():
-                break
-        ended(goal.status)
-        with pytest.raises(GoalCanceled) as caught:
-            await goal.result()
-        ended(list(caught.value.result.sequence))  # type: ignore[attr-defined]
-
-    giving_up = asyncio.ensure_future(give_up())
-    await graph.clock.advance(1.0)
-    await giving_up
-
-    assert ended == [GoalStatus.CANCELED, [0, 1, 1]]
-    assert server.told == ["cancel requested"]
-    assert server.bodies == 0
-
-
-async def test_a_client_that_is_cancelled_cancels_its_goal_first(graph: Graph) -> None:
-    """Then the cancellation goes on its way."""
-    server, asker = await pair(graph)
-
-    async def follow() -> None:
-        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
-            await goal.result()
-
-    following = asyncio.ensure_future(follow())
-    await graph.clock.advance(1.0)
-    following.cancel()
-    with pytest.raises(asyncio.CancelledError):
-        await following
-
-    assert server.told == ["cancel requested"]
-
-
-async def test_a_detached_goal_goes_on(graph: Graph) -> None:
-    """Whoever says so may leave its block."""
-    server, asker = await pair(graph)
-    async with asker.fibonacci.send(Fibonacci.Goal(order=4), detach=True) as goal:
-        assert goal.status is GoalStatus.ACCEPTED
-    await graph.clock.advance(2.0)
-
-    assert list((await goal.result()).sequence) == [0, 1, 1, 2]
-    assert server.told == []
 
 
 @pytest.mark.parametrize("order", [100, 13])
@@ -415,20 +297,6 @@ async def test_a_server_that_stops_aborts_its_goals(graph: Graph) -> None:
     assert [goal.status.name for goal in goals] == ["ABORTED", "ABORTED"]
 
 
-async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
-    """The client is told that nobody knows how they ended; nothing waits for ever."""
-    server, asker = await pair(graph)
-    goal = await asker.order(50)
-    await graph.settle()
-    for endpoint in core_of(server)._parts[-1].endpoints:
-        endpoint.close()
-    await graph.clock.advance(1.0)
-
-    assert goal.status is GoalStatus.LOST
-    with pytest.raises(GoalLost, match="the server has gone, and with it the goal, last known as EXECUTING"):
-        await goal.result()
-
-
 @pytest.mark.parametrize(("on_client_loss", "status"), [("continue", 2), ("cancel", 5)])
 async def test_a_client_that_dies(graph: Graph, on_client_loss: str, status: int) -> None:
     """Its goal goes on or is cancelled, after a while in which it could have come back."""
@@ -443,21 +311,6 @@ async def test_a_client_that_dies(graph: Graph, on_client_loss: str, status: int
 
     assert handle.goal_id == goal.goal_id
     assert handle.status == status
-
-
-async def test_no_server_and_another_type(graph: Graph) -> None:
-    """The error says what is missing, and who is near."""
-    asker = Asker()
-    other = Node("other")
-    other.create_action_server(Fibonacci, "fibonaci", print)
-    await graph.start(other, asker)
-    sending = asyncio.ensure_future(asker.order(1))
-    await graph.clock.advance(1.0)
-
-    with pytest.raises(ServiceUnavailable, match=r"nobody offers the action /fibonacci .*did you mean '/fibonaci'"):
-        await sending
-    with pytest.raises(EncodeError, match=r"takes .*Fibonacci_Goal, not"):
-        await asker.fibonacci.send_goal(Fibonacci.Result())  # type: ignore[arg-type]
 
 
 async def test_a_blocking_body_in_a_thread_polls_for_its_cancellation(graph: Graph) -> None:
@@ -477,39 +330,6 @@ async def test_a_blocking_body_in_a_thread_polls_for_its_cancellation(graph: Gra
     await begun.wait()
     assert await goal.cancel()
     with pytest.raises(GoalCanceled):
-        await goal.result()
-
-
-async def test_a_node_may_send_a_goal_to_itself(graph: Graph) -> None:
-    """From a task, with the goal's body in whatever group."""
-
-    class Both(Server):
-        mine = ActionClient(Fibonacci, "fibonacci")
-
-        @task
-        async def ask(self) -> None:
-            async with self.mine.send(Fibonacci.Goal(order=3)) as goal:
-                self.told(list((await goal.result()).sequence))
-
-    both = Both()
-    await graph.start(both)
-    await graph.clock.advance(1.0)
-
-    assert both.told == [[0, 1, 1]]
-
-
-async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The server is there, and the client is told what is wrong with it."""
-
-    def broken(*_: Any) -> None:
-        raise LookupError("mislaid")
-
-    monkeypatch.setattr(ActionServer, "_get_result", broken)
-    _, asker = await pair(graph)
-    goal = await asker.order(3)
-    await graph.clock.advance(1.0)
-
-    with pytest.raises(GoalLost, match="result cannot be had, last known as EXECUTING"):
         await goal.result()
 
 

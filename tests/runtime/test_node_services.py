@@ -1,4 +1,4 @@
-"""Type descriptions, logger levels, and what is told of service calls."""
+"""Type descriptions and logger levels."""
 
 from __future__ import annotations
 
@@ -7,33 +7,16 @@ from typing import Any
 
 import pytest
 
-from graphflow import Client, Node, RemoteError, service
+from graphflow import Node
 from graphflow.msgs import registry
-from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.geometry_msgs.msg import PoseStamped
 from graphflow.msgs.rcl_interfaces.msg import LoggerLevel
 from graphflow.msgs.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from graphflow.msgs.type_description_interfaces.msg import TypeDescription
 from graphflow.msgs.type_description_interfaces.srv import GetTypeDescription
-from graphflow.runtime.services import ServiceServer
 from graphflow.testing import Graph
 from graphflow.wire import typehash
-
-
-class Adder(Node):
-    """Adds, and tells of it."""
-
-    @service(AddTwoInts, "add", introspection="contents")
-    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-        if request.a < 0:
-            raise ValueError("too small")
-        return AddTwoInts.Response(sum=request.a + request.b)
-
-
-class Asker(Node):
-    """Calls, and tells that it did."""
-
-    adder = Client(AddTwoInts, "add", introspection="metadata")
+from tests.runtime.cast import Adder
 
 
 async def describe(graph: Graph, node: str, name: str, hash_: str = "") -> Any:
@@ -114,54 +97,3 @@ async def test_logger_levels_are_read_and_set(graph: Graph) -> None:
     finally:
         for logger in (node.log, node.log.getChild("hand")):
             logger.setLevel(logging.NOTSET)
-
-
-def event_rows(tap: Any) -> list[Any]:
-    return [
-        (e.info.event_type, e.info.sequence_number, [r.a for r in e.request], [r.sum for r in e.response]) for e in tap
-    ]
-
-
-async def test_both_sides_of_a_call_are_told(graph: Graph) -> None:
-    """Request and response, sent and received, with the client's GID and number; contents where they are asked for."""
-    adder, asker = Adder(), Asker()
-    tap = graph.tap(AddTwoInts.Event, "/add/_service_event")
-    await graph.start(adder, asker)
-    await asker.adder.call(AddTwoInts.Request(a=2, b=3))
-    with pytest.raises(RemoteError):
-        await asker.adder.call(AddTwoInts.Request(a=-1))
-    await graph.settle()
-
-    assert sorted(event_rows(tap)) == sorted(
-        [
-            (0, 1, [], []),
-            (1, 1, [2], []),
-            (2, 1, [], [5]),
-            (3, 1, [], []),
-            (0, 2, [], []),
-            (1, 2, [-1], []),
-        ]
-    )
-    assert asker.adder.entity is not None
-    assert {bytes(e.info.client_gid) for e in tap} == {asker.adder.entity.gid}
-
-
-async def test_introspection_is_off_by_default_and_can_be_switched(graph: Graph) -> None:
-    """Nothing is announced or published until it is asked for, and again nothing after."""
-    node = Node("node")
-    server: ServiceServer[Any, Any] = node.create_service(AddTwoInts, "add", lambda r: AddTwoInts.Response(sum=1))
-    await graph.start(node)
-    tap = graph.tap(AddTwoInts.Event, "/add/_service_event")
-    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
-    assert not tap
-
-    server.configure_introspection("metadata")
-    await graph.settle()
-    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
-    assert [row[0] for row in event_rows(tap)] == [1, 2]
-
-    server.configure_introspection("off")
-    await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
-    assert len(tap) == 2
-    with pytest.raises(ValueError, match="introspection is off, metadata or contents, not 'on'"):
-        server.configure_introspection("on")  # type: ignore[arg-type]

@@ -9,13 +9,11 @@ from pathlib import Path
 import pytest
 import trustme
 
-from tests.conftest import Machine, Program
+from tests.conftest import PROJECT, Machine, Program
 from tests.network.hosts import Hosts, why_not
 
-pytestmark = pytest.mark.real
-
 NEAR = "nodes:\n  /draw_circle: {class: nodes.draw_circle:DrawCircle}\n"
-ROUTER = str(Path(__file__).with_name("rmw_router.py"))
+ROUTER = str(PROJECT / "tests/network/rmw_router.py")
 SPEAKER = """
 from graphflow import Node, Publisher, Qos, Durability, service
 from graphflow.msgs.std_msgs.msg import String
@@ -87,6 +85,7 @@ def reaches(machine: Machine, node: str) -> bool:
     return node in machine.run("node", "list", code=None).split()
 
 
+@pytest.mark.real
 def test_data_services_and_parameters_both_ways(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """50 ms away and with every fiftieth packet lost, either side's nodes are as the other's own."""
     hosts.delay, hosts.loss = 0.05, 0.02
@@ -109,6 +108,7 @@ def test_data_services_and_parameters_both_ways(hosts: Hosts, near: Machine, far
     assert graph.end() == 0
 
 
+@pytest.mark.real
 def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """With the cable cut the graph runs on and says so; mended, both sides find each other again."""
     hosts.delay = 0.05
@@ -130,6 +130,7 @@ def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, t
     assert graph.end() == 0
 
 
+@pytest.mark.real
 def test_what_a_latched_topic_said_meanwhile_is_heard(
     hosts: Hosts, near: Machine, far: Machine, tmp_path: Path
 ) -> None:
@@ -155,6 +156,7 @@ def test_what_a_latched_topic_said_meanwhile_is_heard(
     assert [line for line in echo.text.splitlines() if "word" in line] == [f"data: word {n}" for n in (1, 2, 3)]
 
 
+@pytest.mark.real
 def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """The graph starts without it, and says that nobody answers; then the robot is switched on."""
     endpoint = f"tcp/{hosts.far.address}:7447"
@@ -167,6 +169,7 @@ def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far
     assert graph.end() == 0
 
 
+@pytest.mark.real
 def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: Machine, far: Machine) -> None:
     """On a laptop where nothing runs, every verb takes --connect."""
     start_robot(far)
@@ -179,6 +182,7 @@ def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: 
     assert "nor where --connect or --net point to" in text
 
 
+@pytest.mark.real
 def test_other_users_of_other_machines_are_no_strangers(hosts: Hosts, near: Machine, far: Machine) -> None:
     """A graphflow rendezvous on the robot belongs to the robot's user, whoever that is, and is linked all the same."""
     far.start("run", "nodes.turtlesim:TurtleSim").wait_for("Spawning")
@@ -214,6 +218,7 @@ def profile(folder: Path, name: str, ca: trustme.CA, address: str, *, listen: st
     return str(path)
 
 
+@pytest.mark.real
 def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     hosts: Hosts, near: Machine, far: Machine, tmp_path: Path
 ) -> None:

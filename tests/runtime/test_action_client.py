@@ -1,0 +1,129 @@
+"""Goals at their client: followed, left, and lost."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from graphflow import ActionClient, GoalCanceled, GoalLost, GoalStatus, Node, ServiceUnavailable, task
+from graphflow.errors import EncodeError
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.runtime.actions import ActionServer
+from graphflow.runtime.node import core_of
+from graphflow.testing import Graph
+from tests.runtime.cast import Asker, Log, Server, pair
+
+
+async def test_leaving_the_block_cancels(graph: Graph) -> None:
+    """The body gets CancelledError once, and the client the partial result."""
+    server, asker = await pair(graph)
+    ended = Log()
+
+    async def give_up() -> None:
+        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
+            async for _ in goal.feedback():
+                break
+        ended(goal.status)
+        with pytest.raises(GoalCanceled) as caught:
+            await goal.result()
+        ended(list(caught.value.result.sequence))  # type: ignore[attr-defined]
+
+    giving_up = asyncio.ensure_future(give_up())
+    await graph.clock.advance(1.0)
+    await giving_up
+
+    assert ended == [GoalStatus.CANCELED, [0, 1, 1]]
+    assert server.told == ["cancel requested"]
+    assert server.bodies == 0
+
+
+async def test_a_client_that_is_cancelled_cancels_its_goal_first(graph: Graph) -> None:
+    """Then the cancellation goes on its way."""
+    server, asker = await pair(graph)
+
+    async def follow() -> None:
+        async with asker.fibonacci.send(Fibonacci.Goal(order=50)) as goal:
+            await goal.result()
+
+    following = asyncio.ensure_future(follow())
+    await graph.clock.advance(1.0)
+    following.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await following
+
+    assert server.told == ["cancel requested"]
+
+
+async def test_a_detached_goal_goes_on(graph: Graph) -> None:
+    """Whoever says so may leave its block."""
+    server, asker = await pair(graph)
+    async with asker.fibonacci.send(Fibonacci.Goal(order=4), detach=True) as goal:
+        assert goal.status is GoalStatus.ACCEPTED
+    await graph.clock.advance(2.0)
+
+    assert list((await goal.result()).sequence) == [0, 1, 1, 2]
+    assert server.told == []
+
+
+async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
+    """The client is told that nobody knows how they ended; nothing waits for ever."""
+    server, asker = await pair(graph)
+    goal = await asker.order(50)
+    await graph.settle()
+    for endpoint in core_of(server)._parts[-1].endpoints:
+        endpoint.close()
+    await graph.clock.advance(1.0)
+
+    assert goal.status is GoalStatus.LOST
+    with pytest.raises(GoalLost, match="the server has gone, and with it the goal, last known as EXECUTING"):
+        await goal.result()
+
+
+async def test_no_server_and_another_type(graph: Graph) -> None:
+    """The error says what is missing, and who is near."""
+    asker = Asker()
+    other = Node("other")
+    other.create_action_server(Fibonacci, "fibonaci", print)
+    await graph.start(other, asker)
+    sending = asyncio.ensure_future(asker.order(1))
+    await graph.clock.advance(1.0)
+
+    with pytest.raises(ServiceUnavailable, match=r"nobody offers the action /fibonacci .*did you mean '/fibonaci'"):
+        await sending
+    with pytest.raises(EncodeError, match=r"takes .*Fibonacci_Goal, not"):
+        await asker.fibonacci.send_goal(Fibonacci.Result())  # type: ignore[arg-type]
+
+
+async def test_a_node_may_send_a_goal_to_itself(graph: Graph) -> None:
+    """From a task, with the goal's body in whatever group."""
+
+    class Both(Server):
+        mine = ActionClient(Fibonacci, "fibonacci")
+
+        @task
+        async def ask(self) -> None:
+            async with self.mine.send(Fibonacci.Goal(order=3)) as goal:
+                self.told(list((await goal.result()).sequence))
+
+    both = Both()
+    await graph.start(both)
+    await graph.clock.advance(1.0)
+
+    assert both.told == [[0, 1, 1]]
+
+
+async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The server is there, and the client is told what is wrong with it."""
+
+    def broken(*_: Any) -> None:
+        raise LookupError("mislaid")
+
+    monkeypatch.setattr(ActionServer, "_get_result", broken)
+    _, asker = await pair(graph)
+    goal = await asker.order(3)
+    await graph.clock.advance(1.0)
+
+    with pytest.raises(GoalLost, match="result cannot be had, last known as EXECUTING"):
+        await goal.result()

@@ -1,0 +1,143 @@
+"""What a node class does, by decorated methods."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from collections.abc import AsyncIterator, Callable, Iterator
+from typing import Any
+
+import pytest
+
+from graphflow import Group, Node, Param, Qos, TimerInfo, action, service, subscription, task, timer
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph
+from tests.runtime.cast import anything, names_of, refusal_of
+
+
+async def of_self(self: Any) -> None: ...
+async def of_two(self: Any, one: Any) -> None: ...
+async def of_three(self: Any, one: Any, two: Any) -> None: ...
+async def of_none() -> None: ...
+def plain(self: Any) -> None: ...
+def plain_of_two(self: Any, one: Any) -> None: ...
+
+
+def of_four(self: Any, one: Any, two: Any, three: Any) -> None:
+    """Take three arguments too many."""
+
+
+def generates(self: Any, one: Any) -> Iterator[int]:
+    yield 1
+
+
+async def generates_later(self: Any, one: Any) -> AsyncIterator[int]:
+    yield 1
+
+
+# One mistake a line: the error is to name that line.
+# fmt: off
+MISTAKES: list[tuple[Callable[[], object], str]] = [
+    (lambda: subscription(anything("chatter"), anything(String)), "@subscription needs a message class, not 'chatter'"),
+    (lambda: subscription(String, "a-b"), "@subscription: 'a-b' is no topic or service name"),
+    (lambda: subscription(String, "x", depth=-2), "a queue depth cannot be -2"),
+    (lambda: subscription(String, "x", group=anything("io")), "group= takes a Group, not 'io'"),
+    (lambda: subscription(String, "x", group=anything(Group)), "group= takes a Group, not <class"),
+    (lambda: timer(0.1, group=anything(1)), "group= takes a Group, not 1"),
+    (lambda: service(AddTwoInts, "x", group=anything(1)), "group= takes a Group, not 1"),
+    (lambda: timer(), "@timer: give a period in seconds or hz=, one of them"),
+    (lambda: timer(0.1, hz=10), "@timer: give a period in seconds or hz=, one of them"),
+    (lambda: timer(0.0), "@timer: a period must be a positive number, not 0.0"),
+    (lambda: timer(hz=-1), "@timer: hz must be a positive number, not -1"),
+    (lambda: timer(anything("fast")), "@timer: could not convert string to float: 'fast'"),
+    (lambda: timer(hz=Param(0.0)), "@timer: hz must be a positive number, not 0.0"),
+    (lambda: timer(hz=Param("often")), "@timer: could not convert string to float: 'often'"),
+    (lambda: timer(anything(of_self)), "write @timer(0.5) or @timer(hz=2.0), with a period"),
+    (lambda: service(anything(String), "x"), "@service needs a service class, not <class"),
+    (lambda: service(anything(AddTwoInts.Response), "x"), "give the service's class, as in AddTwoInts"),
+    (lambda: service(AddTwoInts, "x y"), "@service: 'x y' is no topic or service name"),
+    (lambda: task(anything(plain)), "@task goes on an `async def` method, without parentheses"),
+    (lambda: task(of_two), "of_two must take self, not (self, one)"),
+    (lambda: subscription(String, "x")(of_self), "of_self must take self and one argument or self and two arguments"),
+    (lambda: subscription(String, "x")(of_four), "of_four must take self and one argument or self and two"),
+    (lambda: service(AddTwoInts, "x")(of_three), "of_three must take self and one argument, not (self, one"),
+    (lambda: subscription(String, "x", on_event=anything("heard")), "@subscription: on_event= takes a method def"),
+    (lambda: subscription(String, "x", thread=True)(of_two), "of_two: thread=True is for `def`, an `async def` runs"),
+    (lambda: subscription(String, "x")(anything(staticmethod(of_self))), "@subscription goes on a method, not on <s"),
+    (lambda: subscription(String, "x")(anything(String)), "@subscription goes on a method, not on <class"),
+    (lambda: subscription(String, "x")(generates), "generates has a yield in it, so that its body would never run"),
+    (lambda: subscription(String, "x")(generates_later), "generates_later has a yield in it"),
+    (lambda: timer(0.1)(of_none), "of_none must take self or self and one argument, not ()"),
+    (lambda: timer(0.1)(of_three), "of_three must take self or self and one argument, not (self, one, two)"),
+    (lambda: service(AddTwoInts, "x")(plain), "plain must take self and one argument, not (self); it gets the request"),
+    (lambda: timer(0.2)(timer(0.1)(lambda self: None)), "<lambda> is declared twice, as @timer"),
+    (lambda: subscription(String, "x", Qos(), depth=5), "give a Qos or a depth, not both: Qos(depth=5"),
+    (lambda: subscription(String, "x", on_error=anything("shrug")), "on_error is one of budget, log, end, not 'shrug'"),
+    (lambda: timer(1.0, on_error=anything("shrug")), "on_error is one of budget, log, end, not 'shrug'"),
+    (lambda: action(anything(AddTwoInts), "x"), "@action needs an action class, not <class"),
+    (lambda: action(Fibonacci, "x", policy=anything("push")), "policy is one of reject, queue, preempt, parallel"),
+    (lambda: action(Fibonacci, "x", on_client_loss=anything("weep")), "on_client_loss is one of continue, cancel"),
+    (lambda: action(Fibonacci, "x", accept=anything("all")), "@action: accept= takes a method defined above"),
+    (lambda: action(Fibonacci, "x", cancellable=anything(1)), "@action: cancellable= takes a method"),
+    (lambda: action(Fibonacci, "x", cleanup_timeout=0.0), "cleanup_timeout is a number of seconds, more"),
+    (lambda: action(Fibonacci, "x", thread=True)(of_two), "of_two: thread=True is for `def`, an `async def` runs"),
+]
+# fmt: on
+
+
+@pytest.mark.parametrize(("make", "text"), MISTAKES, ids=[text[:50] for _, text in MISTAKES])
+def test_a_wrong_handler_names_its_place(make: Callable[[], object], text: str) -> None:
+    """It fails where it is written, with file, line and what would be right."""
+    assert text in refusal_of(make)
+
+
+def test_decorators_return_the_function() -> None:
+    """A handler can be called as if it were not one."""
+
+    async def handler(self: Any, message: Any) -> None: ...
+
+    assert subscription(String, "x")(handler) is handler
+    assert inspect.iscoroutinefunction(handler)
+
+
+def test_optional_arguments_do_not_count() -> None:
+    """A handler may have more arguments that need not be given."""
+
+    class Lenient(Node):
+        @subscription(String, "x")
+        async def heard(self, message: String, loudly: bool = False) -> None: ...
+
+        @timer(1.0)
+        async def tick(self, extra: int = 0) -> None: ...
+
+    assert names_of(Lenient.interface()) == ("heard", "tick")
+
+
+async def test_a_timer_may_take_info_or_not(graph: Graph) -> None:
+    """What it takes is told by its arguments."""
+    seen: list[Any] = []
+    done = asyncio.Event()
+    loop = asyncio.get_running_loop()
+
+    class Timers(Node):
+        @timer(1.0)
+        async def without(self) -> None:
+            seen.append(None)
+
+        @timer(1.0)
+        def with_info(self, info: TimerInfo) -> None:
+            seen.append(info)
+
+        @timer(1.0, thread=True)
+        def in_thread(self, info: TimerInfo) -> None:
+            seen.append(info)
+            loop.call_soon_threadsafe(done.set)
+
+    await graph.start(Timers())
+    await graph.clock.advance(1.0)
+    await done.wait()
+
+    info = TimerInfo(1_000_000_000, 1_000_000_000, 0)
+    assert sorted(map(str, seen)) == sorted(map(str, [None, info, info]))

@@ -1,0 +1,110 @@
+"""What a class declares, as data: parameters and the values that fit them, and the way into JSON and back."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from graphflow import ParameterError
+from graphflow.errors import Place
+from graphflow.interface import Parameter, ParamType
+
+
+def parameter(type_: ParamType, default: Any, **limits: Any) -> Parameter:
+    return Parameter("p", type_, default, Place("here", 1), **limits)
+
+
+@pytest.mark.parametrize(
+    ("type_", "default", "given", "kept"),
+    [
+        ("float", 1.0, 2, 2.0),
+        ("list[float]", [1.0], [1, 2.5], [1.0, 2.5]),
+        ("list[float]", [1.0], (1, 2), [1.0, 2.0]),
+        ("list[int]", [1], [], []),
+        ("bytes", b"", bytearray(b"ab"), b"ab"),
+        ("bool", False, True, True),
+        ("list[str]", ["a"], ["b", "c"], ["b", "c"]),
+        ("int", 0, -(2**63), -(2**63)),
+    ],
+)
+def test_values_that_fit(type_: ParamType, default: Any, given: Any, kept: Any) -> None:
+    """Integers widen to floats and sequences to lists; the Python type is always the declared one."""
+    fitted = parameter(type_, default).fit(given)
+
+    assert fitted == kept
+    assert type(fitted) is type(kept)
+    if isinstance(kept, list):
+        assert [type(v) for v in fitted] == [type(v) for v in kept]
+
+
+@pytest.mark.parametrize(
+    ("type_", "default", "given", "text"),
+    [
+        ("int", 1, 1.5, "parameter 'p' is of type integer, 1.5 is not"),
+        ("int", 1, True, "parameter 'p' is of type integer, True is not"),
+        ("int", 1, 2**63, "parameter 'p' is of type integer, 9223372036854775808 is not"),
+        ("float", 1.0, "1", "parameter 'p' is of type double, '1' is not"),
+        ("float", 1.0, True, "parameter 'p' is of type double, True is not"),
+        ("bool", True, 1, "parameter 'p' is of type boolean, 1 is not"),
+        ("str", "", 1, "parameter 'p' is of type string, 1 is not"),
+        ("str", "", None, "parameter 'p' is of type string, None is not"),
+        ("list[int]", [1], [1, 2.5], "parameter 'p' is of type integer array, 2.5 is not"),
+        ("list[int]", [1], 1, "parameter 'p' is of type integer array, 1 is not"),
+        ("list[str]", ["a"], {"a": 1}, "parameter 'p' is of type string array, {'a': 1} is not"),
+    ],
+)
+def test_values_of_another_type(type_: ParamType, default: Any, given: Any, text: str) -> None:
+    """The error has name, type and value."""
+    with pytest.raises(ParameterError) as caught:
+        parameter(type_, default).fit(given)
+
+    assert str(caught.value) == text
+
+
+@pytest.mark.parametrize(
+    ("limits", "inside", "outside", "text"),
+    [
+        ({"ge": 0, "le": 5}, [0, 5, 2.5], [-0.1, 5.1, math.nan], "0 to 5"),
+        ({"gt": 0}, [0.001], [0, -1, math.nan], "more than 0"),
+        ({"lt": 1}, [0.999], [1, 2], "less than 1"),
+        ({"ge": 2}, [2, math.inf], [1.9], "at least 2"),
+        ({"le": 2}, [2, -math.inf], [2.1], "at most 2"),
+        ({"gt": 0, "le": 100}, [0.1, 100], [0, 101], "more than 0 and at most 100"),
+    ],
+)
+def test_ranges(limits: dict[str, float], inside: list[float], outside: list[float], text: str) -> None:
+    """Limits are inclusive unless they are called gt and lt; the error names the range and the unit."""
+    made = parameter("float", inside[0], unit="m", **limits)
+    for value in inside:
+        assert made.fit(value) == value
+    for value in outside:
+        with pytest.raises(ParameterError, match=f"parameter 'p' = .* is out of range: {text} m$"):
+            made.fit(value)
+
+
+def test_a_range_holds_for_every_element() -> None:
+    """A list is as wrong as its worst element."""
+    with pytest.raises(ParameterError, match="'p' = 10 is out of range: 0 to 9"):
+        parameter("list[int]", [1, 2], ge=0, le=9).fit([1, 10])
+
+
+@pytest.mark.parametrize(
+    ("type_", "limits", "inside", "outside"),
+    [
+        ("int", {"ge": 0, "le": 10, "step": 3}, [0, 3, 9, 10], [1, 8]),
+        ("int", {"step": 5}, [0, -5, 100], [3]),
+        ("float", {"ge": 1.0, "le": 2.0, "step": 0.1}, [1.0, 1.1, 1.7000000000000002, 2.0], [1.05, 1.99]),
+        ("float", {"step": 0.25}, [0.25, -1.5, math.inf], [0.3]),
+        ("list[int]", {"ge": 1, "step": 2}, [[1, 3], []], [[1, 2]]),
+    ],
+)
+def test_steps(type_: ParamType, limits: dict[str, float], inside: list[Any], outside: list[Any]) -> None:
+    """Values are the lower limit and multiples of the step more; both limits are always allowed."""
+    made = parameter(type_, inside[0], **limits)
+    for value in inside:
+        assert made.fit(value) == value
+    for value in outside:
+        with pytest.raises(ParameterError, match=r"is not a valid step: .* and multiples of"):
+            made.fit(value)
