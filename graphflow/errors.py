@@ -2,7 +2,7 @@
 
 GraphflowError
 |-- DeclarationError          a node class is declared wrongly (raised when it is imported)
-|-- InvalidName                a topic, service or node name, or a remap rule, is not a legal one
+|-- InvalidName               a topic, service or node name, or a remap rule, is not a legal one
 |-- InterfaceError            a .msg, .srv or .action definition is missing or wrong
 |   `-- UnknownInterface      nothing is called that; the text names the nearest
 |-- EncodeError               a message holds a value that its type cannot carry
@@ -13,6 +13,8 @@ GraphflowError
 |-- ClosedError               you closed it and then used it
 |-- TooManyErrors             a node's handlers have failed too often; it ends
 |-- SupervisorError           a graph could not be started, or is not running
+|-- NoModule                  a node class is looked for in a module that is not there
+|-- UsageFault                the words on the command line are wrong
 |-- Abort                     what an action's handler raises to end its goal as aborted
 |-- GoalError                 a goal ended without success
 |   |-- GoalRejected          the server did not take it
@@ -89,6 +91,22 @@ class SupervisorError(GraphflowError):
     def __init__(self, message: str, exit_code: int = 1) -> None:
         super().__init__(message)
         self.exit_code = exit_code
+
+
+class NoModule(GraphflowError):
+    """A node class is looked for in a module that is not there.
+
+    Attributes:
+        module: The first part of its path that was not found.
+    """
+
+    def __init__(self, message: str, module: str) -> None:
+        super().__init__(message)
+        self.module = module
+
+
+class UsageFault(GraphflowError):
+    """The words on the command line are wrong."""
 
 
 class Place(NamedTuple):

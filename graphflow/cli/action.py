@@ -5,10 +5,10 @@ from __future__ import annotations
 import click
 
 from graphflow.cli import output
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import agree, use_project
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
+from graphflow.errors import UsageFault
 from graphflow.introspect.view import View
 from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE
 from graphflow.names import did_you_mean, expand

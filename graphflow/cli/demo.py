@@ -16,6 +16,7 @@ from typing import IO, NamedTuple
 import click
 
 from graphflow.cli import exits, output
+from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
 
@@ -65,7 +66,7 @@ def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
         return exits.OK
     for name in steps:
         if name not in known:
-            raise exits.UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list has all'}")
+            raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list has all'}")
     from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 

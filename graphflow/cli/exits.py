@@ -10,13 +10,10 @@ from graphflow.errors import (
     InterfaceError,
     InvalidName,
     SupervisorError,
+    UsageFault,
 )
 
 OK, FAILED, USAGE, NOT_RUNNING, TIMEOUT = range(5)
-
-
-class UsageFault(GraphflowError):
-    """The words on the command line are wrong."""
 
 
 def exit_code(error: GraphflowError) -> int:

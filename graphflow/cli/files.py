@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
 

@@ -12,7 +12,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.files import find_graph
 from graphflow.cli.reaching import reach, reach_options
-from graphflow.errors import SupervisorError
+from graphflow.errors import SupervisorError, UsageFault
 from graphflow.wire.profile import PROFILES, VARIABLE
 
 GONE_LIMIT = 10.0
@@ -210,7 +210,7 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
     wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
     for node in wanted:
         if node not in files:
-            raise exits.UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
+            raise UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
     reader = LogReader([files[n] for n in wanted], width=max(map(len, wanted), default=0))
     reader.show(last=lines)
     while follow and alive:

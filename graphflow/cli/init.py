@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from graphflow.cli import output
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import UsageFault
 
 _FILES = {
     "pyproject.toml": """\

@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import use_project
+from graphflow.errors import UsageFault
 
 
 @click.group()

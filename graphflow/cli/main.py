@@ -13,7 +13,7 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
-from graphflow.errors import GraphflowError
+from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import did_you_mean, nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
@@ -89,7 +89,7 @@ def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str
     try:
         wire_profile()
     except GraphflowError as error:  # a misspelt variable is told before anything is done
-        raise exits.UsageFault(str(error)) from None
+        raise UsageFault(str(error)) from None
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:

@@ -10,7 +10,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.words import ValueCommand
 from graphflow.domain import domain_id
-from graphflow.errors import CallError, GraphflowError
+from graphflow.errors import CallError, GraphflowError, UsageFault
 from graphflow.introspect.parameters import RemoteParameters
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
@@ -196,7 +196,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
         node = view.node(name)
         fitting = [s for s in sections if s.fits(node) and (s.is_exact or not no_use_wildcard)]
         if not fitting:
-            raise exits.UsageFault(f"{file} has nothing for {node}{did_you_mean(node, [s.pattern for s in sections])}")
+            raise UsageFault(f"{file} has nothing for {node}{did_you_mean(node, [s.pattern for s in sections])}")
         failed = _load(RemoteParameters(view, node, timeout), params_file.params_for(fitting, node))
     return exits.FAILED if failed else exits.OK
 
@@ -254,7 +254,7 @@ def read_value(text: str, type_: int) -> Any:
     try:
         value = parse_value(text)
     except GraphflowError as error:
-        raise exits.UsageFault(str(error)) from None
+        raise UsageFault(str(error)) from None
     return _as_declared(value, type_)
 
 

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import UsageFault
 
 F = TypeVar("F", bound=Callable[..., Any])
 

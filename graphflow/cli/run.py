@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from graphflow.cli import output
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import GraphflowError, NoModule, UsageFault
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
@@ -25,7 +25,6 @@ def run(class_path: str, words: tuple[str, ...]) -> None:
     -p name:=value  set a parameter
     """  # noqa: D301 - click wants the character
     from graphflow.domain import domain_id
-    from graphflow.errors import GraphflowError
     from graphflow.introspect.view import refuse_taken_names
     from graphflow.names import Resolver
     from graphflow.runtime.args import parse_ros_args
@@ -47,9 +46,8 @@ def _import(class_path: str) -> type[Node]:
     """The class, from the project around the working directory or else from those that come with graphflow."""
     from inspect import getfile
 
-    from graphflow.errors import GraphflowError
     from graphflow.graph.project import demos_root, project_root
-    from graphflow.supervisor.classes import NoModule, add_root, import_class
+    from graphflow.supervisor.classes import add_root, import_class
 
     root = project_root(Path.cwd())
     add_root(str(root))

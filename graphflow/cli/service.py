@@ -7,10 +7,10 @@ import time
 import click
 
 from graphflow.cli import output
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import agree, use_project
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
+from graphflow.errors import UsageFault
 from graphflow.introspect.view import View
 from graphflow.names import expand
 

@@ -11,7 +11,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
-from graphflow.errors import CallError
+from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import verdict
@@ -193,7 +193,7 @@ def _echo_type(full: str, given: str | None) -> str:
         assert wanted is not None
         return wanted
     if len(types) > 1 and wanted is None:
-        raise exits.UsageFault(f"{full} has several types: {', '.join(types)}; say which")
+        raise UsageFault(f"{full} has several types: {', '.join(types)}; say which")
     return agree(wanted, types[0], full) if wanted is not None and wanted not in types else (wanted or types[0])
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from graphflow.cli import output
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import UsageFault
 
 
 def use_project() -> None:

@@ -9,7 +9,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
-from graphflow.errors import CallTimeout, RemoteError
+from graphflow.errors import CallTimeout, RemoteError, UsageFault
 from graphflow.introspect import concurrency as found
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
@@ -93,7 +93,7 @@ def show(node: str, as_json: bool) -> None:
 
 def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
     if node not in read.nodes:
-        raise exits.UsageFault(f"{node} is not graphflow's, so that nothing is known of its groups")
+        raise UsageFault(f"{node} is not graphflow's, so that nothing is known of its groups")
     return read.nodes[node]
 
 
@@ -136,7 +136,7 @@ def move(node: str, handler: str, group: str, timeout: float) -> None:
             text = f"{full} did not answer within {timeout:g} s; its event loop may be blocked: see graphflow waits"
             raise CallTimeout(text) from None
     if answer.is_error:
-        raise exits.UsageFault(RemoteError.from_payload(answer.payload, "").message)
+        raise UsageFault(RemoteError.from_payload(answer.payload, "").message)
     known = json.loads(answer.payload)["groups"]
     _show(full, known, as_json=False)
     together = [h["handler"] for g in known if g["name"] == group for h in g["handlers"]] or [handler]

@@ -76,7 +76,7 @@ def message_values(words: Sequence[str]) -> Any:
     Raises:
         UsageFault: They are not YAML, or not a mapping for want of a space.
     """
-    from graphflow.cli.exits import UsageFault
+    from graphflow.errors import UsageFault
     from graphflow.graph.source import parse_value
 
     text = " ".join(words)

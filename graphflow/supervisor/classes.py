@@ -8,29 +8,12 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
-from graphflow.errors import GraphflowError, Place, Problem
+from graphflow.errors import GraphflowError, NoModule, Place, Problem
 from graphflow.graph.project import PACKAGE, add_interfaces
 from graphflow.interface import Interface
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 from graphflow.runtime.node import Node
-
-
-class NoModule(GraphflowError):
-    """There is no module of that name.
-
-    Attributes:
-        module: The first part of its path that was not found.
-    """
-
-    def __init__(self, module: str, wanted: str, root: str) -> None:
-        parent, _, last = module.rpartition(".")
-        package = sys.modules.get(parent)
-        known = [m.name for m in iter_modules(getattr(package, "__path__", None) if parent else [root])]
-        hint = did_you_mean(last, known) or f"; modules are looked for in {root}"
-        super().__init__(f"cannot import {wanted}: there is no module {module!r}{hint}")
-        self.module = module
-
 
 _roots: list[str] = []
 
@@ -60,7 +43,7 @@ def import_class(class_path: str) -> type[Node]:
         module = import_module(module_name)
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and error.name and module_name.startswith(error.name):
-            raise NoModule(error.name, module_name, _roots[-1] if _roots else ".") from None
+            raise NoModule(_no_module(error.name, module_name, _roots[-1] if _roots else "."), error.name) from None
         raise GraphflowError(f"cannot import {module_name}: {_where(error)}") from error
     found = getattr(module, class_name, None)
     if found is None:
@@ -69,6 +52,15 @@ def import_class(class_path: str) -> type[Node]:
     if not (isinstance(found, type) and issubclass(found, Node)):
         raise GraphflowError(f"{class_path} is no node class: it does not derive from graphflow.Node")
     return found
+
+
+def _no_module(module: str, wanted: str, root: str) -> str:
+    """What is said when `wanted` cannot be imported for want of `module`: the nearest, or where it was looked for."""
+    parent, _, last = module.rpartition(".")
+    package = sys.modules.get(parent)
+    known = [m.name for m in iter_modules(getattr(package, "__path__", None) if parent else [root])]
+    hint = did_you_mean(last, known) or f"; modules are looked for in {root}"
+    return f"cannot import {wanted}: there is no module {module!r}{hint}"
 
 
 def _where(error: BaseException) -> str:

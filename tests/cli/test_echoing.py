@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from graphflow.cli.echoing import EchoOptions, _field_path, render
-from graphflow.cli.exits import UsageFault
+from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Point, Polygon, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.msgs.std_msgs.msg import String

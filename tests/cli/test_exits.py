@@ -6,7 +6,8 @@ import pytest
 
 from graphflow import errors
 from graphflow.cli import exits
-from graphflow.cli.exits import UsageFault, exit_code
+from graphflow.cli.exits import exit_code
+from graphflow.errors import UsageFault
 
 
 def test_the_codes() -> None:

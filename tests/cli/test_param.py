@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.param import read_value
+from graphflow.errors import UsageFault
 from graphflow.interface import TYPE_IDS
 
 

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.param import set_
 from graphflow.cli.topic import pub
 from graphflow.cli.words import message_values, split_values
+from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.values import from_plain
