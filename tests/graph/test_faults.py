@@ -1,0 +1,79 @@
+"""What is wrong in a graph file by its model, in words."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.errors import GraphFileError, Place
+from graphflow.graph import source
+from graphflow.graph.faults import Problems, example, validated
+
+HERE, THERE = Place("f.yaml", 1, 1), Place("f.yaml", 2, 1)
+
+
+def faults(text: str) -> list[str]:
+    """What the model has against a file, as `line:column: message`; nothing else is looked at."""
+    problems = Problems()
+    model = validated(source.read(text, "f.yaml"), problems)
+    assert (model is None) is bool(problems)
+    return [str(p).removeprefix("f.yaml:") for p in problems]
+
+
+def test_a_right_file_is_its_model() -> None:
+    """It has no problems, and its values are there."""
+    problems = Problems()
+    model = validated(source.read("nodes:\n  a: {class: x:Y}\ndomain: 3\n", "f.yaml"), problems)
+
+    assert model is not None
+    assert (list(model.nodes), model.domain, problems) == (["a"], 3, [])
+    problems.raise_any()
+
+
+NODE = "nodes:\n  a: {class: x:Y, concurrency: "
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (f"{NODE}[m]}}", "2:32: nodes.a.concurrency: expected a mapping, got ['m'], for example concurrency: {mot"),
+        (f"{NODE}{{m: 3}}}}", "2:36: nodes.a.concurrency.m: expected a mapping, got 3, for example motion: [con"),
+        (f"{NODE}{{m: {{handler: [t]}}}}}}", "2:37: unknown key 'handler'; did you mean 'handlers'?"),
+        (f"{NODE}{{m: {{handlers: [t], limit: 0}}}}}}", "2:59: limit: expected 1 or more, or none for no limit, got 0"),
+        ("nodes:\n  a: {class: x:Y, env: {B: []}}", "2:28: nodes.a.env.B: expected text or a number, got []"),
+        ("nodes:\n  a: {class: x:Y, after: [3]}", "2:27: nodes.a.after.0: expected text, got 3"),
+        ("nodes:\n  a: {class: x:Y}\ncall_timeout: -1", "3:15: call_timeout: expected seconds, or never, got -1"),
+    ],
+)
+def test_one_mistake_is_told_once(text: str, said: str) -> None:
+    """Of the alternatives that a value may be, the one is meant that fits furthest."""
+    (found,) = faults(text)
+    assert found.startswith(said)
+
+
+def test_a_key_with_a_typo_is_not_missing_too() -> None:
+    """`clas` is unknown, and `class` was meant by it; a key that is nowhere is missing."""
+    assert faults("nodes:\n  a: {clas: x:Y}\n  b: {}") == [
+        "2:7: unknown key 'clas'; did you mean 'class'?",
+        "3:3: the key 'class' is missing",
+    ]
+
+
+def test_a_place_that_is_known_to_be_wrong_is_complained_of_once() -> None:
+    """More would only confuse; other places are not affected."""
+    problems = Problems()
+    problems.add(HERE, "odd")
+    problems.add_unknown(HERE, "worse")
+    problems.add(HERE, "and therefore")
+    problems.add(THERE, "odd")
+
+    assert [(p.place, p.message) for p in problems] == [(HERE, "odd"), (HERE, "worse"), (THERE, "odd")]
+    with pytest.raises(GraphFileError) as caught:
+        problems.raise_any()
+    assert caught.value.problems == tuple(sorted(problems))
+
+
+def test_examples_fit_where_they_are_given() -> None:
+    """Whatever the node or group is called; where there is none, nothing is said."""
+    assert example("nodes", "anything", "after") == ", for example after: /talker"
+    assert example("nodes", "a", "concurrency", "motion").startswith(", for example motion: [control], or ")
+    assert example("nodes", "a", "class") == ""

@@ -1,0 +1,73 @@
+"""How a process of graphflow shows itself in a domain."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+from graphflow.system import host_name, user_id
+from graphflow.wire import process
+from graphflow.wire.process import ProcessToken, answer_key, parse, token, watch_key
+
+ELSEWHERE = ProcessToken("ab12", "1000", os.getpid(), "robot-7")
+HERE = ELSEWHERE._replace(host=host_name())
+
+
+def test_a_token_tells_of_its_process() -> None:
+    """Session, user, process and host come back from it."""
+    assert parse(token(3, "ab12")) == ProcessToken("ab12", str(user_id()), os.getpid(), host_name())
+
+
+def test_keys() -> None:
+    """Tokens and answers of a domain are apart from others', and from ROS 2's."""
+    assert token(3, "ab12").startswith("@graphflow/3/proc/ab12/")
+    assert watch_key(3) == "@graphflow/3/proc/**"
+    assert answer_key(3, process.WAITS) == "@graphflow/3/waits/*"
+    assert answer_key(3, process.LOOK, "ab12") == "@graphflow/3/look/ab12"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "@graphflow/3/proc/ab12/1000/77",
+        "@graphflow/3/proc/ab12/1000/77/host/more",
+        "@graphflow/3/proc/ab12/1000/-7/host",
+        "@graphflow/3/waits/ab12/1000/77/host",
+        "@ros2_lv/3/proc/ab12/1000/77/host",
+    ],
+)
+def test_what_is_no_token(text: str) -> None:
+    """Other keys are nobody's."""
+    assert parse(text) is None
+
+
+def test_a_process_is_named_with_its_host_where_that_is_another() -> None:
+    """Its number says enough on this machine, and nothing on another."""
+    assert str(HERE) == f"process {os.getpid()}"
+    assert str(ELSEWHERE) == f"process {os.getpid()} on robot-7"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_what_a_process_was_started_as() -> None:
+    """This system tells of its own, and of those alone."""
+    assert "pytest" in HERE.command or "python" in HERE.command
+    assert ELSEWHERE.command == ""
+    assert HERE._replace(pid=2**22 + 1).command == ""
+
+
+@pytest.mark.parametrize("state", ["T", "t"])
+def test_a_stopped_process_can_be_helped(monkeypatch: pytest.MonkeyPatch, state: str) -> None:
+    """What lets it go on is said; of another machine's processes nothing is known."""
+    monkeypatch.setattr(process, "_state", lambda pid: state)
+
+    assert HERE.why_silent == f"it is stopped: kill -CONT {os.getpid()}"
+    assert ELSEWHERE.why_silent.endswith("or it cannot be reached")
+
+
+def test_a_process_that_runs_is_held_up() -> None:
+    """One that is not stopped may be busy, or gone."""
+    assert HERE.why_silent == "it is stopped, or something holds its interpreter, or it cannot be reached"
+    assert HERE._replace(pid=2**22 + 1).why_silent == HERE.why_silent
