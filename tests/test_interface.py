@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import math
+from dataclasses import asdict
 from typing import Any
 
 import pytest
 
 from graphflow import ParameterError
 from graphflow.errors import Place
-from graphflow.interface import Parameter, ParamType
+from graphflow.interface import (
+    COMMON_PARAMETERS,
+    EndpointInfo,
+    GroupChange,
+    GroupInfo,
+    HandlerInfo,
+    Interface,
+    Parameter,
+    ParamType,
+    may_make,
+    type_id,
+    type_of,
+)
 
 
 def parameter(type_: ParamType, default: Any, **limits: Any) -> Parameter:
@@ -108,3 +122,105 @@ def test_steps(type_: ParamType, limits: dict[str, float], inside: list[Any], ou
     for value in outside:
         with pytest.raises(ParameterError, match=r"is not a valid step: .* and multiples of"):
             made.fit(value)
+
+
+def test_a_value_that_is_too_large_for_a_double() -> None:
+    """The number is not written out in full."""
+    with pytest.raises(ParameterError, match=r"^parameter 'p' = 1000000000\d*\.\.\. is too large for a double$"):
+        parameter("float", 1.0).fit(10**400)
+
+
+def test_dynamic_parameters_take_every_type() -> None:
+    """And nothing, which is not set; but only what can be a parameter."""
+    dynamic = parameter("int", 1, dynamic=True)
+
+    assert [dynamic.fit(v) for v in ("x", (1, 2), 2.5, None)] == ["x", [1, 2], 2.5, None]
+    with pytest.raises(ParameterError, match="cannot be a parameter"):
+        dynamic.fit({"x": 1})
+
+
+@pytest.mark.parametrize(
+    ("value", "type_", "number"),
+    [
+        (True, "bool", 1),
+        (1, "int", 2),
+        (1.0, "float", 3),
+        ("", "str", 4),
+        (b"", "bytes", 5),
+        ([True], "list[bool]", 6),
+        ((1, 2), "list[int]", 7),
+        ([1, 2.0], "list[float]", 8),
+        (["a"], "list[str]", 9),
+    ],
+)
+def test_types_of_values(value: Any, type_: ParamType, number: int) -> None:
+    """A bool is no integer, and whole numbers among others are floats; the numbers are ROS 2's."""
+    assert (type_of(value), type_id(value)) == (type_, number)
+
+
+@pytest.mark.parametrize("value", [None, [], [None], [b"x"], [[1]], [1, True], [1, "a"], {}, {"a": 1}, object()])
+def test_values_that_cannot_be_parameters(value: Any) -> None:
+    """Their type cannot be told, or is none of ROS 2's."""
+    with pytest.raises(ParameterError, match="cannot be a parameter: use a bool, int, float, str, bytes, or a list of"):
+        type_of(value)
+
+
+def test_what_is_not_set_has_no_type() -> None:
+    """Its number is 0."""
+    assert type_id(None) == 0
+
+
+@pytest.mark.parametrize(
+    ("dynamic", "name", "may"),
+    [
+        (True, "/any/name", True),
+        (False, "/any/name", False),
+        ((), "/any/name", False),
+        (("*/pose",), "/turtle1/pose", True),
+        (("*/pose",), "/turtle1/posed", False),
+        (("/a", "/b/*"), "/b/c", True),
+        (("/A",), "/a", False),
+    ],
+)
+def test_names_made_at_run_time(dynamic: bool | tuple[str, ...], name: str, may: bool) -> None:
+    """Any, none, or those that a pattern matches, letter for letter."""
+    assert may_make(dynamic, name) is may
+
+
+def test_every_kind_of_declaration_survives_json() -> None:
+    """Bytes, which JSON does not have, and limits, groups and patterns included."""
+    here = Place("here.py", 3, 1)
+    interface = Interface(
+        class_path="nodes.robot:Robot",
+        node_name="robot",
+        place=here,
+        doc="A robot.",
+        endpoints=(EndpointInfo("action client", "go", "x/action/Go", "going", here),),
+        params=(
+            Parameter("raw", "bytes", b"\0\xff", here),
+            Parameter("gain", "list[float]", [1.0, 2.5], here, "N", "How much.", ge=0.0, lt=5.0, step=0.5),
+            Parameter("any", "int", 1, here, read_only=True, dynamic=True),
+        ),
+        handlers=(HandlerInfo("tick", "timer", here, "io", False, True),),
+        groups={"io": GroupInfo(2, "drop_old", True), "all": GroupInfo(None)},
+        dynamic_names=("*/pose",),
+    )
+
+    assert Interface.from_json(json.loads(json.dumps(interface.to_json()))) == interface
+
+
+def test_a_change_of_a_group_survives_json() -> None:
+    """What a graph file says of groups reaches the node's process."""
+    change = GroupChange(("tick", "heard"), 2, True, "drop_new", False)
+
+    assert GroupChange.from_json(json.loads(json.dumps(asdict(change)))) == change
+
+
+def test_every_class_has_the_common_parameters() -> None:
+    """Whatever it declares itself; other names it has not."""
+    own = parameter("int", 1)
+    interface = Interface("m:C", "c", Place("here.py"), params=(own,))
+
+    assert interface.param("p") is own
+    assert interface.param("use_sim_time") is COMMON_PARAMETERS["use_sim_time"]
+    assert interface.param("q") is None

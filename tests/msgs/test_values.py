@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from graphflow.errors import EncodeError
-from graphflow.msgs.values import checked
+from graphflow.msgs import registry
+from graphflow.msgs.values import checked, from_plain
 from graphflow.times import Duration, Time
 from graphflow.wire.schema import INTEGER_RANGES
 from tests.msgs.conftest import make
@@ -109,3 +110,98 @@ def test_checked_copies_and_converts() -> None:
     assert copy == make("geometry_msgs/msg/Twist", linear={"x": 1.0})
     assert message.linear == {"x": 1}
     assert copy.angular is not message.angular  # type: ignore[attr-defined]
+
+
+def test_checked_names_the_first_wrong_value() -> None:
+    """By its path, also where it was deleted, or stands inside a list; what is no message is refused."""
+    poses: Any = make("geometry_msgs/msg/PoseArray", poses=[{}, {}])
+    poses.poses[1].position.x = "far"
+    with pytest.raises(EncodeError, match=r"^PoseArray\.poses\[1\]\.position\.x: expected float64, got 'far'$"):
+        checked(poses)
+    twist = make("geometry_msgs/msg/Twist")
+    del twist.linear.y
+    with pytest.raises(EncodeError, match=r"^Twist\.linear\.y: was deleted$"):
+        checked(twist)
+    twist.linear = make("geometry_msgs/msg/Point")
+    with pytest.raises(EncodeError, match=r"^Twist\.linear: expected geometry_msgs/msg/Vector3, got geometry"):
+        checked(twist)
+    with pytest.raises(EncodeError, match=r"^String\.data: '\\ud800' is not valid Unicode$"):
+        checked(make("std_msgs/msg/String", data="\ud800"))
+    with pytest.raises(EncodeError, match=r"^expected a message, got \{\}$"):
+        checked({})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "text"),
+    [
+        ("std_msgs/msg/String", {"data": 3}, "String.data: expected string, got 3"),
+        ("std_msgs/msg/Float32", {"data": 1e39}, "Float32.data: 1e+39 is too large for float32"),
+        ("std_msgs/msg/Float32", {"data": "1"}, "Float32.data: expected float32, got '1'"),
+        ("std_msgs/msg/UInt8", {"data": 256}, "UInt8.data: 256 does not fit uint8: 0 to 255"),
+        (
+            "odd_shapes/msg/Bounds",
+            {"short": "six!!!"},
+            "Bounds.short: expected at most 5 bytes of UTF-8",
+        ),
+        (
+            "odd_shapes/msg/Bounds",
+            {"wide": "abcd"},
+            "Bounds.wide: expected at most 3 UTF-16 code units",
+        ),
+        ("odd_shapes/msg/Bounds", {"labels": ["", "", ""]}, "Bounds.labels: expected at most 2 elements"),
+        ("odd_shapes/msg/Bounds", {"labels": "ab"}, "Bounds.labels: expected string<=4[<=2], got 'ab'"),
+        ("odd_shapes/msg/Bounds", {"numbers": [1, 2, 3, 4]}, "Bounds.numbers: expected at most 3 elements"),
+        (
+            "test_msgs/msg/Arrays",
+            {"string_values": ["a"]},
+            "Arrays.string_values: expected 3 elements",
+        ),
+    ],
+)
+def test_values_that_do_not_fit(name: str, fields: dict[str, Any], text: str) -> None:
+    """The error has the field, what it takes, and what was given."""
+    with pytest.raises(EncodeError) as caught:
+        make(name, **fields)
+    assert str(caught.value).startswith(text)
+
+
+@pytest.mark.parametrize("field", ["byte_value", "char_value"])
+def test_one_byte_is_a_byte(field: str) -> None:
+    """ROS 2's byte and char take a number or a `bytes` of length one."""
+    assert getattr(make("test_msgs/msg/BasicTypes", **{field: b"A"}), field) == 65
+    with pytest.raises(EncodeError, match="expected"):
+        make("test_msgs/msg/BasicTypes", **{field: b"AB"})
+
+
+def test_messages_from_plain_values() -> None:
+    """A mapping gives some fields, nothing gives none."""
+    twist: Any = registry.interface_class("geometry_msgs/msg/Twist")
+
+    assert from_plain(twist, {"linear": {"x": 1}}) == twist(linear={"x": 1.0})
+    assert from_plain(twist, None) == twist()
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "text"),
+    [
+        (
+            "geometry_msgs/msg/Twist",
+            [1],
+            "geometry_msgs/msg/Twist is written as a mapping, for example {linear",
+        ),
+        ("std_msgs/msg/Empty", "x", "std_msgs/msg/Empty is written as a mapping, for example {}; got 'x'"),
+        (
+            "geometry_msgs/msg/Twist",
+            {"liner": {}},
+            "geometry_msgs/msg/Twist has no field 'liner'; did you mean 'linear'?",
+        ),
+        ("geometry_msgs/msg/Twist", {3: {}}, "geometry_msgs/msg/Twist has no field 3"),
+        ("geometry_msgs/msg/Twist", {"linear": {"x": "a"}}, "Twist.linear.x: expected float64, got 'a'"),
+    ],
+)
+def test_plain_values_that_make_no_message(name: str, data: Any, text: str) -> None:
+    """The error says what was meant, or how it is written."""
+    cls: Any = registry.interface_class(name)
+    with pytest.raises(EncodeError) as caught:
+        from_plain(cls, data)
+    assert str(caught.value).startswith(text)

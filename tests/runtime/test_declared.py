@@ -9,11 +9,12 @@ from typing import Any
 
 import pytest
 
-from graphflow import DeclarationError, Group, Node, Param, Publisher, timer
+from graphflow import DeclarationError, Group, Node, Param, Publisher, QosEvent, action, subscription, timer
 from graphflow.errors import Place
 from graphflow.interface import GroupInfo, Interface
-from graphflow.msgs.std_msgs.msg import Int32
-from graphflow.runtime.declared import snake_case
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.runtime.declared import default_name, handlers, hooks, param_hooks, snake_case
 from tests.runtime import cast
 from tests.runtime.cast import Child, Everything, Parent, names_of
 
@@ -209,3 +210,47 @@ def test_two_parents() -> None:
 
     assert {p.name: p.default for p in Both.interface().params} == {"a": 1, "b": 1, "c": 2}
     assert (Both().a, Both().b, Both().c) == (1, 1, 2)
+
+
+class Robot(Node):
+    """Has functions that are called from everywhere."""
+
+    rate = Param(1.0)
+
+    @rate.check
+    def not_too_fast(self, rate: float) -> None: ...
+
+    @rate.on_change
+    def note(self, old: float, new: float) -> None: ...
+
+    def wanted(self, goal: Fibonacci.Goal) -> bool:
+        return True
+
+    def noticed(self, event: QosEvent) -> None: ...
+    def heard_of(self, event: QosEvent) -> None: ...
+
+    out = Publisher(String, "out", on_event=noticed)
+
+    @subscription(String, "in", on_event=heard_of)
+    async def heard(self, message: String) -> None: ...
+
+    @action(Fibonacci, "go", accept=wanted, cancellable=False)
+    async def go(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        return Fibonacci.Result()
+
+
+def test_hooks_are_called_outside_of_handlers() -> None:
+    """Checks, events, and who decides about goals; what follows a parameter is a handler of its own."""
+    assert hooks(Robot) == {"not_too_fast", "wanted", "noticed", "heard_of"}
+    assert list(handlers(Robot)) == ["heard", "go"]
+    assert {name: hook.kind for name, hook in param_hooks(Robot).items()} == {
+        "not_too_fast": "check",
+        "note": "on_change",
+    }
+
+
+def test_the_name_of_a_node_that_is_given_none() -> None:
+    """The class says it, or is it."""
+    assert default_name(Robot) == "robot"
+    named: Any = type("Robot", (Node,), {"node_name": "bob"})
+    assert default_name(named) == "bob"

@@ -13,6 +13,7 @@ from graphflow import Group, Node, Param, Qos, TimerInfo, action, service, subsc
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.handlers import Rate
 from graphflow.testing import Graph
 from tests.runtime.cast import anything, names_of, refusal_of
 
@@ -141,3 +142,37 @@ async def test_a_timer_may_take_info_or_not(graph: Graph) -> None:
 
     info = TimerInfo(1_000_000_000, 1_000_000_000, 0)
     assert sorted(map(str, seen)) == sorted(map(str, [None, info, info]))
+
+
+async def test_one_decorator_may_stand_on_two_methods(graph: Graph) -> None:
+    """Each has a record of its own: its place, and whether it takes info."""
+    every = timer(1.0)
+    seen: list[Any] = []
+
+    class Ticker(Node):
+        @every
+        def tick(self) -> None:
+            seen.append("tick")
+
+        @every
+        def tock(self, info: TimerInfo) -> None:
+            seen.append(info)
+
+    tick, tock = Ticker.interface().handlers
+    await graph.start(Ticker())
+    await graph.clock.advance(1.0)
+
+    assert tock.place.line == tick.place.line + 4
+    assert seen == ["tick", TimerInfo(1_000_000_000, 1_000_000_000, 0)]
+
+
+def test_a_rate_reads_its_parameter() -> None:
+    """Its default when the class is made, its value when the node runs; a number is itself."""
+    period, hz = Param(0.5, name="period"), Param(4, name="hz")
+
+    assert Rate(0.5, None).period_ns() == 500_000_000
+    assert Rate(period, None).parameters() == ["period"]
+    assert (Rate(period, None).period_ns(), Rate(period, None).period_ns({"period": 2.0})) == (500_000_000, 2 * 10**9)
+    assert (Rate(None, hz).period_ns(), Rate(None, hz).period_ns({"hz": 10})) == (250_000_000, 100_000_000)
+    with pytest.raises(ValueError, match="hz must be a positive number, not 0"):
+        Rate(None, hz).period_ns({"hz": 0})
