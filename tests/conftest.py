@@ -21,6 +21,8 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 PROJECT = Path(__file__).parents[1]
+PROGRAMS = PROJECT / "tests" / "programs"
+"""Node programs that tests start, in folders by kind."""
 LIMIT = 45.0
 """Seconds that anything here may take before the test fails."""
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.conftest import LIMIT, Machine
+from tests.conftest import LIMIT, PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
 
@@ -34,10 +35,7 @@ def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) 
     """A node that is called like one that comes with graphflow is the project's own."""
     machine.run("init", "mylab", cwd=tmp_path)
     project = tmp_path / "mylab"
-    (project / "nodes" / "talker.py").write_text(
-        "from graphflow import Node, timer\n\n\nclass Talker(Node):\n    @timer(0.1)\n    def say(self):\n"
-        '        self.log.info("this is mine")\n'
-    )
+    shutil.copy(PROGRAMS / "run" / "talker.py", project / "nodes")
     node = machine.start("run", "nodes.talker:Talker", cwd=project)
     node.wait_for("this is mine")
     assert node.end() == 0

@@ -6,36 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Machine, Program
+from tests.conftest import PROGRAMS, Machine, Program
 
 pytestmark = pytest.mark.real
 
-NODE = """\
-import graphflow
-from graphflow import Node, Param
-
-
-class Robot(Node):
-    title = Param("5", doc="Looks like a number.")
-    flag = Param("on")
-    gain = Param(2.0, ge=0.0, le=10.0, step=0.5, unit="m", doc="How much.")
-    count = Param(3, gt=0)
-    words = Param(["a", "1"])
-    limits_speed = Param(1.0, name="limits.speed")
-    raw = Param(b"\\x01\\xff")
-    fixed = Param("stays", read_only=True)
-
-    def __init__(self, name=None, **options):
-        super().__init__(name, **options)
-        self.declare_parameter("extra", 1, dynamic=True)
-
-    async def on_start(self):
-        self.log.info("ready")
-
-
-if __name__ == "__main__":
-    graphflow.run(Robot)
-"""
+ROBOT = str(PROGRAMS / "verbs" / "robot.py")
 DUMP = """\
 /robot:
   ros__parameters:
@@ -55,9 +30,7 @@ DUMP = """\
 
 
 def start(machine: Machine, folder: Path, *words: str) -> Program:
-    (folder / "robot.py").write_text(NODE)
-    program = machine.start_python("robot.py", "--ros-args", *words, cwd=folder)
-    return program
+    return machine.start_python(ROBOT, "--ros-args", *words, cwd=folder)
 
 
 def ready(program: Program) -> Program:

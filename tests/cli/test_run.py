@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 import time
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.runtime.run import SAME_SIGNAL
-from tests.conftest import Machine
+from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
 
@@ -77,15 +78,10 @@ def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], cod
 
 def test_an_error_of_the_users_own_code_shows_its_traceback(machine: Machine, tmp_path: Path) -> None:
     """Whatever the user's code raises reaches the user."""
-    (tmp_path / "mine.py").write_text(
-        "from graphflow import Node\n\n\nclass Mine(Node):\n"
-        "    def __init__(self, name=None, **options):\n"
-        "        super().__init__(name, **options)\n"
-        "        raise LookupError('no such camera')\n"
-    )
-    text = machine.run("run", "mine:Mine", cwd=tmp_path, code=1)
+    shutil.copy(PROGRAMS / "run" / "no_camera.py", tmp_path)
+    text = machine.run("run", "no_camera:NoCamera", cwd=tmp_path, code=1)
     assert "LookupError: no such camera" in text
-    assert "mine.py" in text
+    assert "no_camera.py" in text
 
 
 def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> None:
@@ -98,30 +94,13 @@ def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> No
 
 def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) -> None:
     """An uncaught exception ends a program that has subscribed: Zenoh's threads do not keep it alive."""
-    program = machine.start_python(
-        "-c",
-        "import asyncio\n"
-        "from graphflow import Context, Node\n"
-        "from graphflow.runtime.core import core_of\n"
-        "from graphflow.msgs.std_msgs.msg import String\n"
-        "async def main():\n"
-        "    context = await Context.open()\n"
-        "    node = Node('careless')\n"
-        "    node.create_subscription(String, 'x', print)\n"
-        "    await core_of(node).start(context)\n"
-        "    raise SystemExit(3)\n"
-        "asyncio.run(main())\n",
-    )
+    program = machine.start_python(str(PROGRAMS / "run" / "careless.py"))
     assert program.wait() == 3
 
 
 def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: Path) -> None:
     """A body that blocks in a thread cannot be cancelled; the process ends without it."""
-    (tmp_path / "slow.py").write_text(
-        "import time\nfrom graphflow import Node, timer\n\n\nclass Slow(Node):\n"
-        "    @timer(0.01, thread=True)\n    def work(self) -> None:\n"
-        "        self.log.info('at work')\n        time.sleep(600)\n"
-    )
+    shutil.copy(PROGRAMS / "run" / "slow.py", tmp_path)
     node = machine.start("run", "slow:Slow", cwd=tmp_path)
     node.wait_for("at work")
     assert node.end() == 0
@@ -129,10 +108,7 @@ def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: P
 
 def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machine, tmp_path: Path) -> None:
     """Whoever blocks the loop cannot be asked twice."""
-    (tmp_path / "stuck.py").write_text(
-        "from graphflow import Node, timer\n\n\nclass Stuck(Node):\n    @timer(0.01)\n"
-        "    def work(self) -> None:\n        self.log.info('at work')\n        while True:\n            pass\n"
-    )
+    shutil.copy(PROGRAMS / "run" / "stuck.py", tmp_path)
     node = machine.start("run", "stuck:Stuck", cwd=tmp_path)
     node.wait_for("at work")
     node.process.send_signal(signal.SIGINT)
@@ -154,9 +130,6 @@ def test_signals_that_come_together_are_one(machine: Machine) -> None:
 
 def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
     """The likeliest mistake in a constructor is one sentence."""
-    (tmp_path / "bare.py").write_text(
-        "from graphflow import Node\n\n\nclass Bare(Node):\n"
-        "    def __init__(self, name=None, **options):\n        pass\n"
-    )
+    shutil.copy(PROGRAMS / "run" / "bare.py", tmp_path)
     text = machine.run("run", "bare:Bare", cwd=tmp_path, code=2)
     assert text == "error: Bare.__init__ must call super().__init__(...)\n"

@@ -2,38 +2,20 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 from pathlib import Path
 
 import pytest
 
-from tests.conftest import Machine
+from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
-
-HESITANT = """
-from graphflow import Node, action
-from graphflow.msgs.example_interfaces.action import Fibonacci
-
-class Hesitant(Node):
-    async def on_start(self):
-        self.log.info("starts")
-
-    async def ponder(self, goal):
-        self.log.info("ponders %d", goal.order)
-        await self.clock.sleep(goal.order / 10)
-        return True
-
-    @action(Fibonacci, "compute", accept=ponder)
-    async def compute(self, goal):
-        self.log.info("begins %d", goal.request.order)
-        return Fibonacci.Result()
-"""
 
 
 def test_ctrl_c_before_the_goal_is_accepted_withdraws_it(machine: Machine, tmp_path: Path) -> None:
     """It says so, and the goal is never begun."""
-    (tmp_path / "hesitant.py").write_text(HESITANT)
+    shutil.copy(PROGRAMS / "verbs" / "hesitant.py", tmp_path)
     server = machine.start("run", "hesitant:Hesitant", cwd=tmp_path)
     server.wait_for("starts")
     goal = ("action", "send_goal", "/compute", "example_interfaces/action/Fibonacci")

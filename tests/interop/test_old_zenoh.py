@@ -9,38 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Machine, Program
+from tests.conftest import PROGRAMS, Machine, Program
 
 pytestmark = pytest.mark.real
 
 VERSIONS = ["1.5.1", "1.7.2", "1.9.0"]
-LATCHED = """\
-import graphflow
-from graphflow import Durability, Node, Publisher, Qos, subscription, task
-from graphflow.msgs.std_msgs.msg import String
-
-KEPT = Qos(depth=3, durability=Durability.TRANSIENT_LOCAL)
-
-
-class Hear(Node):
-    @subscription(String, "chatter", KEPT)
-    async def heard(self, m):
-        print("HEARD", m.data, flush=True)
-
-
-class Say(Node):
-    chatter = Publisher(String, "chatter", KEPT)
-
-    @task
-    async def say(self):
-        for n in range(1, 6):
-            self.chatter.publish(String(data=f"new {n}"))
-        print("SAID", flush=True)
-
-
-import sys
-graphflow.run(globals()[sys.argv.pop(1)])
-"""
+LATCHED = str(PROGRAMS / "interop" / "latched.py")
 
 
 @pytest.fixture(scope="session")
@@ -77,8 +51,7 @@ def old(machine: Machine, version: Path, role: str) -> Program:
 
 
 def latched(machine: Machine, folder: Path, name: str) -> Program:
-    (folder / "latched.py").write_text(LATCHED)
-    return machine.start_python("latched.py", name, cwd=folder)
+    return machine.start_python(LATCHED, name, cwd=folder)
 
 
 def test_an_old_router_is_joined(machine: Machine, version: Path) -> None:

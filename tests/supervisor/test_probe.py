@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -13,27 +14,7 @@ from graphflow.interface import Interface
 from graphflow.supervisor import probe as probe_module
 from graphflow.supervisor.classes import read_interfaces
 from graphflow.supervisor.probe import probe
-
-ROBOT = '''\
-import sys
-from graphflow import Node, Param, subscription
-from graphflow.msgs.std_msgs.msg import String
-
-print("this goes nowhere")
-print("nor does this", file=sys.stderr)
-
-
-class Robot(Node):
-    """A robot."""
-
-    rate = Param(10.0, gt=0.0, unit="Hz", doc="How often.")
-
-    @subscription(String, "words")
-    async def heard(self, message: String) -> None: ...
-
-
-class Wheel: ...
-'''
+from tests.conftest import PROGRAMS
 
 
 @pytest.fixture
@@ -41,8 +22,8 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A project with modules good and bad, away from the working directory."""
     folder = tmp_path / "project"
     (folder / "machines").mkdir(parents=True)
+    shutil.copy(PROGRAMS / "supervisor" / "robot.py", folder / "machines")
     for name, text in {
-        "robot": ROBOT,
         "raises": "def deep():\n    raise RuntimeError('no wheels')\n\n\ndeep()\n",
         "needs": "\nimport no_such_module_anywhere\n",
         "from_robot": "from machines.robot import Robto\n",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import socket
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 
 from graphflow.system import is_portable
 from graphflow.transport.rendezvous import address
-from tests.conftest import Machine, Program, alive
+from tests.conftest import PROGRAMS, Machine, Program, alive
 
 pytestmark = pytest.mark.real
 
@@ -25,59 +26,7 @@ def project(tmp_path: Path) -> Path:
     root = tmp_path / "lab"
     (root / "nodes").mkdir(parents=True)
     (root / "pyproject.toml").touch()
-    (root / "nodes" / "lab.py").write_text(
-        """
-import asyncio, os, signal, time
-from graphflow import Node, Param, service, task, timer
-from graphflow.msgs.std_srvs.srv import Trigger
-
-class Good(Node):
-    @service(Trigger, "~/ask")
-    async def ask(self, request: Trigger.Request) -> Trigger.Response:
-        return Trigger.Response(success=True, message=os.environ.get("COLOUR", ""))
-
-class Stubborn(Node):
-    @task
-    async def ignore(self) -> None:
-        try:
-            await asyncio.Event().wait()
-        finally:
-            self.log.warning("no")
-            time.sleep(60.0)
-
-class Crashes(Node):
-    @task
-    async def fall(self) -> None:
-        raise RuntimeError("the bridge is out")
-
-class Refuses(Node):
-    def __init__(self, name=None, **options):
-        super().__init__(name, **options)
-        raise ValueError("no camera")
-
-class Ends(Node):
-    @task
-    async def end(self) -> None:
-        self.log.info("done")
-        self.shutdown()
-
-class Leaves(Node):
-    def __init__(self, name=None, **options):
-        super().__init__(name, **options)
-        os._exit(0)
-
-class Parent(Node):
-    @task
-    async def beget(self) -> None:
-        pid = os.spawnlp(os.P_NOWAIT, "sleep", "sleep", "600")
-        self.log.info("child %d.", pid)
-
-class Fails(Node):
-    @service(Trigger, "fails")
-    async def fail(self, request: Trigger.Request) -> Trigger.Response:
-        raise OSError("the disk is full")
-"""
-    )
+    shutil.copy(PROGRAMS / "supervisor" / "lab.py", root / "nodes")
     return root
 
 
@@ -367,8 +316,8 @@ def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, proje
 
 def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, project: Path) -> None:
     """A start that takes long can be broken off."""
-    (project / "nodes" / "slow.py").write_text("import time\ntime.sleep(3)\nfrom nodes.lab import Good\n")
-    up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.slow:Good}\n"), cwd=project)
+    shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
+    up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
     machine.until(lambda: bool(children(up.pid)), "the supervisor is there")
     supervisor = children(up.pid)
     machine.until(lambda: bool(children(supervisor[0])), "the preload process is there")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,29 +10,11 @@ from pathlib import Path
 import pytest
 import trustme
 
-from tests.conftest import PROJECT, Machine, Program
+from tests.conftest import PROGRAMS, Machine, Program
 from tests.network.hosts import Hosts, why_not
 
 NEAR = "nodes:\n  /draw_circle: {class: nodes.draw_circle:DrawCircle}\n"
-ROUTER = str(PROJECT / "tests/network/rmw_router.py")
-SPEAKER = """
-from graphflow import Node, Publisher, Qos, Durability, service
-from graphflow.msgs.std_msgs.msg import String
-from graphflow.msgs.std_srvs.srv import Trigger
-
-class Speaker(Node):
-    said = Publisher(String, "said", Qos(depth=1, durability=Durability.TRANSIENT_LOCAL))
-    times = 0
-
-    async def on_start(self) -> None:
-        self.log.info("listening")
-
-    @service(Trigger, "speak")
-    async def speak(self, request: Trigger.Request) -> Trigger.Response:
-        self.times += 1
-        self.said.publish(String(data=f"word {self.times}"))
-        return Trigger.Response(success=True)
-"""
+ROUTER = str(Path(__file__).with_name("rmw_router.py"))
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +120,7 @@ def test_what_a_latched_topic_said_meanwhile_is_heard(
     """After an outage a listener gets what it missed, and nothing twice."""
     endpoint = f"tcp/{hosts.far.address}:7447"
     far.start_python(ROUTER).wait_for("router up")
-    (tmp_path / "speaker.py").write_text(SPEAKER)
+    shutil.copy(PROGRAMS / "network" / "speaker.py", tmp_path)
     far.start("run", "speaker:Speaker", cwd=tmp_path).wait_for("listening")
     start_graph(near, tmp_path, "--connect", endpoint).wait_for(f"linked to {endpoint}")
     near.until(lambda: reaches(near, "/speaker"), "the robot is seen")
@@ -186,18 +169,10 @@ def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: 
 def test_other_users_of_other_machines_are_no_strangers(hosts: Hosts, near: Machine, far: Machine) -> None:
     """A graphflow rendezvous on the robot belongs to the robot's user, whoever that is, and is linked all the same."""
     far.start("run", "nodes.turtlesim:TurtleSim").wait_for("Spawning")
-    far.start_python("-c", STRANGER).wait_for("declared")
+    far.start_python(str(PROGRAMS / "network" / "stranger.py")).wait_for("declared")
     assert "/turtlesim" in far.run("node", "list")
 
 
-STRANGER = """
-import time, zenoh
-config = zenoh.Config.from_json5('{mode: "client", connect: {endpoints: ["tcp/127.0.0.1:7447"]}}')
-session = zenoh.open(config)
-token = session.liveliness().declare_token("@graphflow/rendezvous/1234/12345/1")
-print("declared", flush=True)
-time.sleep(60)
-"""
 CERTIFICATES = """\
 listen: {listen}
 connect: [{connect}]
