@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import random
 import select
@@ -10,10 +11,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
+from graphflow.cli.main import main
+from graphflow.msgs import registry
 from graphflow.transport.rendezvous import free_endpoint
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -130,6 +135,31 @@ class Machine:
         assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{program.text}"
         return program.text
 
+    def look(self, *words: str, cwd: Path = PROJECT, code: int = 0) -> str:
+        """Run `graphflow WORDS` in this process, which is quick, for verbs of which only the words matter.
+
+        Environment and working directory are the machine's for that time; they, the folders of interfaces and the
+        handlers of signals are as they were afterwards. Returns stdout and stderr together, and checks the exit code.
+        """
+        assert not self._at, "this process is not there"
+        text = io.StringIO()
+        handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+        with (
+            patch.dict(os.environ, self.env, clear=True),
+            patch.object(registry, "_roots", list(registry._roots)),
+            chdir(cwd),
+            redirect_stdout(text),
+            redirect_stderr(text),
+            pytest.raises(SystemExit) as end,
+        ):
+            try:
+                main(words)
+            finally:
+                for number, handler in handlers.items():
+                    signal.signal(number, handler)
+        assert end.value.code == code, f"{words} ended with {end.value.code}, not {code}:\n{text.getvalue()}"
+        return text.getvalue()
+
     def until(self, condition: Callable[[], bool], what: str, limit: float = LIMIT) -> None:
         """Wait until something outside holds."""
         deadline = time.monotonic() + limit
@@ -160,6 +190,18 @@ class Machine:
 def machine(tmp_path: Path) -> Iterator[Machine]:
     """A machine of its own for real processes on loopback."""
     made = Machine(tmp_path)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="session")
+def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    """A machine on which one graph stands all the while, with something for every verb that looks.
+
+    For tests that leave it as it is: `standing.look(...)` asks it without starting a process.
+    """
+    made = Machine(tmp_path_factory.mktemp("standing"))
+    made.run("up", "-d", str(PROGRAMS / "verbs" / "standing.yaml"))
     yield made
     made.close()
 

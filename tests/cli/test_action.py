@@ -1,0 +1,75 @@
+"""`graphflow action list`, `info`, `type` and `find`, and what `send_goal` makes of the words it is given."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+TYPE = "example_interfaces/action/Fibonacci"
+
+
+def test_list(standing: Machine) -> None:
+    """Names; with types; their number; JSON."""
+    assert standing.look("action", "list") == "/fibonacci\n"
+    assert standing.look("action", "list", "-t") == f"/fibonacci [{TYPE}]\n"
+    assert standing.look("action", "list", "-c") == "1\n"
+    assert json.loads(standing.look("action", "list", "--json")) == {"/fibonacci": [TYPE]}
+
+
+def test_type_and_find(standing: Machine) -> None:
+    """From the name to the type and back; a type that nobody has is found nowhere."""
+    assert standing.look("action", "type", "fibonacci") == f"{TYPE}\n"
+    assert standing.look("action", "find", TYPE) == "/fibonacci\n"
+    assert standing.look("action", "find", TYPE, "-c") == "1\n"
+    assert standing.look("action", "find", "turtlesim/action/RotateAbsolute") == ""
+    assert standing.look("action", "find", "turtlesim/action/RotateAbsolute", "-c") == "0\n"
+
+
+def test_info(standing: Machine) -> None:
+    """Who serves it, and who sends goals to it."""
+    assert standing.look("action", "info", "/fibonacci") == (
+        "Action: /fibonacci\nAction clients: 1\n    /office/clerk\nAction servers: 1\n    /fibonacci_server\n"
+    )
+    assert standing.look("action", "info", "/fibonacci", "-t").endswith(f"    /fibonacci_server [{TYPE}]\n")
+    assert standing.look("action", "info", "/fibonacci", "-c").endswith("Action clients: 1\nAction servers: 1\n")
+    assert json.loads(standing.look("action", "info", "/fibonacci", "--json")) == {
+        "action": "/fibonacci",
+        "clients": [{"node": "/office/clerk", "type": TYPE}],
+        "servers": [{"node": "/fibonacci_server", "type": TYPE}],
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("type /fibonaci", "error: there is no action /fibonaci; did you mean '/fibonacci'?"),
+        ("info /fibonaci", "error: there is no action /fibonaci; did you mean '/fibonacci'?"),
+        ("send_goal /fibonaci", "error: there is no action /fibonaci; did you mean '/fibonacci'?"),
+        ("find example_interfaces/action/Fibonaci", "did you mean 'Fibonacci'?"),
+        ("send_goal /fibonacci", f"TYPE is missing; /fibonacci is a {TYPE}: graphflow action send_goal /fibonacci {TYPE}"),
+        ("send_goal /fibonacci turtlesim/action/RotateAbsolute", f"/fibonacci is a {TYPE}, not a turtlesim/action/Rot"),
+        (f"send_goal /fibonacci {TYPE} {{ordr: 1}}", "did you mean 'order'?"),
+    ],
+)
+def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, told: str) -> None:
+    """The error names what is there, and the exit code is 2."""
+    assert told in standing.look("action", *words.split(), code=2)
+
+
+def test_a_goal_that_succeeds(standing: Machine) -> None:
+    """It is shown as ROS 2 shows it, from the goal to the result."""
+    text = standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: 1}")
+    assert "Sending goal:\n    order: 1\n" in text
+    assert "Goal accepted with ID: " in text
+    assert "Result:\n    sequence:\n    - 0\n    - 1\n" in text
+    assert text.endswith("Goal finished with status: SUCCEEDED\n")
+
+
+def test_a_goal_that_is_rejected(standing: Machine) -> None:
+    """The exit code is 1."""
+    assert "rejected" in standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: -1}", code=1)

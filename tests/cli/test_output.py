@@ -1,0 +1,34 @@
+"""Who reads what: data on stdout, talk on stderr."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from graphflow.cli import output
+
+
+def test_data_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
+    """A line for each, and nothing on stderr."""
+    output.data("a")
+    output.lines(["b", "c"])
+    output.lines([])
+    assert capsys.readouterr() == ("a\nb\nc\n", "")
+
+
+def test_talk_goes_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    """An error says that it is one, once."""
+    output.talk("by the way")
+    output.error("too late")
+    output.error("error: too late")
+    assert capsys.readouterr() == ("", "by the way\nerror: too late\nerror: too late\n")
+
+
+def test_json_of_what_json_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
+    """Arrays and bytes are lists of numbers, anything else is its text; all on one line."""
+    output.as_json({"array": np.array([1.5, 2.0]), "bytes": b"\x01\xff", "error": ValueError("no")})
+    out, err = capsys.readouterr()
+    assert (out.count("\n"), err) == (1, "")
+    assert json.loads(out) == {"array": [1.5, 2.0], "bytes": [1, 255], "error": "no"}

@@ -1,0 +1,67 @@
+"""`graphflow service list` and `service call`."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+ADD, TYPE = "/office/clerk/add", "example_interfaces/srv/AddTwoInts"
+
+
+def test_list(standing: Machine) -> None:
+    """Names, sorted; with types; their number; the hidden ones when asked for; JSON."""
+    names = standing.look("service", "list").split()
+    assert names == sorted(names)
+    assert ADD in names
+    assert f"{ADD} [{TYPE}]\n" in standing.look("service", "list", "-t")
+    assert standing.look("service", "list", "-c") == f"{len(names)}\n"
+    assert json.loads(standing.look("service", "list", "--json"))[ADD] == [TYPE]
+    assert "/office/clerk/_add" not in names
+    assert "/office/clerk/_add" in standing.look("service", "list", "--include-hidden-services").split()
+
+
+def test_call(standing: Machine) -> None:
+    """Request and response are shown, as ROS 2 shows them; with --json only the response."""
+    request, response = (f"example_interfaces.srv.AddTwoInts_{word}" for word in ("Request", "Response"))
+    assert standing.look("service", "call", ADD, TYPE, "{a: 1, b: 2}") == (
+        f"requester: making request: {request}(a=1, b=2)\n\nresponse:\n{response}(sum=3)\n\n"
+    )
+    assert json.loads(standing.look("service", "call", "office/clerk/add", TYPE, "{a: 1, b: 2}", "--json")) == {"sum": 3}
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        ([ADD], 2, f"error: TYPE is missing; {ADD} is a {TYPE}: graphflow service call {ADD} {TYPE}"),
+        (["/office/clerk/ad"], 1, f"nobody offers the service /office/clerk/ad; did you mean '{ADD}'?"),
+        ([ADD, "std_srvs/srv/Trigger"], 2, f"error: {ADD} is a {TYPE}, not a std_srvs/srv/Trigger"),
+        ([ADD, TYPE, "{a: -1}"], 1, f"the handler of {ADD} raised ValueError: no debts"),
+        ([ADD, TYPE, "{a: x}"], 2, "AddTwoInts_Request.a: expected int64, got 'x'"),
+        ([ADD, TYPE, "{c: 1}"], 2, "c"),
+        ([ADD, TYPE, "{a: 1"], 2, "not valid YAML"),
+        ([ADD, TYPE, "--timeout", "0"], 2, "Invalid value for '--timeout'"),
+    ],
+)
+def test_a_call_that_fails(standing: Machine, words: list[str], code: int, told: str) -> None:
+    """Whose fault it was decides the exit code, and the text says what to write instead."""
+    assert told in standing.look("service", "call", *words, code=code)
+
+
+def test_a_service_is_waited_for(standing: Machine) -> None:
+    """Who offers nothing yet may do so soon: it says that it waits, until the time is over."""
+    text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=1)
+    assert text.startswith("waiting for service to become available...\nerror: nobody offers the service")
+
+
+def test_a_call_that_is_repeated(standing: Machine) -> None:
+    """`--rate` goes on until Ctrl-C, which is no failure."""
+    calls = standing.start("service", "call", ADD, TYPE, "{a: 4, b: 5}", "--rate", "50")
+    calls.wait_for("sum=9")
+    calls.text = ""
+    calls.wait_for("sum=9")
+    assert calls.end() == 0

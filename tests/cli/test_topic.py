@@ -1,0 +1,108 @@
+"""`graphflow topic list` and `info`, and what `echo` and `pub` make of the words they are given."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+STRING = "std_msgs/msg/String"
+VISIBLE = ["/chatter", "/office/minutes", "/parameter_events", "/rosout"]
+HIDDEN = ["/fibonacci/_action/feedback", "/fibonacci/_action/status", "/office/_drawer"]
+
+
+def test_list(standing: Machine) -> None:
+    """Names, sorted; with types; their number; the hidden ones when asked for; JSON."""
+    assert standing.look("topic", "list").split() == VISIBLE
+    assert standing.look("topic", "list", "-t").splitlines()[:2] == [f"{name} [{STRING}]" for name in VISIBLE[:2]]
+    assert standing.look("topic", "list", "-c") == "4\n"
+    assert standing.look("topic", "list", "--include-hidden-topics").split() == sorted([*VISIBLE, *HIDDEN])
+    assert json.loads(standing.look("topic", "list", "--json"))["/chatter"] == [STRING]
+
+
+def test_list_with_counts(standing: Machine) -> None:
+    """What is published and what is subscribed, each with how many do so."""
+    published, subscribed = standing.look("topic", "list", "-v").split("\n\n")[:2]
+    assert published.startswith(f"Published topics:\n * /chatter [{STRING}] 1 publisher\n")
+    assert " * /rosout [rcl_interfaces/msg/Log] 5 publishers" in published
+    assert subscribed == (
+        f"Subscribed topics:\n * /chatter [{STRING}] 1 subscriber\n * /office/minutes [{STRING}] 1 subscriber"
+    )
+
+
+def test_info(standing: Machine) -> None:
+    """Type and counts, as ROS 2 prints them; a name needs no leading slash."""
+    expected = f"Type: {STRING}\nPublisher count: 1\nSubscription count: 1\n"
+    assert standing.look("topic", "info", "/chatter") == expected
+    assert standing.look("topic", "info", "chatter") == expected
+
+
+def test_info_of_endpoints(standing: Machine) -> None:
+    """`-v` describes each endpoint, and tells what keeps two of them apart."""
+    _, publisher, subscription = standing.look("topic", "info", "-v", "/office/minutes").split("Node name: ")
+    assert publisher.startswith("clerk\nNode namespace: /office\n")
+    assert "Endpoint type: PUBLISHER\n" in publisher
+    assert "  Reliability: BEST_EFFORT\n  History (Depth): KEEP_LAST (7)\n  Durability: VOLATILE\n" in publisher
+    assert "  Lifespan: Infinite\n" in publisher
+    assert "INCOMPATIBLE with /office/auditor: reliability\n" in publisher
+    assert "INCOMPATIBLE with /office/clerk: reliability\n" in subscription
+    assert re.search(r"\nGID: ([0-9a-f]{2}\.){15}[0-9a-f]{2}\n", publisher)
+    assert "INCOMPATIBLE" not in standing.look("topic", "info", "-v", "/chatter")
+
+
+def test_info_for_programs(standing: Machine) -> None:
+    """The same as JSON."""
+    found = json.loads(standing.look("topic", "info", "--json", "/office/minutes"))
+    assert (found["name"], found["types"]) == ("/office/minutes", [STRING])
+    [publisher] = found["publishers"]
+    assert (publisher["node"], publisher["qos"]["depth"]) == ("/office/clerk", 7)
+    assert publisher["incompatible"] == ["INCOMPATIBLE with /office/auditor: reliability"]
+
+
+def test_echo_once(standing: Machine) -> None:
+    """The type is the graph's, and the first message ends it."""
+    assert re.fullmatch(r"data: 'Hello World: \d+'\n---\n", standing.look("topic", "echo", "/chatter", "--once"))
+    assert re.fullmatch(
+        r"Hello World: \d+\n", standing.look("topic", "echo", "chatter", "--once", "--field", "data", "--csv")
+    )
+
+
+def test_echo_that_nobody_answers(standing: Machine) -> None:
+    """Of a topic that is not there it waits for messages of the type that is given, for so long."""
+    text = standing.look("topic", "echo", "/silence", STRING, "--timeout", "0.05", code=4)
+    assert text.startswith("WARNING: topic [/silence] does not appear to be published yet\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        ("topic info /chater", 1, "error: Unknown topic '/chater'; did you mean '/chatter'?"),
+        ("topic echo /chater", 1, "topic /chater does not appear to be published yet; did you mean '/chatter'?"),
+        ("topic echo /chater", 1, "to wait for it give its type: graphflow topic echo /chater TYPE"),
+        ("topic echo /chatter std_msgs/msg/Int32", 2, "error: /chatter is a std_msgs/msg/String, not a std_msgs/msg/"),
+        ("topic pub /chatter std_msgs/msg/Int32 data: 1", 2, "/chatter is a std_msgs/msg/String, not a std_msgs/msg/I"),
+        ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
+        ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "did you mean 'String'?"),
+    ],
+)
+def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
+    """The error names what is there."""
+    assert told in standing.look(*words.split(), code=code)
+
+
+def test_pub_once(standing: Machine) -> None:
+    """What is published is shown, and arrives."""
+    text = standing.look("topic", "pub", "--once", "/office/minutes", STRING, "data: on the record")
+    assert text.endswith("publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='on the record')\n\n")
+    standing.until(lambda: "on the record" in standing.look("logs", "office"), "it is heard")
+
+
+def test_without_a_graph(machine: Machine) -> None:
+    """Where nothing runs, to look ends with 3."""
+    assert "error: nothing is running: nobody answers at tcp/" in machine.look("topic", "list", code=3)
+    assert "error: nothing is running" in machine.look("topic", "echo", "/chatter", code=3)

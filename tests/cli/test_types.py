@@ -1,0 +1,42 @@
+"""Types on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli.exits import UsageFault
+from graphflow.cli.types import agree, use_project
+from graphflow.msgs import registry
+
+
+def test_the_same_type(capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing is said of it."""
+    assert agree("std_msgs/msg/String", "std_msgs/msg/String", "/chatter") == "std_msgs/msg/String"
+    assert capsys.readouterr() == ("", "")
+
+
+def test_one_definition_under_two_names(capsys: pytest.CaptureFixture[str]) -> None:
+    """The graph's name is taken, which is said."""
+    assert agree("turtlesim_msgs/msg/Pose", "turtlesim/msg/Pose", "/turtle1/pose") == "turtlesim/msg/Pose"
+    assert capsys.readouterr() == ("", "note: /turtle1/pose is a turtlesim/msg/Pose; using that\n")
+
+
+def test_two_types() -> None:
+    """It is wrong usage, and the right one is named."""
+    with pytest.raises(UsageFault, match="^/chatter is a std_msgs/msg/String, not a std_msgs/msg/Int32$"):
+        agree("std_msgs/msg/Int32", "std_msgs/msg/String", "/chatter")
+
+
+def test_the_projects_own_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From any folder of the project, its `interfaces/` is found."""
+    monkeypatch.setattr(registry, "_roots", [])
+    folder = tmp_path / "interfaces" / "own_types" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Thing.msg").write_text("int32 x\n")
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "pyproject.toml").touch()
+    monkeypatch.chdir(tmp_path / "nodes")
+    use_project()
+    assert registry.definition_file("own_types/msg/Thing") == folder / "Thing.msg"
