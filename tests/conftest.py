@@ -135,11 +135,11 @@ class Machine:
         assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{program.text}"
         return program.text
 
-    def look(self, *words: str, cwd: Path = PROJECT, code: int = 0) -> str:
+    def look(self, *words: str, cwd: Path = PROJECT, code: int | None = 0) -> str:
         """Run `graphflow WORDS` in this process, which is quick, for verbs of which only the words matter.
 
         Environment and working directory are the machine's for that time; they, the folders of interfaces and the
-        handlers of signals are as they were afterwards. Returns stdout and stderr together, and checks the exit code.
+        handlers of signals are as they were afterwards. What it returns and checks is as of `run`.
         """
         assert not self._at, "this process is not there"
         text = io.StringIO()
@@ -157,7 +157,8 @@ class Machine:
             finally:
                 for number, handler in handlers.items():
                     signal.signal(number, handler)
-        assert end.value.code == code, f"{words} ended with {end.value.code}, not {code}:\n{text.getvalue()}"
+        got = end.value.code
+        assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{text.getvalue()}"
         return text.getvalue()
 
     def until(self, condition: Callable[[], bool], what: str, limit: float = LIMIT) -> None:

@@ -51,7 +51,10 @@ def test_info(standing: Machine) -> None:
         ("info /fibonaci", "error: there is no action /fibonaci; did you mean '/fibonacci'?"),
         ("send_goal /fibonaci", "error: there is no action /fibonaci; did you mean '/fibonacci'?"),
         ("find example_interfaces/action/Fibonaci", "did you mean 'Fibonacci'?"),
-        ("send_goal /fibonacci", f"TYPE is missing; /fibonacci is a {TYPE}: graphflow action send_goal /fibonacci {TYPE}"),
+        (
+            "send_goal /fibonacci",
+            f"TYPE is missing; /fibonacci is a {TYPE}: graphflow action send_goal /fibonacci {TYPE}",
+        ),
         ("send_goal /fibonacci turtlesim/action/RotateAbsolute", f"/fibonacci is a {TYPE}, not a turtlesim/action/Rot"),
         (f"send_goal /fibonacci {TYPE} {{ordr: 1}}", "did you mean 'order'?"),
     ],

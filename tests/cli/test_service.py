@@ -31,7 +31,9 @@ def test_call(standing: Machine) -> None:
     assert standing.look("service", "call", ADD, TYPE, "{a: 1, b: 2}") == (
         f"requester: making request: {request}(a=1, b=2)\n\nresponse:\n{response}(sum=3)\n\n"
     )
-    assert json.loads(standing.look("service", "call", "office/clerk/add", TYPE, "{a: 1, b: 2}", "--json")) == {"sum": 3}
+    assert json.loads(standing.look("service", "call", "office/clerk/add", TYPE, "{a: 1, b: 2}", "--json")) == {
+        "sum": 3
+    }
 
 
 @pytest.mark.parametrize(

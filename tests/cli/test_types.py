@@ -25,7 +25,7 @@ def test_one_definition_under_two_names(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_two_types() -> None:
     """It is wrong usage, and the right one is named."""
-    with pytest.raises(UsageFault, match="^/chatter is a std_msgs/msg/String, not a std_msgs/msg/Int32$"):
+    with pytest.raises(UsageFault, match=r"^/chatter is a std_msgs/msg/String, not a std_msgs/msg/Int32$"):
         agree("std_msgs/msg/Int32", "std_msgs/msg/String", "/chatter")
 
 

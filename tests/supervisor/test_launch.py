@@ -1,0 +1,86 @@
+"""From a graph file to a running supervisor: what is refused, and what a start that is broken off leaves."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+from pathlib import Path
+
+import psutil
+import pytest
+
+from graphflow.transport.rendezvous import address
+from tests.conftest import PROGRAMS, Machine
+from tests.supervisor.running import GOOD, nothing_is_left, rows, write
+
+pytestmark = pytest.mark.real
+
+
+def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> None:
+    """The second says since when it runs and how to stop it; the first is not touched."""
+    file = write(project, GOOD)
+    machine.run("up", "-d", file, cwd=project)
+
+    text = machine.run("up", file, cwd=project, code=1)
+
+    assert "graph lab is running already" in text
+    assert "graphflow down --graph lab" in text
+    assert set(rows(machine)) == {"/a", "/b"}
+    machine.look("down")
+
+
+def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Machine, project: Path) -> None:
+    """The owner is named; two graphs with other names may run beside each other, and then `down` asks which."""
+    machine.run("up", "-d", write(project, GOOD), cwd=project)
+
+    text = machine.run("up", write(project, GOOD, "other.yaml"), cwd=project, code=1)
+    assert "already in domain" in text
+    assert f"process {rows(machine)['/a']['pid']}" in text
+
+    machine.run("up", "-d", write(project, "nodes:\n  /c: {class: nodes.lab:Good}\n", "third.yaml"), cwd=project)
+    assert "lab" in (text := machine.look("down", code=2))
+    assert "--graph NAME" in text
+    machine.look("down", "--graph", "third")
+    machine.look("down")
+
+
+def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
+    machine: Machine, project: Path
+) -> None:
+    """The text names the folder and the variable that moves it."""
+    machine.env["ROS_LOG_DIR"] = "/proc/nowhere"
+    text = machine.run("up", write(project, GOOD), cwd=project, code=1)
+    assert "/proc/nowhere/lab" in text
+    assert "ROS_LOG_DIR" in text
+    nothing_is_left(machine, [])
+
+
+def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, project: Path) -> None:
+    """Whoever listens where the rendezvous should be is named, and no node is started."""
+    _, port = address(machine.endpoint)
+    with socket.create_server(("127.0.0.1", port)):
+        text = machine.run("up", write(project, GOOD), cwd=project, code=1)
+    assert f"process {os.getpid()}" in text
+    assert "did not answer as Zenoh" in text
+    assert "set GRAPHFLOW_RENDEZVOUS=tcp/127.0.0.1:OTHER_PORT" in text
+    nothing_is_left(machine, [])
+
+
+def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, project: Path) -> None:
+    """A start that takes long can be broken off."""
+    shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
+    up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
+    machine.until(lambda: bool(children(up.pid)), "the supervisor is there")
+    supervisor = children(up.pid)
+    machine.until(lambda: bool(children(supervisor[0])), "the preload process is there")
+    preload = children(supervisor[0])
+
+    up.end(signal.SIGINT)
+
+    nothing_is_left(machine, [*supervisor, *preload])
+
+
+def children(pid: int) -> list[int]:
+    return [child.pid for child in psutil.Process(pid).children()]
