@@ -1,9 +1,9 @@
-"""What a suspended coroutine tells of its wait: all that is read of asyncio's internals, and of CPython's frames.
+"""What a suspended coroutine reveals of its wait: all that is read from asyncio's internals and CPython's frames.
 
-asyncio says of a task only which future it awaits. What that future stands for (all of these tasks, any of them, a
-lock, a deadline) is read here from the coroutines between, which are known by their code, and from the local names and
-private attributes that CPython 3.11 to 3.14 have in common. A test pins each of them, so that a new Python in which
-one is missing is told by that test and not by a search that has become blind.
+asyncio says only which future a task awaits. What that future stands for (all of these tasks, any of them, a
+lock, a deadline) is read here from the coroutines in between, which are known by their code, and from the local names
+and private attributes that CPython 3.11 to 3.14 have in common. A test pins each of them, so that a new Python in which
+one is missing is reported by that test and not by a search that has gone blind.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
     queue.Queue.join.__code__: ("task_done",),
     concurrent.futures.Future.result.__code__: FUTURE,
 }
-"""Waits of asyncio, and of threads, and the methods of the same object that end them."""
+"""Waits of asyncio and of threads, and the methods of the same object that end them."""
 ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)}
 _TASK_GROUP_EXITS = tuple(
     getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)
@@ -62,8 +62,9 @@ def coroutines(task: Any) -> Iterator[Any]:
 
 
 def frame_of(coroutine: Any) -> FrameType | None:
-    """Where a coroutine is suspended; None of one that has ended."""
-    return getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
+    """Where a coroutine is suspended; None for one that is running or has ended."""
+    frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
+    return frame or getattr(coroutine, "ag_frame", None)
 
 
 def frames_of(task: Any) -> list[FrameType]:
@@ -100,7 +101,7 @@ def stack_of(thread: int) -> list[FrameType]:
 
 
 def is_coroutine(frame: FrameType) -> bool:
-    """Whether `await` can stand in the code of a frame."""
+    """Whether `await` is allowed in the code of a frame."""
     return bool(frame.f_code.co_flags & inspect.CO_COROUTINE)
 
 
@@ -120,7 +121,7 @@ class JointWait(NamedTuple):
     tasks: list[Any]
     wants: Literal["all", "any"]
     fails_early: bool
-    """Whether an error of one of them ends the wait."""
+    """Whether an error in one of them ends the wait."""
 
 
 def joint_wait(frame: FrameType) -> JointWait | None:
@@ -143,7 +144,7 @@ def gathered(future: Any) -> JointWait | None:
 
 
 def _returns_errors(children: Iterable[Any]) -> bool:
-    """Whether `asyncio.gather` was called with `return_exceptions`, told by the callback that it hangs on its parts."""
+    """Whether `asyncio.gather` was called with `return_exceptions`, by the callback that it adds to its parts."""
     for child in children:
         for callback in _callbacks(child):
             found = _enclosed(callback, "return_exceptions")
@@ -153,7 +154,7 @@ def _returns_errors(children: Iterable[Any]) -> bool:
 
 
 def shielded(outer: Any) -> Any:
-    """What `asyncio.shield` protects, told by the callback that it hangs on the outer future; None if it is none."""
+    """What `asyncio.shield` protects, found by the callback that it adds to the outer future; None without a shield."""
     for callback in _callbacks(outer):
         if getattr(callback, "__name__", "") == "_outer_done_callback":
             return _enclosed(callback, "inner")  # since 3.14 the closure has whoever shields, too
@@ -172,7 +173,7 @@ def _callbacks(future: Any) -> Iterator[Any]:
 
 
 def deadlines(coroutine: Any) -> Iterator[float]:
-    """When a suspended coroutine gives up by asyncio's means, in seconds of its loop's clock."""
+    """When a suspended coroutine times out by asyncio's means, in seconds of its loop's clock."""
     frame = frame_of(coroutine)
     if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
         when = getattr(frame.f_locals.get("timeout_handle"), "when", None)  # uvloop's has one too
@@ -184,17 +185,17 @@ def deadlines(coroutine: Any) -> Iterator[float]:
 
 
 class ObjectWait(NamedTuple):
-    """A wait for an event, a queue, a lock or their like."""
+    """A wait for an event, a queue, a lock or the like."""
 
     thing: Any
     endings: tuple[str, ...]
-    """Its methods that end the wait."""
+    """The object's methods that end the wait."""
     is_bounded: bool
-    """Whether a thread gives it up after some time."""
+    """Whether a thread gives up the wait after some time."""
 
 
 def object_wait(frame: FrameType) -> ObjectWait | None:
-    """What one of asyncio's or of the threads' primitives waits for, if this is the frame of one."""
+    """What one of asyncio's or threading's primitives waits for, if this is the frame of one."""
     endings = _WAITS.get(frame.f_code)
     if endings is None:
         return None
@@ -203,13 +204,13 @@ def object_wait(frame: FrameType) -> ObjectWait | None:
 
 
 def awaited_future(future: Any) -> ObjectWait | None:
-    """A wait for a future that is no task, which would end by itself."""
+    """A wait for a future that is not a task; a task would end by itself."""
     is_plain = isinstance(future, asyncio.Future) and not isinstance(future, asyncio.Task)
     return ObjectWait(future, FUTURE, False) if is_plain else None
 
 
 def is_inside(thing: Any, lock: Any) -> bool:
-    """Whether something is a lock, or a condition that has it."""
+    """Whether something is a given lock, or a condition that has it."""
     return lock is thing or lock is getattr(thing, "_lock", None)
 
 

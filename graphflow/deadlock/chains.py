@@ -1,6 +1,6 @@
-"""Calls that cannot succeed, told at once.
+"""Calls that cannot succeed, reported at once.
 
-A request carries who waits for it. If its server's group is full of runs that do, it can never be answered.
+A request carries what waits for it. If its server's group is full of such runs, it can never be answered.
 
 Source: docs/architecture.md, "The life of a call".
 """
@@ -19,7 +19,7 @@ class Chains:
     """The chains of one process's calls.
 
     Args:
-        zid: Of its session.
+        zid: The id of the process's session.
     """
 
     def __init__(self, ledger: Ledger, zid: str) -> None:
@@ -56,6 +56,6 @@ class Chains:
         return holders if waits and len(holders) >= limit else []
 
     def _awaits(self, run: Run, hop: chain.Hop) -> bool:
-        """Whether a run still waits for the call that it is said to wait for: it may have given up."""
+        """Whether a run still waits for the call that it was seen waiting for: it may have given up."""
         call = self._ledger.calls.get(waiter_of(run))
         return call is not None and (call.gid, call.sequence) == (hop.gid, hop.sequence)

@@ -1,9 +1,9 @@
-"""Who can end a wait that asyncio knows nothing of: a plain Event, Queue, Lock or Future, or a flag that is polled.
+"""What can end a wait that asyncio knows nothing about: a plain Event, Queue, Lock or Future, or a flag that is polled.
 
 The answer is read from the source of the node's class: which methods set `self.arrived`, assign `self.pose`, and which
 handlers call them. That holds as long as nothing else does it, which the source cannot prove: hence *closed world*,
-and reports that say LIKELY. Whatever this cannot follow to the end leaves the world open, and nothing is reported: an
-object that is given away, a function inside a method, an attribute that is written from outside, a condition with
+and reports that say LIKELY. Whatever cannot be followed to the end leaves the world open, and nothing is reported: an
+object that is passed on, a function inside a method, an attribute that is written from outside, a condition with
 anything in it but attributes, constants and arithmetic.
 """
 
@@ -43,35 +43,35 @@ _MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
 _CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
 _ARRAYS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
 _ARRAYS |= {"fill", "sort", "put", "partition"}
-"""Methods of arrays that give nobody another view of them."""
+"""Methods of arrays that return no other view of them."""
 _CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
 
 
 class Setters(NamedTuple):
-    """Who ends a wait."""
+    """What ends a wait."""
 
     what: str
     handlers: frozenset[str]
     """Methods that are called by timers, messages, requests, goals, or run as tasks."""
     lock: Any = None
-    """What ends the wait when one of those who have entered it by `with` leaves it."""
+    """What ends the wait when one of those that have entered it by `with` leaves it."""
     places: int = 1
-    """How many can be in it."""
+    """How many can be in it at a time."""
     tasks: tuple[asyncio.Future[Any], ...] = ()
-    """Whose ends may end the wait too."""
+    """Tasks and goals whose end may end the wait too."""
 
 
 def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
-    """Who can end a wait; None when that is not known.
+    """What can end a wait; None when that is not known.
 
     Args:
-        frames: Of the coroutine that waits, the outermost first.
-        waiter: The future that it waits for, if it is a coroutine.
+        frames: The frames of the coroutine that waits, the outermost first.
+        waiter: The future that it waits for, if a coroutine waits.
         is_bounded: Whether the wait is given up after some time.
     """
     try:
         question = _Question(frames, node)
-        if (is_bounded or question.is_bounded) and question.is_repeated:  # what matters is when it stops to try again
+        if (is_bounded or question.is_bounded) and question.is_repeated:  # what matters is when it stops trying again
             return question.of_loop()
         return question.of_object(waiter) or question.of_loop()
     except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
@@ -79,13 +79,12 @@ def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: 
 
 
 def cancellers(thing: Any, node: Subject) -> Setters | None:
-    """Who of themselves, as timers and tasks do, cancel a task or goal that the node keeps; None when nobody does.
+    """What cancels a task or goal that the node keeps without being asked to, as timers and tasks do; None for nothing.
 
-    Those who do it when they are told to, by a message or a request, are like the world outside: a ring that needs them
-    does not end.
+    What cancels only on a message or a request is like the world outside: a ring that needs it does not end.
 
     Raises:
-        Unknown: Somebody may.
+        Unknown: Something may.
     """
     instance = node.instance
     held = {name for name, value in vars(instance).items() if value is thing or _holds(value, thing)}
@@ -121,7 +120,7 @@ class _Place:
 
     @cached_property
     def loops(self) -> list[Loop]:
-        """The loops that it is in, the outermost first."""
+        """The loops around the place, the outermost first."""
         around = (ast.While, ast.AsyncFor, ast.For)
         nodes = ast.walk(self.function.syntax)  # by depth
         return [node for node in nodes if isinstance(node, around) and _spans(node, self.frame.f_lineno)]
@@ -132,7 +131,7 @@ def _spans(node: ast.stmt, line: int) -> bool:
 
 
 class _Question:
-    """Who ends one wait."""
+    """What ends one wait."""
 
     def __init__(self, frames: list[FrameType], node: Subject) -> None:
         self._node, self._instance = node, node.instance
@@ -147,19 +146,19 @@ class _Question:
             elif frame.f_locals.get("self") is self._instance and not _is_library(frame):
                 raise Unknown  # a method whose source was not found
             elif self._places and not _is_library(frame):
-                self._places.clear()  # code of others stands between: it may do as it likes
+                self._places.clear()  # foreign code comes in between and may do as it likes
         if not self._places:
             raise Unknown
 
     @property
     def is_repeated(self) -> bool:
-        """Whether it waits again and again, for as long as something holds."""
+        """Whether the code waits repeatedly, for as long as something holds."""
         return any(isinstance(loop, (ast.While, ast.AsyncFor)) for place in self._places for loop in place.loops)
 
     # something that is waited for
 
     def of_object(self, waiter: Any) -> Setters | None:
-        """Who calls what ends the wait for an object of the node's; None when it waits for none."""
+        """The callers of what ends the wait for an object of the node; None when the wait is for none."""
         waits = self._waits[::-1]
         if not waits and (wait := awaited_future(waiter)) is not None:
             waits = [wait]
@@ -178,7 +177,7 @@ class _Question:
         return None
 
     def _names(self, thing: Any) -> tuple[set[str], set[str]]:
-        """The attributes that are a thing, and those that are containers in which it is."""
+        """The attributes that are a thing, and those that are containers of it."""
         everything = [*(pair for cls in type(self._instance).__mro__ for pair in vars(cls).items())]
         everything += vars(self._instance).items()
         is_it = {name for name, value in everything if is_inside(value, thing)}
@@ -198,7 +197,7 @@ class _Question:
         return Setters(f"self.{name}", setters.handlers if setters else frozenset(), thing)
 
     def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
-        """What is held by a list or dictionary may be ended by whatever method ends such a thing."""
+        """Something in a list or dictionary may be ended by any method that ends such a thing."""
         if any(use.kind == "given" for use in self._source.uses(name)) or self._source.foreign(name):
             raise Unknown
         if any(not use.method for ending in methods for use in self._source.foreign(ending)):
@@ -213,7 +212,7 @@ class _Question:
         return self._reached(f"a part of self.{name}", found)
 
     def _uses(self, name: str) -> Iterator[Use]:
-        """The uses of a tool, such as an event, by which it cannot be known to anybody else."""
+        """The uses of a tool, such as an event, none of which makes it known to other code."""
         if any(use.kind != "called" or use.name not in QUESTIONS for use in self._source.foreign(name)):
             raise Unknown
         for use in self._source.uses(name):
@@ -224,10 +223,10 @@ class _Question:
                 raise Unknown
             yield use
 
-    # a loop that looks again and again
+    # a loop that polls
 
     def of_loop(self) -> Setters | None:
-        """Who changes what a loop looks at, in which the handler only waits and looks again."""
+        """What changes the attributes that a polling loop looks at, one that only waits and looks again."""
         place = next((place for place in reversed(self._places) if place.loops), None)
         if place is None:
             return None
@@ -245,7 +244,7 @@ class _Question:
         changing: set[str] = set()
         for name in attributes:
             for use in self._changes(name):
-                if use.syntax in inside or use.method in below:  # the loop changes itself what it looks at
+                if use.syntax in inside or use.method in below:  # the loop itself changes what it looks at
                     raise Unknown
                 changing.add(use.method)
         what = " and ".join(f"self.{name}" for name in sorted(attributes))
@@ -255,7 +254,7 @@ class _Question:
         return None if found is None else found._replace(tasks=tuple(conditions.tasks))
 
     def _changes(self, name: str) -> Iterator[Use]:
-        """The uses of an attribute that may make it something else than it is now."""
+        """The uses of an attribute that may change it."""
         value = getattr(self._instance, name)
         changes = next((methods for tool, methods in TOOLS.items() if isinstance(value, tool)), None)
         if changes is not None:
@@ -297,19 +296,19 @@ class _Question:
             return is_same and use.value.value == value  # type: ignore[union-attr]
         if use.kind == "called":
             return isinstance(value, PLAIN) or use.name in LOOKING
-        if use.kind == "given" and isinstance(value, Message):  # its fields may be set by the other name
+        if use.kind == "given" and isinstance(value, Message):  # its fields may be set through the other name
             functions = self._source.methods[use.method]
             return not any(_sets_fields(function) for function in functions)
         return use.kind != "changed"
 
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
-        """The handlers and tasks that call those methods, if nobody else does."""
+        """The handlers and tasks that call those methods, if nothing else does."""
         entries = entries_of(self._node)
         above = self._source.above(set(methods) - _BEGINNINGS, entries)
         if above & self._node.hooks:
             raise Unknown
         for method in above - entries - _BEGINNINGS:
-            if self._source.above({method}, entries) == {method}:  # nobody is seen to call it, so somebody else does
+            if self._source.above({method}, entries) == {method}:  # no caller is seen, so some other code calls it
                 raise Unknown
         found = frozenset(above & entries)
         return Setters(what, found) if found else None
@@ -324,7 +323,7 @@ _LIBRARIES = ("graphflow.", "asyncio.", "contextlib", "threading", "queue", "con
 
 
 def _is_library(frame: FrameType) -> bool:
-    """Whether it is code that gives way to the handler's sooner or later, and does nothing else."""
+    """Whether a frame is of code that sooner or later yields to the handler's, and does nothing else."""
     name = f"{frame.f_globals.get('__name__', '')}."
     return name.startswith(_LIBRARIES)
 
@@ -338,7 +337,7 @@ def _holds(container: Any, thing: Any) -> bool:
 
 
 def _places(made: ast.expr | None) -> int:
-    """How many a semaphore lets in, read from where it is made."""
+    """How many a semaphore admits, read from where it is made."""
     match made:
         case ast.Call(args=[ast.Constant(value=int(places))], keywords=[]):
             return places
@@ -348,7 +347,7 @@ def _places(made: ast.expr | None) -> int:
 
 
 def _is_new(use: Use, makers: set[str]) -> bool:
-    """Whether what is assigned is made there."""
+    """Whether what is assigned is made on the spot."""
     if use.kind != "assigned" or use.value is None:
         return True
     if isinstance(use.value, ast.Call):
@@ -358,7 +357,7 @@ def _is_new(use: Use, makers: set[str]) -> bool:
 
 
 def _has_second_name(use: Use, value: Any) -> bool:
-    """Whether a part of an array or message, through which it can be changed, is handed on."""
+    """Whether a part of an array or message, through which it can be changed, is passed on."""
     if use.kind == "called" and isinstance(value, arrays()):
         return use.name not in LOOKING | _ARRAYS
     if use.part is None:
@@ -380,7 +379,7 @@ def _has_second_name(use: Use, value: Any) -> bool:
 
 
 def _sets_fields(function: FunctionNode) -> bool:
-    """Whether a function sets a field of something that is not the node."""
+    """Whether a function sets a field of something other than the node."""
     return any(
         isinstance(n, (ast.Attribute, ast.Subscript)) and isinstance(n.ctx, (ast.Store, ast.Del)) and not is_own(n)
         for n in ast.walk(function)

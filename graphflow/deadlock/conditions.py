@@ -1,8 +1,8 @@
-"""On what attributes of a node it depends whether a loop ends that only waits and looks again.
+"""Which attributes of a node decide whether a polling loop ends, one that only waits and looks again.
 
 A condition may be made of attributes, constants, local names that stay what they are, tasks and goals that only the
-function knows, arithmetic, functions of `math` and `numpy`, and methods of the node that only look and reckon. Of
-anything else it is not known when it changes: `Unknown`.
+function knows, arithmetic, functions of `math` and `numpy`, and methods of the node that only look and compute. When
+anything else changes is not known: `Unknown`.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ TOOLS: dict[type, tuple[str, ...]] = {
     queue.Queue: _QUEUE,
     concurrent.futures.Future: FUTURE,
 }
-"""What a loop may ask something of, and the methods that change the answer."""
+"""What a loop may query, and the methods that change the answer."""
 QUESTIONS = {"is_set", "empty", "full", "qsize", "done", "cancelled"}
 PLAIN = (bool, int, float, str, bytes, NoneType, Enum)
-"""What does not change by itself, and not through another name."""
+"""What changes neither by itself nor through another name."""
 CONTAINERS = (list, dict, set, deque)
 LOOKING = {"get", "keys", "values", "items", "index", "count", "copy", "startswith", "endswith", "lower", "upper"}
 LOOKING |= {"issubset", "issuperset", "isdisjoint", "all", "any", "sum", "min", "max", "mean"}
-"""Methods that leave what they are called on as it is."""
+"""Methods that do not change what they are called on."""
 _PURE = {"abs", "all", "any", "bool", "dict", "float", "frozenset", "int", "len", "list", "max", "min", "round", "set"}
 _PURE |= {"sorted", "str", "sum", "tuple"}
 _TASK_MAKERS = ("create_task", "ensure_future")
 _MODULES = ("math", "numpy", "numpy.linalg")
-"""Whose functions look at what they are given, and at nothing else."""
+"""Modules whose functions look at their arguments and at nothing else."""
 
 
 class _Scope(NamedTuple):
@@ -56,15 +56,15 @@ class _Scope(NamedTuple):
     locals: Mapping[str, list[ast.expr | None]]
     """What may be bound to each; None for what cannot be read."""
     constants: frozenset[str]
-    """Those that stay what they are while the loop runs."""
+    """Names that stay what they are while the loop runs."""
     globals: Mapping[str, Any]
     rebound: set[str]
     """Global names that do not stay what they are."""
     tasks: Mapping[str, Sequence[asyncio.Future[Any]]] = MappingProxyType({})
-    """What those names stand for, or are lists of, that are tasks or goals which nobody else knows."""
+    """Names that stand for, or are lists of, tasks or goals that no other code knows."""
 
     def is_constant(self, node: ast.AST) -> bool:
-        """Whether it is a name, or part of something, whose value nobody changes while the loop runs."""
+        """Whether an expression is a name, or part of something, whose value does not change while the loop runs."""
         path: list[str] = []
         while isinstance(node, ast.Attribute):
             path.append(node.attr)
@@ -83,7 +83,7 @@ class _Scope(NamedTuple):
         return value is not self and _is_plain(value)
 
     def is_mathematics(self, function: ast.expr) -> bool:
-        """Whether it is a function that looks at what it is given, and at nothing else."""
+        """Whether an expression is a function that looks at its arguments and at nothing else."""
         name, *path = ast.unparse(function).split(".")
         if name in self.locals:
             return False
@@ -97,25 +97,25 @@ class _Scope(NamedTuple):
 
 
 class LoopConditions:
-    """On what attributes of the node it depends whether a loop ends."""
+    """Which attributes of the node decide whether a loop ends."""
 
     def __init__(self, loop: Loop, function: FunctionNode, frame: FrameType, source: ClassSource, node: object) -> None:
         self._loop, self._source, self._node = loop, source, node
         self._found: set[str] = set()
         self.tasks: list[asyncio.Future[Any]] = []
-        """What it depends on that ends by itself."""
+        """Things that decide it and that end by themselves."""
         inside = set(ast.walk(loop))
         code, values = frame.f_code, frame.f_locals
         bound = _bindings(function)
         given = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
-        own = [name for name in code.co_varnames if name not in code.co_cellvars]  # that no function inside can bind
+        own = [name for name in code.co_varnames if name not in code.co_cellvars]  # that no inner function can bind
         constants = {
             name
             for name in own
             if not any(target in inside for target, _ in bound.get(name, ())) and _is_plain(values.get(name, self))
         }
-        # Names of the functions around it may be bound by any of them.
-        # and what is given to the function, by whoever has given it.
+        # Names of enclosing functions may be bound by any of them.
+        # and the function's arguments, by its caller.
         locals_: dict[str, list[ast.expr | None]] = {name: [None] for name in values}
         locals_ |= {name: [value for _, value in bound[name]] for name in own if name in bound and name not in given}
         tasks = {
@@ -129,7 +129,7 @@ class LoopConditions:
         self._scope = _Scope(locals_, frozenset(constants), frame.f_globals, source.rebound, tasks)
 
     def attributes(self) -> set[str]:
-        """Raises `Unknown` when it depends on something else."""
+        """Those attributes. Raises `Unknown` when something else decides it."""
         if isinstance(self._loop, ast.While):
             self._read(self._loop.test, self._scope)
         nodes = list(walk(self._loop))
@@ -183,7 +183,7 @@ class LoopConditions:
                 self._found.add(name)
                 self.tasks.append(goal.ended)
             case ast.Attribute(value=ast.Name(), attr="request" | "is_cancel_requested"):
-                return  # a goal's: to cancel it ends any wait
+                return  # a goal's: cancelling it ends any wait
             case ast.Attribute(value=value):
                 self._read(value, scope, seen)
             case ast.Call(func=function, args=arguments, keywords=[]):
@@ -214,7 +214,7 @@ class LoopConditions:
         self._read(element, scope, seen)
 
     def _call(self, function: ast.expr, scope: _Scope, seen: frozenset[str]) -> None:
-        """What the answer of a call depends on, its arguments apart."""
+        """What the result of a call depends on besides its arguments."""
         match function:
             case ast.Attribute(value=ast.Name(id="self"), attr=name) if name in self._source.methods:
                 self._returned(name, seen)
@@ -243,7 +243,7 @@ class LoopConditions:
         self._found.add(name)
 
     def _returned(self, name: str, seen: frozenset[str]) -> None:
-        """What a method or property gives back, if it only looks and reckons; its arguments have been read."""
+        """What a method or property returns, if it only looks and computes; its arguments have been read."""
         functions = self._source.methods.get(name, [])
         if len(functions) != 1 or name in seen or isinstance(functions[0], ast.AsyncFunctionDef):
             raise Unknown
@@ -276,7 +276,7 @@ def _globals_of(cls: type, name: str) -> dict[str, Any]:
 
 
 def _bindings(function: FunctionNode) -> dict[str, list[tuple[ast.AST, ast.expr | None]]]:
-    """What a function binds to its local names, and where; None for what is no expression of its own."""
+    """What a function binds to its local names, and where; None for what is not an expression of its own."""
     found: dict[str, list[tuple[ast.AST, ast.expr | None]]] = {}
 
     def bind(target: ast.AST, value: ast.expr | None) -> None:
@@ -308,7 +308,7 @@ def _bindings(function: FunctionNode) -> dict[str, list[tuple[ast.AST, ast.expr 
 
 
 def makes_task(value: ast.expr) -> bool:
-    """Whether it makes a task, or several, or a goal."""
+    """Whether an expression makes a task, or several, or a goal."""
     match value:
         case ast.Await(value=ast.Call(func=ast.Attribute(attr="send_goal"))):
             return True
@@ -329,7 +329,7 @@ def _futures(value: Any) -> list[asyncio.Future[Any]]:
 
 
 def _is_kept(name: str, function: FunctionNode, loop: set[ast.AST]) -> bool:
-    """Whether nobody else gets to know what a local name stands for, and the loop only asks it something."""
+    """Whether no other code learns what a local name stands for, and the loop only queries it."""
     for node, parents in walk(function):
         if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load):
             match parents[-1]:
@@ -347,7 +347,7 @@ def _is_of_inner_loop(parents: list[ast.AST]) -> bool:
 
 
 def arrays() -> tuple[type, ...]:
-    """The class of numpy's arrays; nothing where numpy is not loaded, and so no array there."""
+    """The class of numpy's arrays; nothing where numpy is not loaded, since no arrays exist there."""
     numpy = sys.modules.get("numpy")
     return () if numpy is None else (numpy.ndarray,)
 

@@ -1,7 +1,7 @@
-"""What a process tells of its handlers and groups, and lets be changed in them, on keys that ROS 2 knows nothing of.
+"""What a process reports of its handlers and groups, and lets others change, on keys that ROS 2 does not know.
 
 @graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
-@graphflow/<domain>/look/<zid>       has it look for a deadlock that somebody else has found and it is to report
+@graphflow/<domain>/look/<zid>       makes it look for a deadlock that another process found and it must report
 @graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
 """
 
@@ -37,7 +37,7 @@ class Inspection:
         self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox)
 
     def _waits(self) -> bytes:
-        """On any thread."""
+        """Runs on any thread."""
         search, watchdog = self._search, self._search.watchdog
         nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
         told = {
@@ -53,7 +53,7 @@ class Inspection:
         return json.dumps(told).encode()
 
     def _look(self) -> bytes:
-        """On any thread."""
+        """Runs on any thread."""
         self._search.look_now()
         return b""
 
@@ -83,7 +83,7 @@ class Inspection:
         return {"groups": groups_of(node)}
 
     def close(self) -> None:
-        """Answer no more."""
+        """Stop answering."""
         for report in self._reports:
             report.close()
         self._server.close()

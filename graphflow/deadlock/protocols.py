@@ -25,19 +25,19 @@ class Subject(Protocol):
 
     @property
     def instance(self) -> object:
-        """What the user has made: its attributes are looked at, and the source of its class is read."""
+        """The user's object: its attributes are looked at, and the source of its class is read."""
 
     @property
     def runners(self) -> Sequence[Runner]:
-        """What runs its handlers."""
+        """The runners of its handlers."""
 
     @property
     def tasks(self) -> AbstractSet[asyncio.Task[Any]]:
-        """What runs beside them."""
+        """The tasks that run alongside them."""
 
     @property
     def groups(self) -> Groups:
-        """Whose slots they take."""
+        """The groups whose slots they take."""
 
     @property
     def handlers(self) -> AbstractSet[str]:
@@ -45,7 +45,7 @@ class Subject(Protocol):
 
     @property
     def hooks(self) -> AbstractSet[str]:
-        """Methods that are called outside of any handler: checks of parameters, events, whether a goal is wanted."""
+        """Methods that are called outside any handler: checks of parameters, events, whether a goal is wanted."""
 
 
 class Process(Protocol):
@@ -73,7 +73,7 @@ class Process(Protocol):
     def nodes(self) -> Sequence[Subject]: ...
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
+        """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""

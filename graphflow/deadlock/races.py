@@ -1,13 +1,13 @@
 """Looks for lost updates in the attributes of nodes, while it is switched on (`up --races`, GRAPHFLOW_RACES=1).
 
 A handler reads `self.x` and suspends; another writes it meanwhile; the first then writes what it made of the old value.
-The other's write is lost, and nobody is told, since no line of it is wrong by itself.
+The other's write is lost in silence, since no line is wrong by itself.
 
-Reported is a write only if all of this holds: the same run has read the attribute before; somebody else has written it
-since; the new value differs from the one that is overwritten; and by the source of the method the write comes of the
-read: its right side uses the attribute or a variable made from it, or it stands in an `if` or `while` that asks for it.
+A write is reported only if all of this holds: the same run has read the attribute before; another one has written it
+since; the new value differs from the one it overwrites; and by the source of the method the write derives from the
+read: its right side uses the attribute or a variable made from it, or it is in an `if` or `while` that tests it.
 
-Not seen are changes inside of objects (`self.points.append`), handlers in threads, attributes that are set by
+Not seen are changes inside objects (`self.points.append`), handlers in threads, attributes set by
 `setattr` or through another name, and values that reach the write through another method.
 """
 
@@ -33,7 +33,7 @@ VARIABLE = "GRAPHFLOW_RACES"
 
 
 def is_wanted() -> bool:
-    """Whether the environment asks for it."""
+    """Whether the environment asks for the search."""
     return os.environ.get(VARIABLE, "") not in ("", "0")
 
 
@@ -43,17 +43,17 @@ class _Access(NamedTuple):
     version: int
     who: str
     method: str
-    """The handler's, or the task's."""
+    """The name of the handler or the task."""
     place: Place
     by: object
     """The run or task."""
 
 
 def watch(node: object, full_name: str, logger: logging.Logger, ignored: AbstractSet[str]) -> None:
-    """Have every access to a node's own attributes looked at, by giving it a class that does so.
+    """Watch every access to a node's own attributes, by giving the node a class that does so.
 
     Args:
-        node: What the user has made.
+        node: The user's object.
         ignored: Attributes that every node has.
     """
     cls, log = type(node), _Log(node, full_name, logger)
@@ -81,13 +81,13 @@ def watch(node: object, full_name: str, logger: logging.Logger, ignored: Abstrac
 
 
 def _is_method(cls: type, name: str) -> bool:
-    """Whether it is anything else than plain data with a default on the class."""
+    """Whether a name is anything other than plain data with a default on the class."""
     value = next((vars(c)[name] for c in cls.__mro__ if name in vars(c)), None)
     return callable(value) or hasattr(value, "__get__")
 
 
 class _Log:
-    """Who has read and written the attributes of one node."""
+    """The reads and writes of one node's attributes."""
 
     def __init__(self, node: object, full_name: str, logger: logging.Logger) -> None:
         self._node, self._full_name, self._logger = node, full_name, logger
@@ -139,7 +139,7 @@ def _actor() -> Any:
 def _is_equal(a: Any, b: Any) -> bool:
     try:
         return bool(a == b)
-    except Exception:  # objects of users' classes, numpy arrays: whatever comparing them does
+    except Exception:  # objects of users' classes, numpy arrays: comparing them may do anything
         return False
 
 
@@ -160,7 +160,7 @@ def _text(node: str, name: str, seen: _Access, other: _Access, access: _Access) 
 
 
 def _comes_of_read(name: str, frame: FrameType) -> bool:
-    """Whether by the source what is written comes of a read of the same attribute."""
+    """Whether by the source what is written derives from a read of the same attribute."""
     function = _function(frame.f_code.co_filename, frame.f_code.co_firstlineno)
     if function is None:
         return False
@@ -180,7 +180,7 @@ def _comes_of_read(name: str, frame: FrameType) -> bool:
 
 
 def _uses(expression: ast.AST, name: str, derived: set[str]) -> bool:
-    """Whether `self.name`, or a variable made from it, is in an expression."""
+    """Whether `self.name`, or a variable made from it, occurs in an expression."""
     return any(
         (isinstance(n, ast.Attribute) and n.attr == name and isinstance(n.value, ast.Name) and n.value.id == "self")
         or (isinstance(n, ast.Name) and n.id in derived)

@@ -1,10 +1,10 @@
-"""Looks for deadlocks when somebody has waited: first in this process, then, if waits lead out of it, in all.
+"""Looks for deadlocks when something has waited: first in this process, then, if waits lead out of it, in all.
 
 Nothing is done while nothing waits. A call, or work that finds no slot, arms a look a quarter of a second later, and
-so does the start of a task; what still waits then is looked at, and again at growing distances. Deadlocks within a
-process are seen in one picture of it. For others all processes are asked twice, as `machines.reduction` explains.
-Every process that has a part in a deadlock finds it; the one that comes first by id reports it, and says when it is
-over. Whoever finds it first has that one look at once.
+so does the start of a task; what still waits then is looked at, and again at growing intervals. Deadlocks within a
+process show in one snapshot of it. For others all processes are asked twice, as `machines.reduction` explains.
+Every process that has a part in a deadlock finds it; the one with the lowest id reports it, and says when it is
+over. The process that finds it first makes that one look at once.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ logger = logging.getLogger("graphflow")
 PROBE_AFTER = 0.25
 """Seconds that something waits before it is looked at."""
 PROBE_LONGEST = 8.0
-"""Seconds between two looks at the same waits, at most."""
+"""Longest interval in seconds between two looks at the same waits."""
 TASKS_EVERY = 2.0
-"""Seconds between two looks at tasks, whose waits nobody announces, while nothing else waits."""
+"""Seconds between two looks at tasks, whose waits are not announced, while nothing else waits."""
 PULL_LIMIT = 0.5
-"""Seconds that other processes get to answer."""
+"""Seconds that other processes have to answer."""
 GONE_AFTER = 0.5
-"""Seconds from the first sign that a process goes until all of it has gone."""
+"""Seconds from the first sign that a process is going until all of it has gone."""
 
 Ring = frozenset[str]
 """The members of a deadlock."""
@@ -59,22 +59,22 @@ class Report(NamedTuple):
 
     text: str
     who: str
-    """Has a part in it, in words."""
+    """A member, in words."""
     processes: set[str]
-    """In which its members are, and those who wait behind them."""
+    """The processes of its members, and of what waits behind them."""
     order: tuple[str, ...]
-    """The members, each of whom waits for the next."""
+    """The members, each of which waits for the next."""
 
 
 class Foreign(NamedTuple):
-    """A deadlock with a part in this process that another one is to report."""
+    """A deadlock with a part in this process that another process must report."""
 
     reporter: str
-    """Its process."""
+    """The process that must report it."""
     who: str
     processes: set[str]
     waits: frozenset[tuple[str, Condition]]
-    """Those of the members that are in this process."""
+    """The members that are in this process."""
 
 
 class Search:
@@ -84,28 +84,28 @@ class Search:
         self._process = process
         self.policy = policy
         self.is_on = policy != "off"
-        """Whether anybody wants to know."""
+        """Whether deadlocks are looked for."""
         self.is_armed = policy == "off"
-        """Whether a look is due soon; always, and in vain, when nobody wants to know."""
+        """Whether a look is due soon; always true, to no effect, when deadlocks are not looked for."""
         self.pulls = 0
         """How often other processes were asked."""
         self.reports: dict[Ring, Report] = {}
-        """The deadlocks that this process has reported and that there are now."""
+        """The deadlocks that this process has reported and that still exist."""
         self.stalls = Stalls()
         self.watchdog = Watchdog(process.loop, self._probe_blocked)
         self.snapshot = Snapshot(process, self.watchdog)
         self._chains = Chains(process.ledger, process.session.zid)
         self._unresponsive = Unresponsive(process)
         self._dead: set[str] = set()
-        """Activities that were last found to be dead, with the help of other processes."""
+        """Activities last found to be dead with the help of other processes."""
         self._foreign: dict[Ring, Foreign] = {}
-        """If the process that is to report them goes, another one has to say that they are over."""
+        """If the process that must report them goes, another one has to say that they are over."""
         self._is_watching = False
         self._behind: dict[Ring, set[str]] = {}
-        """By deadlock, of whichever process: who was said to wait for it."""
+        """What was reported to wait for a deadlock, by deadlock of any process."""
         self._period = PROBE_AFTER
         self._grown_ns = 0
-        """When the period has last become longer."""
+        """When the period was last made longer."""
         self._alarm: Alarm | None = None
         self._last: set[tuple[str, Condition]] = set()
         self._lock = threading.Lock()
@@ -115,7 +115,7 @@ class Search:
     # what the runtime asks
 
     def arm(self) -> None:
-        """Something waits. Called for every call and every stall: next to nothing when a look is due already."""
+        """Something waits. Called for every call and every stall: costs next to nothing when a look is already due."""
         if not self.is_armed:
             self._period = PROBE_AFTER
             self._schedule(PROBE_AFTER)
@@ -125,12 +125,12 @@ class Search:
         return self._chains.of(call) if self.is_on else b""
 
     def hopeless(self, service: str, runner: Runner, asked: bytes) -> str:
-        """Why a queued request can never be answered, where it is to be failed for that; empty if it may be.
+        """Why a queued request can never be answered, where it must fail for that; empty if it may be answered.
 
-        Its server's group is full of runs that wait for it.
+        It cannot when its server's group is full of runs that wait for it.
 
         Args:
-            runner: The server's.
+            runner: The server's runner.
             asked: The attachment of the request.
         """
         if self.policy not in ("raise", "break"):
@@ -144,7 +144,7 @@ class Search:
         return hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph)
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop looking."""
         self._is_closed = True
         self.watchdog.close()
         if self._alarm is not None:
@@ -164,7 +164,7 @@ class Search:
         """Look at what waits, and decide when to look again."""
         try:
             self._look()
-        except Exception as error:  # a search that has stumbled must not be the last
+        except Exception as error:  # a failed search must not be the last
             logger.debug("the search for deadlocks: %r", error, exc_info=error)
             self._schedule(PROBE_LONGEST)
 
@@ -219,7 +219,7 @@ class Search:
     # other processes
 
     def _pull(self) -> None:
-        """Ask all twice. Those who have not answered count as alive, so what the others tell may be enough."""
+        """Ask all twice. Those that do not answer count as alive, so what the others say may be enough."""
         goes_on = False
 
         def first(replies: list[bytes], is_all: bool) -> None:
@@ -241,14 +241,14 @@ class Search:
         self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, told)
 
     def _whole(self, replies: list[bytes]) -> tuple[WaitGraph, set[str]]:
-        """The waits of all, and who has answered."""
+        """The waits of all, and which processes answered."""
         pictures, answered = [], {self._process.session.zid}
         for reply in replies:
             try:
                 data = json.loads(reply)
                 graph, process = from_json(data), str(data["process"])
             except (ValueError, KeyError, TypeError, RecursionError) as error:
-                logger.debug("a picture of waits that cannot be read: %s", error)
+                logger.debug("a snapshot of waits that cannot be read: %s", error)
                 continue
             pictures.append(graph)
             answered.add(process)
@@ -273,12 +273,12 @@ class Search:
 
     def _tell(self, deadlock: Deadlock, graph: WaitGraph) -> None:
         members = [graph.activities[i] for i in deadlock.ring]
-        # What only the source code tells must have lasted: a setter may be about to run.
+        # What only the source code shows must have lasted: a setter may be about to run.
         if deadlock.is_likely and not all(_is_old(a) for a in members):
             return
         ring, mine = frozenset(deadlock.ring), self._process.session.zid
         who = " and ".join(title(a) for a in members)
-        # One that was told may have grown since, and another ring of it be found.
+        # One that was reported may have grown since, and another ring of it be found.
         told = next((known for known in self.reports if known & ring), ring)
         behind = [graph.activities[i] for i in (*deadlock.victims, *(ring - told))]
         victims = {title(a) for a in behind if a.process == mine}
@@ -305,11 +305,11 @@ class Search:
         self._behind[told] |= victims
 
     def _is_reported(self, ring: Ring) -> bool:
-        """Whether it, or another ring through one of its members, has been reported and stands."""
+        """Whether a deadlock, or another ring through one of its members, has been reported and stands."""
         return any(ring & known for known in self.reports)
 
     def _break(self, deadlock: Deadlock, graph: WaitGraph) -> None:
-        """End the youngest call or goal of the ring, if it is of this process: all find the ring, and agree on one."""
+        """End the youngest call or goal of the ring, if it is this process's: all find the ring and agree on one."""
         ledger = self._process.ledger
         ways = zip(deadlock.ring, deadlock.edges, strict=True)
         calls = [(graph.activities[name], edge.via) for name, edge in ways if isinstance(edge.via, Call)]
@@ -325,10 +325,10 @@ class Search:
                 future.set_exception(DeadlockError(explanation(deadlock, graph)))
 
     def _take_back(self, graph: WaitGraph, dead: set[str], processes: set[str]) -> None:
-        """Take back reports of rings that are none any more.
+        """Take back reports of rings that no longer exist.
 
         Args:
-            processes: Those that have been looked at. Nothing is known of others that are there.
+            processes: The processes that were looked at. Nothing is known about others.
         """
         for ring, report in list(self.reports.items()):
             unknown = report.processes - processes
@@ -336,17 +336,17 @@ class Search:
                 continue
             del self.reports[ring]
             self._behind.pop(ring, None)
-            if not ring <= dead:  # otherwise they are in another, which is told now
+            if not ring <= dead:  # otherwise they are in another, which is reported now
                 logger.warning("the deadlock of %s has cleared", report.who)
 
     def _changed(self, change: GraphChange) -> None:
-        """A process that was to report a deadlock may be going, and the deadlock with it."""
+        """A process that must report a deadlock may be going, and the deadlock with it."""
         if change.alive:
             return
         leaving = {ring for ring, foreign in self._foreign.items() if foreign.reporter == change.entity.zid}
         for ring in leaving:
             foreign, known = self._foreign.pop(ring), self.snapshot.take().activities
-            # Those who wait for the process have been told that it has gone, and have not gone on yet.
+            # What waits for the process has been told that it has gone, and has not gone on yet.
             if all(name in known and known[name].wait in (wait, FREE) for name, wait in foreign.waits):
                 clock = self._process.clock
                 clock.call_at(clock.monotonic_ns() + to_ns(GONE_AFTER), partial(self._say_gone, ring, foreign))
@@ -354,18 +354,18 @@ class Search:
     def _say_gone(self, ring: Ring, foreign: Foreign) -> None:
         there = {entity.zid for entity in self._process.cache}
         if foreign.reporter in there:
-            self._foreign[ring] = foreign  # something else of it went
+            self._foreign[ring] = foreign  # something else of that process went
         elif not self._is_closed and self._process.session.zid == min(foreign.processes & there, default=""):
-            logger.warning("the deadlock of %s has cleared: a process of it has gone", foreign.who)
+            logger.warning("the deadlock of %s has cleared: one of its processes has gone", foreign.who)
 
     def look_now(self) -> None:
-        """Another process has found a deadlock that this one is to report. From any thread."""
+        """Another process has found a deadlock that this one must report. Callable from any thread."""
         if self.policy != "off":
             with suppress(RuntimeError):  # the loop is closed
                 self._process.loop.call_soon_threadsafe(self._pull)
 
     def _probe_blocked(self) -> None:
-        """The event loop is blocked: look from the thread that has noticed it."""
+        """The event loop is blocked: look from the thread that noticed it."""
         if self.policy == "off" or not self._lock.acquire(blocking=False):
             return
         try:
@@ -378,16 +378,16 @@ class Search:
 
 
 def _nothing(*_: object) -> None:
-    """Nobody waits for the answers."""
+    """Ignores the answers."""
 
 
 def _is_asked(graph: WaitGraph) -> bool:
-    """Whether somebody else waits for what this process is to answer."""
+    """Whether another process waits for what this one must answer."""
     activities, queues = graph.activities.values(), graph.queues.values()
     asked = {call for queue in queues for call in queue.calls} | {a.serves for a in activities if a.serves}
     return not asked.issubset(call.id for a in activities for call in calls_of(a.wait))
 
 
 def _is_old(activity: ActivityView) -> bool:
-    """Whether it has waited long enough to be looked at."""
+    """Whether an activity has waited long enough to be looked at."""
     return activity.age >= 0.999 * PROBE_AFTER

@@ -1,7 +1,7 @@
-"""What the handlers and tasks of this process wait for, read off when somebody asks, as a `WaitGraph`.
+"""What the handlers and tasks of this process wait for, read on request, as a `WaitGraph`.
 
-Nothing is written down while a handler runs, but for the entries of the ledger. What an activity waits for is read
-from the future that it awaits; where that tells nothing, from the coroutines between. A snapshot can be taken on any
+Nothing is recorded while a handler runs, except the entries of the ledger. What an activity waits for is read
+from the future that it awaits; where that says nothing, from the coroutines in between. A snapshot can be taken on any
 thread, so also while the event loop is blocked.
 """
 
@@ -54,16 +54,16 @@ from graphflow.wire.liveliness import Kind
 
 _ATTEMPTS = 5
 LOOP_LIMIT = 0.2
-"""Seconds that the loop gets to take a snapshot of itself."""
+"""Seconds that the loop has to take a snapshot of itself."""
 
 
 class Snapshot:
-    """Takes the wait graph of one process, and remembers between two of them what has been seen before."""
+    """Takes the wait-for graph of one process, and remembers between two of them what has been seen before."""
 
     def __init__(self, process: Process, watchdog: Watchdog) -> None:
         self._process, self._watchdog = process, watchdog
         self._count = 0
-        """Of tasks that have a number."""
+        """The numbers of tasks that have one."""
         self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
         self._lock = threading.RLock()
         self._since: dict[tuple[str, Condition], int] = {}
@@ -79,7 +79,7 @@ class Snapshot:
         return WaitGraph()
 
     def take_for_others(self) -> WaitGraph:
-        """The same, for another thread: taken on the loop, whose coroutines must not be looked into while they run."""
+        """The same for another thread: taken on the loop, whose coroutines must not be inspected while they run."""
         if threading.get_ident() == self._process.ledger.thread or self._watchdog.is_blocked:
             return self.take()
         taken: queue.SimpleQueue[WaitGraph] = queue.SimpleQueue()
@@ -105,7 +105,7 @@ class Snapshot:
 
 
 def id_of(call: PendingCall) -> str:
-    """How wait graphs of all processes name a call."""
+    """The id of a call in the wait-for graphs of all processes."""
     return call_id(call.gid, call.sequence)
 
 
@@ -118,7 +118,7 @@ def place_of(task: Any) -> str:
 
 
 class _Look:
-    """One wait graph being made."""
+    """One wait-for graph in the making."""
 
     def __init__(self, process: Process, memory: Snapshot, watchdog: Watchdog) -> None:
         self._process, self._memory, self._watchdog = process, memory, watchdog
@@ -132,7 +132,7 @@ class _Look:
         self._queues: dict[str, QueueView] = {}
         self._seen: set[tuple[str, Condition]] = set()
         self._limit_ns: int | None = None
-        """When the activity that is looked at gives up waiting."""
+        """When the activity being looked at gives up waiting."""
 
     @cached_property
     def _servers(self) -> Counter[str]:
@@ -178,7 +178,7 @@ class _Look:
         return f"{self._zid}:q{runner.number}"
 
     def _slots(self, node: Subject, runner: Runner, group: HandlerGroup | None) -> tuple[str, ...]:
-        """The ids of the groups of which a run in `group` takes a slot; its own queue is as good as one."""
+        """The ids of the groups whose slots a run in `group` takes; its own queue acts as one."""
         named = () if group is None else (self._named(node, group),)
         if not runner.is_serial:
             return named
@@ -190,7 +190,7 @@ class _Look:
         name = f"{self._zid}:{node.full_name}:{group.name}"
         # A group that cancels what runs is never full for good.
         limit = None if group.when_full == "cancel_running" else group.limit
-        known = group.name if group in node.groups.by_name.values() else ""  # it is the runtime's own
+        known = group.name if group in node.groups.by_name.values() else ""  # else it is the runtime's own
         is_declared = known in node.groups.known
         self._groups[name] = GroupView(name, known, node.full_name, limit, is_declared, group.is_threaded)
         return name
@@ -208,7 +208,7 @@ class _Look:
         return goal_id(item.goal_id) if runner.spec.kind == "action" else ""
 
     def _arrived(self) -> dict[int, list[str]]:
-        """Calls that have arrived and that the loop has not seen yet, by the number of the runner that they are for."""
+        """Calls that have arrived and that the loop has not seen yet, by the number of the runner they are for."""
         found: dict[int, list[str]] = {}
         for runner, gid, sequence in self._process.arrived():
             found.setdefault(runner.number, []).append(call_id(gid, sequence))
@@ -259,7 +259,7 @@ class _Look:
         )
 
     def _times(self, id_: str, wait: Condition) -> tuple[float, float | None]:
-        """For how many seconds an activity has waited, and how many are left until it gives up; None for no limit."""
+        """Seconds that an activity has waited, and seconds left until it gives up; None for no limit."""
         began, deadline = self._bounds(wait)
         if wait is not FREE and self._limit_ns is not None:
             deadline = min(self._limit_ns, deadline or self._limit_ns)
@@ -270,7 +270,7 @@ class _Look:
         return age, None if deadline is None else (deadline - self._now_ns) / 1e9
 
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
-        """When the first of the calls that are waited for began, and when the first times out."""
+        """When the first of the awaited calls began, and when the first times out."""
         wanted = set(_call_ids(wait))
         found = [c for c in list(self._ledger.calls.values()) if id_of(c) in wanted]
         deadlines = [c.deadline_ns for c in found if c.deadline_ns is not None]
@@ -281,7 +281,7 @@ class _Look:
     # conditions
 
     def _condition(self, task: Any, way: _Way) -> Condition:
-        """What a task or an activity waits for, in the end; `way` leads to it."""
+        """What a task or an activity ultimately waits for; `way` leads to it."""
         if id(task) in way.tasks or task.done():
             return FREE
         if isinstance(task, Activity) and task.returning_to is not None:
@@ -358,14 +358,14 @@ class _Look:
         return FREE
 
     def _known(self, task: Any) -> Condition | None:
-        """An activity of the picture by its own name; any other task is looked into."""
+        """An activity of the snapshot by its own name; any other task is looked into."""
         for node in self._nodes:
             if task in node.tasks:
                 return Join(self.task_id(task))
         return None
 
     def _closed_world(self, way: _Way, waiter: Any) -> Condition:
-        """A wait for something that, as far as the source code tells, only handlers of the node bring about."""
+        """A wait for something that, as far as the source code shows, only handlers of the node bring about."""
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or any(task.done() for task in found.tasks):
             return FREE
@@ -387,17 +387,17 @@ class _Look:
     def _set_by(self, found: Setters, way: _Way) -> Condition:
         node = way.node
         runners = [r for n, r in self._runners if n is node and r.spec.handler in found.handlers]
-        # Runs under way count too, also those that have let go of their slot.
+        # Runs under way count too, even those that have released their slot.
         others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
         others += [t for t in list(node.tasks) if t is not way.root and method_of(t) in found.handlers]
         known = {r.spec.handler for r in runners} | {method_of(t) for t in list(node.tasks)}
-        if not found.handlers <= known:  # one of them is not there to be waited for
+        if not found.handlers <= known:  # one of them does not exist and cannot be waited for
             return FREE
         is_held = False
         if found.lock is not None:
             inside = self._inside(found.lock)
             is_held = len(inside) == found.places
-            if not is_held and not found.handlers:  # somebody else is in it, and nobody is seen to release it by hand
+            if not is_held and not found.handlers:  # something else is in it, and no explicit release is seen
                 return FREE
             others += inside
         queues = sorted(self.queue_id(r) for r in runners)
@@ -425,7 +425,7 @@ class _Look:
             runner, item = run.runner, getattr(run, "item", None)
         else:
             return None
-        if item is None:  # a run that has ended, and whose result is being sent
+        if item is None:  # a run that has ended and whose result is being sent
             return None
         node = next((n for n, r in self._runners if r is runner), None)
         if node is None:
@@ -470,15 +470,15 @@ def _call_ids(condition: Condition) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """How a wait was come to: from a run of a handler, through the tasks that it waits for."""
+    """How a wait was reached: from a run of a handler, through the tasks that it waits for."""
 
     node: Subject
     root: Any
     """The activity."""
     frames: tuple[FrameType, ...] = ()
-    """Of all of them, the outermost first."""
+    """The frames of all of them, the outermost first."""
     tasks: frozenset[int] = frozenset()
-    """Their ids."""
+    """The ids of those tasks."""
     is_bounded: bool = False
     """Whether one of them gives up after some time."""
 

@@ -1,8 +1,8 @@
-"""What the source of a node's class tells: its methods, who calls whom, and all that is done to an attribute.
+"""What the source of a node's class shows: its methods, which calls which, and all that is done to an attribute.
 
 Read once for each class, from the files of the class and of its parents. Whatever may do more than it shows, such as
-`setattr`, a method that is handed on instead of called, or the node itself given to code of another file, makes the
-source say nothing at all: `Unknown`.
+`setattr`, a method that is passed on instead of called, or the node itself given to code of another file, makes the
+source unusable: `Unknown`.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ _LOOKING |= {"super", "tuple", "type", "zip"}
 _SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
 _SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
 _SAME |= {"diagonal", "copyto"}
-"""Functions of numpy that may give back another view of the same array, or write to it."""
+"""Functions of numpy that may return another view of the same array, or write to it."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
 
 
 class Unknown(Exception):
-    """The source does not tell."""
+    """The source does not say."""
 
 
 class Function(NamedTuple):
-    """A method, or a function inside of one."""
+    """A method, or a function inside one."""
 
     syntax: FunctionNode
     method: str
-    """The method that it is or stands in."""
+    """The method that it is or is inside of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +52,13 @@ class Use:
     Attributes:
         kind: What is done: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
             of it is *called*; a *part* is looked at; it is *entered* by `with`; *read* where that cannot change it;
-            *invoked*, `self.x()`; or *given* to somebody, another name included.
+            *invoked*, `self.x()`; or *given* to other code or another name.
         name: The method that is called, or the part.
         value: What is assigned, if that is an expression of its own.
-        is_nested: In a function or lambda inside of the method, which runs nobody knows when.
-        is_started: The call of an `async def` that is not awaited on the spot, and runs on its own.
+        is_nested: In a function or lambda inside the method, which may run at any time.
+        is_started: A call of an `async def` that is not awaited on the spot and runs on its own.
         is_registered: Given to one of the node's `create_...`, as a handler is.
-        part: The whole of what is looked at, where it is handed on: `self.x.y[2:]`.
+        part: The whole of what is looked at, where it is passed on: `self.x.y[2:]`.
     """
 
     method: str
@@ -77,48 +77,48 @@ class ClassSource:
     """The methods of a class and its parents."""
 
     methods: dict[str, list[FunctionNode]] = field(default_factory=dict)
-    """By name: the child's, and its parents' where those are called by `super()`."""
+    """Methods by name: the child's, and its parents' where those are called by `super()`."""
     rebound: set[str] = field(default_factory=set)
-    """Names of modules that some function binds anew."""
+    """Module-level names that some function rebinds."""
     _others: dict[str, FunctionNode] = field(default_factory=dict)
     """Functions of the files, by name."""
     _functions: dict[tuple[str, int], Function] = field(default_factory=dict)
-    """By file and first line."""
+    """Functions by file and first line."""
     _modules: list[ast.Module] = field(default_factory=list)
     _uses: dict[str, list[Use]] = field(default_factory=dict)
     _foreign: dict[str, list[Use]] = field(default_factory=dict)
-    """Mentions on anything but `self`, anywhere in the files."""
+    """Mentions on anything other than `self`, anywhere in the files."""
     _callers: dict[str, set[str]] = field(default_factory=dict)
     _properties: set[str] = field(default_factory=set)
     _is_known: bool = True
 
     def function(self, code: CodeType) -> Function | None:
-        """The source of a method, or of a function inside of one, by its code."""
+        """The source of a method, or of a function inside one, by its code."""
         return self._functions.get((code.co_filename, code.co_firstlineno))
 
     def uses(self, attribute: str) -> list[Use]:
         """All that the class's methods do to `self.attribute`.
 
         Raises:
-            Unknown: Something may be done to it that is not written down.
+            Unknown: The source may not show everything that is done to it.
         """
         if not self._is_known:
             raise Unknown
         return self._uses.get(attribute, [])
 
     def foreign(self, attribute: str) -> list[Use]:
-        """What is done to an attribute of that name of anything but `self`."""
+        """What is done to an attribute of that name on anything other than `self`."""
         return self._foreign.get(attribute, [])
 
     def above(self, methods: set[str], handlers: set[str]) -> set[str]:
-        """Those methods, and all that call them, directly or through each other.
+        """Those methods and all that call them, directly or through each other.
 
         Args:
             methods: Names of methods.
             handlers: Methods that graphflow calls, which may be given to it.
 
         Raises:
-            Unknown: One of them may be called by somebody else.
+            Unknown: Some other code may call one of them.
         """
         found, todo = set(methods), list(methods)
         while todo:
@@ -130,7 +130,7 @@ class ClassSource:
         return found
 
     def below(self, method: str) -> set[str]:
-        """A method, and all that it calls."""
+        """A method and all that it calls."""
         found, todo = {method}, [method]
         while todo:
             caller = todo.pop()
@@ -140,10 +140,10 @@ class ClassSource:
         return found
 
     def may_fail(self, block: ast.AST, methods: set[str]) -> bool:
-        """Whether a block may be left by an error that is raised, as far as can be seen, in what it calls.
+        """Whether, as far as can be seen, an error raised in what a block calls may leave the block.
 
         Args:
-            methods: Those that the block calls, and those that they call.
+            methods: The methods that the block calls, and those that they call.
         """
         blocks = [block, *(function for name in methods for function in self.methods.get(name, []))]
         called = {
@@ -181,7 +181,7 @@ class ClassSource:
                     continued |= {node.attr for node in ast.walk(item) if _is_of_super(node)}  # type: ignore[attr-defined]
 
     def _link(self) -> None:
-        """Find out what is done to which attribute, and who calls whom."""
+        """Find out what is done to which attribute, and which method calls which."""
         inside: set[ast.AST] = set()
         defined = {d.name for m in self._modules for d in ast.walk(m) if isinstance(d, (ast.ClassDef, *_NESTED[:2]))}
         for name, functions in self.methods.items():
@@ -257,19 +257,19 @@ def _source_of(cls: Any) -> ClassSource:
         try:
             file = inspect.getsourcefile(parent) or ""
             source._add(parent, file, _module(file), continued)
-        except (OSError, SyntaxError, TypeError, ValueError):  # there is none: nobody knows what its methods do
+        except (OSError, SyntaxError, TypeError, ValueError):  # there is none: what its methods do is not known
             source._is_known = False
     source._link()
     return source
 
 
 def is_nested(parents: Sequence[ast.AST]) -> bool:
-    """Whether something stands in a function inside of what was walked."""
+    """Whether something is in a function inside what was walked."""
     return any(isinstance(p, _NESTED) for p in parents[1:])
 
 
 def walk(top: ast.AST) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
-    """Every node below one, with what is around it, the outermost first."""
+    """Every node below one, with what encloses it, the outermost first."""
     todo: list[tuple[ast.AST, list[ast.AST]]] = [(top, [])]
     while todo:
         node, parents = todo.pop()
@@ -314,7 +314,7 @@ def _use(method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> Use:
 
 
 def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
-    """Whether a mention cannot make known to anybody what is mentioned."""
+    """Whether a mention cannot make what is mentioned known to other code."""
     above = parents[-1]
     if isinstance(above, ast.Starred):
         return looks(above, parents[:-1])
@@ -332,7 +332,7 @@ def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
 
 
 def _only_looked_at(name: str, function: ast.AST) -> bool:
-    """Whether a second name of something is never used but to look at it."""
+    """Whether a second name of something is only used to look at it."""
     return not any(
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
         for node, parents in walk(function)
@@ -348,7 +348,7 @@ def _registers(above: ast.AST) -> bool:
 
 
 def _is_awaited(parents: Sequence[ast.AST]) -> bool:
-    """Whether a call of a coroutine, whose function has these parents, runs where it stands and nowhere else."""
+    """Whether a call of a coroutine, whose function has these parents, runs on the spot and nowhere else."""
     call, above = parents[-1], parents[-2]
     if isinstance(above, (ast.AsyncFor, ast.comprehension)):
         return above.iter is call
@@ -358,7 +358,7 @@ def _is_awaited(parents: Sequence[ast.AST]) -> bool:
 
 
 def _knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
-    """Whether the node, given to a call, is given to code that is read here too, or that only looks at it."""
+    """Whether a call that receives the node leads to code that is read here too, or that only looks at it."""
     call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | defined
 
@@ -370,7 +370,7 @@ def _imports(module: ast.Module) -> Iterator[ast.alias]:
 
 
 def is_own(node: ast.AST) -> bool:
-    """Whether it is `self.something`."""
+    """Whether an expression is `self.something`."""
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
 
 
@@ -383,7 +383,7 @@ def _is_of_super(node: ast.AST) -> bool:
 
 
 def _is_of(cls: type, item: FunctionNode) -> bool:
-    """Whether it is this class's method, and not that of another class of the same name."""
+    """Whether a function is this class's method, not that of another class of the same name."""
     held: Any = vars(cls).get(item.name)
     held = held.fget if isinstance(held, property) else getattr(held, "__func__", held)
     code = getattr(inspect.unwrap(held), "__code__", None)

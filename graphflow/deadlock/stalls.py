@@ -1,4 +1,4 @@
-"""Groups that the same runs keep for long while other handlers wait: nothing that never ends, but worth a word."""
+"""Groups that the same runs hold for long while other handlers wait: not a deadlock, but worth a warning."""
 
 from __future__ import annotations
 
@@ -12,41 +12,41 @@ from graphflow.times import NANOSECONDS
 logger = logging.getLogger("graphflow")
 
 STALL_AFTER = 5.0
-"""Seconds that others wait before it is said."""
+"""Seconds that others wait before a stall is reported."""
 LOOK_EVERY = 1.0
-"""Seconds between two looks whether it is over."""
+"""Seconds between two looks whether a stall is over."""
 
 
 @dataclass
 class _Stall:
     holders: frozenset[str]
     since_ns: int
-    """When somebody was first seen to wait for them."""
+    """When something was first seen to wait for them."""
     dropped: dict[str, int]
-    """By queue: what it had dropped until then."""
+    """What each queue had dropped by then."""
     text: str = ""
-    """What was said of it."""
+    """The report."""
 
 
 class Stalls:
-    """Who keeps whom waiting in one process. One per process."""
+    """What keeps what waiting in one process. One per process."""
 
     def __init__(self) -> None:
         self._by_group: dict[str, _Stall] = {}
 
     @property
     def texts(self) -> list[str]:
-        """Those that last, as they were told."""
+        """The stalls that last, as they were reported."""
         return [kept.text for kept in list(self._by_group.values()) if kept.text]
 
     def look(self, graph: WaitGraph, dead: set[str], now_ns: int) -> float | None:
-        """Say what is to be said.
+        """Report what there is to report.
 
         Args:
-            dead: Activities of which a deadlock tells.
+            dead: Activities that are in a reported deadlock.
 
         Returns:
-            Seconds until there is to be another look; None if nobody keeps anybody waiting.
+            Seconds until the next look; None if nothing keeps anything waiting.
         """
         holders: dict[str, list[ActivityView]] = {}
         for activity in graph.activities.values():
@@ -84,7 +84,7 @@ def _wanted(graph: WaitGraph, holders: dict[str, list[ActivityView]]) -> dict[st
         for name in queue.needs if queue.waiting else ():
             group, by = graph.groups[name], holders.get(name, [])
             is_full = group.limit is not None and len(by) >= group.limit
-            # That a handler's own runs come one after the other is what groups are for.
+            # A handler's own runs queueing for each other is what groups are for.
             if group.name and is_full and any(a.label != queue.label for a in by):
                 found.setdefault(name, []).append(queue)
     return found

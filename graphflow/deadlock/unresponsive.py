@@ -1,6 +1,6 @@
-"""Processes that somebody here waits for and that do not answer: stopped, out of reach, or held by a C extension.
+"""Processes that something here waits for and that do not answer: stopped, unreachable, or held by a C extension.
 
-Nothing can be told of their deadlocks, so they count as alive; but whoever waits for them is to know why.
+Nothing is known about their deadlocks, so they count as alive; but the user must know why others wait for them.
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from graphflow.wire.process import ProcessToken
 logger = logging.getLogger("graphflow")
 
 SILENT_AFTER = 1.0
-"""Seconds between two questions that were not answered, before it is said."""
+"""Seconds between two unanswered questions before a process is reported."""
 
 
 class Unresponsive:
-    """Who did not answer. One per process."""
+    """The processes that did not answer. One per process."""
 
     def __init__(self, here: Process) -> None:
         self._here = here
         self._processes: dict[str, ProcessToken] = {}
         self._since: dict[str, int] = {}
-        """When each that is silent was first found to be, in nanoseconds."""
+        """When each silent process was first found to be silent, in nanoseconds."""
         self._told: set[str] = set()
         self._watch: Closable | None = None
 
     def __bool__(self) -> bool:
-        """Whether somebody is silent."""
+        """Whether any process is silent."""
         return bool(self._since)
 
     def compare(self, mine: WaitGraph, answered: set[str]) -> None:
-        """All processes were asked: see who of those that are waited for has answered.
+        """All processes were asked: see which of the awaited ones have answered.
 
         Args:
             mine: The waits of this process.
-            answered: Sessions.
+            answered: The sessions that answered.
         """
-        if self._watch is None:  # those that are there are told soon, and looked for the next time
+        if self._watch is None:  # existing ones are announced soon, and are looked for the next time
             domain = self._here.domain
             self._watch = self._here.session.watch(process.watch_key(domain), self._changed)
         for zid in answered.intersection(self._since):
@@ -64,7 +64,7 @@ class Unresponsive:
                 logger.warning("%s", text)
 
     def _waited_for(self, mine: WaitGraph) -> dict[str, tuple[ActivityView, str]]:
-        """Sessions that are to answer calls, with one of those who wait, and for what."""
+        """Sessions that must answer calls, each with one activity that waits, and for what."""
         found: dict[str, tuple[ActivityView, str]] = {}
         for activity in mine.activities.values():
             for call in calls_of(activity.wait):

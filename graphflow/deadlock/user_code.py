@@ -1,4 +1,4 @@
-"""Which code is the user's own: what errors and reports point at."""
+"""Which code is the user's own, for errors and reports to point at."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def innermost(frames: Iterable[FrameType]) -> FrameType | None:
 
 
 def users_part(error: BaseException) -> TracebackType | None:
-    """An error's traceback without the frames of graphflow that it begins with; whole if there are no others."""
+    """An error's traceback without graphflow's frames at its beginning; whole if there are no others."""
     rest = error.__traceback__
     while rest is not None and rest.tb_frame.f_code.co_filename.startswith(_OURS):
         rest = rest.tb_next

@@ -1,7 +1,7 @@
-"""Watches the event loop from a thread: how long it has not come round, and who keeps it.
+"""Watches the event loop from a thread: how long it has not come round, and what keeps it.
 
 Looking costs a wake-up twice a second. An idle loop waits in its selector and is left alone; only one that is found
-busy is rung, and counts as blocked when it does not answer.
+busy is pinged, and counts as blocked when it does not answer.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ logger = logging.getLogger("graphflow")
 LOOK_EVERY = 0.5
 """Seconds between two looks at a loop that is idle."""
 ANSWER_WITHIN = 0.1
-"""Seconds after which a busy loop that was rung counts as late."""
+"""Seconds after which a busy loop that was pinged counts as late."""
 REPORT_AFTER = 1.0
 """Seconds after which a blocked loop is reported with its stack."""
 _IDLE = ("select", "poll", "_poll", "run_forever", "_run_once", "run_until_complete")
@@ -30,7 +30,7 @@ class Watchdog:
     """The watch over one process's event loop.
 
     Args:
-        blocked: Called on the watching thread, again and again, while the loop is blocked.
+        blocked: Called on the watching thread, repeatedly, while the loop is blocked.
     """
 
     def __init__(self, loop: AbstractEventLoop, blocked: Callable[[], None]) -> None:
@@ -42,16 +42,16 @@ class Watchdog:
         self.late = 0
         """How often the loop has taken more than `ANSWER_WITHIN` seconds to come round."""
         self.longest = 0.0
-        """The longest of those, in seconds."""
+        """The longest of those times, in seconds."""
         self._thread = threading.Thread(target=self._watch, name="graphflow-watchdog", daemon=True)
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start watching."""
         self._thread.start()
 
     @property
     def blocked_for(self) -> float:
-        """Seconds since the loop was rung in vain; 0 when it is not."""
+        """Seconds since an unanswered ping; 0 when the loop answers."""
         rung_at = self._rung_at
         return 0.0 if rung_at is None else time.monotonic() - rung_at
 
@@ -64,14 +64,14 @@ class Watchdog:
         while not self._ended.wait(LOOK_EVERY):
             held = time.monotonic() - began - LOOK_EVERY
             if held > REPORT_AFTER:
-                logger.warning("nothing of this process could run for %.1f s: it was stopped, or C code held it", held)
+                logger.warning("nothing in this process could run for %.1f s: it was stopped, or C code held it", held)
             if self._is_busy():
                 self._ring_and_wait()
             began = time.monotonic()
 
     def _is_busy(self) -> bool:
-        """Whether the loop is doing something just now."""
-        if not self._loop.is_running():  # whoever runs it has stopped, and may go on later
+        """Whether the loop is doing something right now."""
+        if not self._loop.is_running():  # it has been stopped, and may go on later
             return False
         frame = sys._current_frames().get(self._loop_thread)
         return frame is not None and frame.f_code.co_name not in _IDLE
@@ -102,10 +102,10 @@ class Watchdog:
         frame = sys._current_frames().get(self._loop_thread)
         stack = "".join(traceback.format_stack(frame)[-6:]) if frame is not None else ""
         return (
-            f"the event loop is blocked since {self.blocked_for:.1f} s: nothing else of this process can run.\n"
+            f"the event loop has been blocked for {self.blocked_for:.1f} s: nothing else in this process can run.\n"
             f"Await what takes long, or move it to a thread: thread=True, or await self.offload(...)\n{stack}"
         )
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         self._ended.set()

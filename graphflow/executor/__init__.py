@@ -1,1 +1,1 @@
-"""How handlers run: clocks, groups, the runs themselves, and the ledger of who calls, waits and holds."""
+"""How handlers run: clocks, groups, the runs themselves, and the ledger of what calls, waits and holds."""

@@ -1,6 +1,6 @@
 """An activity: one run of a handler, stepped straight from the arrival that caused it.
 
-It is a minimal asyncio task: the loop never hears of it unless the handler suspends, which saves a turn of the loop
+It is a minimal asyncio task: the loop never hears of it unless the handler suspends, which saves a loop iteration
 per message, and yet `asyncio.timeout`, `TaskGroup`, `current_task` and the rest work inside it from its first line
 (asyncio documents `_enter_task` and `_leave_task` for such tasks).
 """
@@ -18,7 +18,7 @@ from graphflow.executor.groups import HandlerGroup
 
 
 class Activity:
-    """One run of a coroutine, with the part of `asyncio.Task`'s face that asyncio's own tools use.
+    """One run of a coroutine, with the part of `asyncio.Task`'s interface that asyncio's own tools use.
 
     Args:
         finished: Called once with (result, error) when the coroutine has ended, its `finally` blocks included.
@@ -58,15 +58,15 @@ class Activity:
         self._cancel_message: Any = None
         self._cancel_requests = 0
         self.group: HandlerGroup | None = None
-        """Whose slot it holds."""
+        """The group whose slot the activity holds."""
         self.returning_to: HandlerGroup | None = None
-        """The group that it waits to come back to."""
+        """The group that the activity waits to return to."""
 
     def __repr__(self) -> str:
         return f"<Activity {self.name}{' done' if self.done() else ''}>"
 
     def start(self) -> None:
-        """Run to the first suspension. Not from inside another task."""
+        """Run to the first suspension. Must not be called inside another task."""
         self._context.run(self.step)
 
     def step(self, error: BaseException | None = None) -> None:
@@ -97,7 +97,7 @@ class Activity:
             return
         _leave_task(loop, self)  # type: ignore[arg-type]
         self._end(result, failure)
-        error = failure = None  # their tracebacks know this frame: no circle for the garbage collector
+        error = failure = None  # their tracebacks refer to this frame: leave no cycle for the garbage collector
 
     def _wait_for(self, awaited: Any) -> None:
         blocking = getattr(awaited, "_asyncio_future_blocking", None)
@@ -113,7 +113,7 @@ class Activity:
             if self._must_cancel and awaited.cancel(msg=self._cancel_message):
                 self._must_cancel = False
         else:
-            wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which is nothing asyncio knows")
+            wrong = RuntimeError(f"{self.name} awaited {awaited!r}, which asyncio cannot await")
             self._loop.call_soon(self.step, wrong, context=self._context)
 
     def _wakeup(self, future: asyncio.Future[Any]) -> None:
@@ -127,13 +127,13 @@ class Activity:
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
         finished = self._finished
-        del self._finished  # it may know this activity: likewise
+        del self._finished  # it may refer to this activity: likewise
         finished(result, error)
 
     def _cancelled(self) -> CancelledError:
         return CancelledError() if self._cancel_message is None else CancelledError(self._cancel_message)
 
-    # What asyncio.timeout, TaskGroup and their like ask of the current task.
+    # What asyncio.timeout, TaskGroup and the like ask of the current task.
 
     def cancel(self, msg: Any = None) -> bool:
         """Raise CancelledError in the coroutine at its next step; False when it has ended."""

@@ -1,4 +1,4 @@
-"""Clocks: whoever wants to wait in graph time asks one, so that tests and simulations can own time."""
+"""Clocks: all code that waits in graph time asks one, so that tests and simulations can own time."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from graphflow.times import Time, to_ns
 
 
 class Alarm(Protocol):
-    """Something scheduled, until it is cancelled."""
+    """A scheduled call, which can be cancelled."""
 
     def cancel(self) -> None: ...
 
 
 class Clock(ABC):
-    """Time and waiting. Subclasses say what time it is and how to be called at one."""
+    """Time and waiting. Subclasses say what time it is and how to be called at a given time."""
 
     def now(self) -> Time:
         """The time of day."""
@@ -50,7 +50,7 @@ class Clock(ABC):
             handle.cancel()
 
     async def every(self, period: float | None = None, *, hz: float | None = None) -> AsyncGenerator[int, None]:
-        """Count 0, 1, 2, ... once a period (seconds) or `hz` times a second; late turns are skipped, phase is kept."""
+        """Count 0, 1, 2, ... once a period (seconds) or `hz` times a second; late ones are skipped, phase is kept."""
         step = period_ns(period, hz)
         start, n = self.monotonic_ns(), 0
         while True:
@@ -64,7 +64,7 @@ class Clock(ABC):
 
 
 class ClockTimeout:
-    """A block that is given up after some time of a clock; made by `Clock.timeout`.
+    """A block that is cancelled after some time of a clock; made by `Clock.timeout`.
 
     Attributes:
         until_ns: When, by the clock; 0 before it is entered.
@@ -100,7 +100,7 @@ def period_ns(period: float | None, hz: float | None) -> int:
         ValueError: Both or neither are given, or the value is not a positive number.
     """
     if (period is None) == (hz is None):
-        raise ValueError("give a period in seconds or hz=, one of them")
+        raise ValueError("give either a period in seconds or hz=")
     value = period if hz is None else hz
     assert value is not None
     if not 0 < value < float("inf"):

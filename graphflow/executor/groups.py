@@ -1,4 +1,4 @@
-"""Concurrency groups at work: a node's, by name, and the slots that its handlers' runs hold."""
+"""Concurrency groups at run time: a node's, by name, and the slots that its handlers' runs hold."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from graphflow.names import did_you_mean
 
 
 class DeclaredGroup(Protocol):
-    """What a class says of a group."""
+    """What a class says about a group."""
 
     limit: int | None
     when_full: WhenFull
@@ -28,14 +28,14 @@ class Member(Protocol):
     """What queues for a slot."""
 
     def granted(self, group: HandlerGroup) -> None:
-        """A slot of `group` was handed over; it is held from now on."""
+        """A slot of `group` was handed over; the member holds it from now on."""
 
     def yields(self) -> None:
-        """Drop what waits: newer work has come, in a group that keeps the newest only."""
+        """Drop what waits: newer work has come, in a group that keeps only the newest."""
 
 
 class HandlerGroup(GroupState[Member]):
-    """A group of one node. On the node it is what the class's `Group` declaration reads as."""
+    """A group of one node. On the node, the class's `Group` declaration reads as this."""
 
     __slots__ = ("is_threaded",)
 
@@ -47,35 +47,35 @@ class HandlerGroup(GroupState[Member]):
         """Whether `def` handlers run in threads."""
 
     def give_back(self, loop: AbstractEventLoop) -> None:
-        """End of a run: the slot goes to whoever has waited longest."""
+        """End of a run: the slot goes to the member that has waited longest."""
         successor = self.release()
         if successor is not None:
             loop.call_soon(successor.granted, self)
 
     def set_limit(self, limit: int | None, loop: AbstractEventLoop | None) -> None:
-        """Allow so many runs at one time from now on; runs under way stay."""
+        """Allow this many runs at a time from now on; runs under way stay."""
         self.limit = limit
         while loop is not None and (successor := self.grant()) is not None:
             loop.call_soon(successor.granted, self)
 
     @asynccontextmanager
     async def released(self) -> AsyncGenerator[None, None]:
-        """Give the running handler's slot back for the length of the block, and queue for it again at the tail.
+        """Release the running handler's slot for the length of the block, then queue for it again at the tail.
 
             async with self.motion.released():
                 await self.planner.call(request)      # others of the group may run meanwhile
 
         State that the group protects may have changed when the block ends. A handler that is cancelled in the block
-        waits for its slot too before it goes on to its clean-up, as `asyncio.Condition.wait` does.
+        also waits for its slot before it goes on to its clean-up, as `asyncio.Condition.wait` does.
 
         Raises:
-            RuntimeError: The caller is no handler of this group, or a task that a handler has started.
+            RuntimeError: The caller is not a handler of this group, or is a task that a handler has started.
         """
         run: Any = asyncio.current_task()
         if getattr(run, "group", None) is not self:
             raise RuntimeError(
                 f"group {self.name!r} cannot be released here: only a handler that runs in it can do that, in its own "
-                "body and not in a task that it has started"
+                "body, not in a task that it has started"
             )
         loop = asyncio.get_running_loop()
         run.group = None
@@ -103,7 +103,7 @@ class HandlerGroup(GroupState[Member]):
             raise cancelled
 
     def statistics(self) -> dict[str, Any]:
-        """Limit, slots taken, members that wait, and the runs begun and failed in it since the start."""
+        """Limit, slots taken, waiting members, and the runs begun and failed in the group since the start."""
         members: list[Any] = self.members
         return {
             "limit": self.limit,
@@ -115,7 +115,7 @@ class HandlerGroup(GroupState[Member]):
 
 
 class _Return:
-    """A run that comes back to its group."""
+    """A run that returns to its group."""
 
     def __init__(self, loop: AbstractEventLoop) -> None:
         self.slot: Future[None] = loop.create_future()
@@ -124,7 +124,7 @@ class _Return:
         self.slot.set_result(None)
 
     def yields(self) -> None:
-        """A run under way is no work that waits to begin."""
+        """Nothing: a run under way is not work that waits to begin."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ class Groups:
         self._placed: list[str] = []
         self._unnamed = 0
         self.known = {*declared, *changes}
-        """Names that a graph file can speak of."""
+        """Names that a graph file can use."""
         for name, group in declared.items():
             self._of[group] = self.by_name.setdefault(name, _made(group, name))
         for name, change in changes.items():
@@ -173,12 +173,12 @@ class Groups:
         for handler in change.handlers:
             if handler in self._chosen:
                 raise DeclarationError(
-                    f"{handler} is put into two groups, {self._chosen[handler]!r} and {name!r}; it can be in one"
+                    f"{handler} is put in two groups, {self._chosen[handler]!r} and {name!r}; it can be in only one"
                 )
             self._chosen[handler] = name
 
     def place(self, handler: str, declared: DeclaredGroup | HandlerGroup | None) -> Placement:
-        """Where a handler runs, by name: as a graph file says, else as declared, else in the default group."""
+        """Where a handler runs, by name: as the graph file says, else as declared, else in the default group."""
         self._placed.append(handler)
         if handler in self._chosen:
             group = self.by_name.get(self._chosen[handler])
@@ -188,7 +188,7 @@ class Groups:
         return Placement(group, group is not None and group.is_threaded)
 
     def at_work(self, group: DeclaredGroup | HandlerGroup) -> HandlerGroup:
-        """What a declaration has become on this node; `self.motion` is that already."""
+        """What a declaration has become on this node; `self.motion` already is that."""
         if isinstance(group, HandlerGroup):
             return group
         if group not in self._of:
@@ -200,23 +200,23 @@ class Groups:
         return self._of[group]
 
     def named(self, name: str) -> HandlerGroup | None:
-        """The group of that name, made if there is none; None for the word that means none.
+        """The group of that name, made if missing; None for the word that means no group.
 
         Raises:
-            DeclarationError: No group can be called that.
+            DeclarationError: The name is not legal for a group.
         """
         if name == NO_GROUP:
             return None
         if not name.isidentifier():
-            raise DeclarationError(f"{name!r} is no name for a group; use letters, digits and _")
+            raise DeclarationError(f"{name!r} is not a group name; use letters, digits and _")
         return self.by_name.setdefault(name, HandlerGroup(name=name))
 
     def refuse_strays(self) -> None:
-        """Raises DeclarationError when a graph file has placed a handler that the node has not made."""
+        """Raises DeclarationError when the graph file has placed a handler that the node has not made."""
         for handler, group in self._chosen.items():
             if handler not in self._placed:
                 near = did_you_mean(handler, self._placed)
-                raise DeclarationError(f"group {group!r} names {handler!r}, which is no handler of this node{near}")
+                raise DeclarationError(f"group {group!r} names {handler!r}, which is not a handler of this node{near}")
 
 
 def _made(group: DeclaredGroup, name: str) -> HandlerGroup:

@@ -1,11 +1,11 @@
-"""The ledger: which calls, goals and threads the handlers of one process wait for, and what runs on the loop just now.
+"""The ledger: which calls, goals and threads the handlers of one process wait for, and what runs on the loop right now.
 
 It is written as things happen, an entry per wait and none per message, and entered by `with`:
 
     with ledger.call(future, gid, sequence, "/add", began_ns, deadline_ns):
         await future
 
-Whoever looks for deadlocks reads it, from any thread. Entries are keyed by the future that is awaited, since that is
+The search for deadlocks reads it, from any thread. Entries are keyed by the awaited future, since that is
 what a suspended coroutine shows of its wait.
 """
 
@@ -21,10 +21,10 @@ from typing import Any, Self
 
 
 class PendingCall:
-    """A service call that waits for its answer; entered for as long as it does.
+    """A service call that waits for its response; entered for as long as it waits.
 
     Attributes:
-        gid, sequence: The client's GID and its number of the call, which together name the call everywhere.
+        gid, sequence: The client's GID and its number for the call, which together name the call everywhere.
         service: The full name of the service.
         began_ns, deadline_ns: By the clock of the client's node; None for a call without a deadline.
     """
@@ -55,13 +55,13 @@ class PendingCall:
 
 
 class PendingGoal(ABC):
-    """A goal that was sent from this process, and has not ended.
+    """A goal that was sent from this process and has not ended.
 
     Attributes:
         goal_id: 16 bytes.
         action: The full name of the action.
         began_ns: When it was sent, by the process's clock.
-        ended: Done when the goal has ended.
+        ended: A future that is done when the goal has ended.
     """
 
     goal_id: bytes
@@ -72,11 +72,11 @@ class PendingGoal(ABC):
     @property
     @abstractmethod
     def done(self) -> bool:
-        """Whether it has ended."""
+        """Whether the goal has ended."""
 
 
 def _nothing() -> None:
-    """Nobody looks."""
+    """Does nothing: deadlocks are not looked for."""
 
 
 class Ledger:
@@ -92,13 +92,13 @@ class Ledger:
     def __init__(self, loop: AbstractEventLoop) -> None:
         self.loop = loop
         self.thread = threading.get_ident()
-        """The event loop's."""
+        """The event loop's thread."""
         self.alert: Callable[[], None] = _nothing
         self.at_work: object = None
         self.calls: dict[Future[Any], PendingCall] = {}
-        """By the future of the answer."""
+        """Calls, by the future of the response."""
         self.goals: dict[Future[Any], PendingGoal] = {}
-        """Goals that are waited for, by the future of their end or of news of them."""
+        """Goals that are waited for, by the future of their end or of news about them."""
         self.served: dict[Future[Any], bytes] = {}
         """Ids of goals of this process whose results are waited for."""
         self.threads: dict[Future[Any], threading.Thread] = {}
@@ -117,12 +117,12 @@ class Ledger:
         began_ns: int,
         deadline_ns: int | None,
     ) -> PendingCall:
-        """A call whose answer `future` waits for; an entry while it is entered."""
+        """A call whose response `future` waits for; an entry while it is entered."""
         return PendingCall(self, future, gid, sequence, service, began_ns, deadline_ns)
 
     @contextmanager
     def goal(self, future: Future[Any], goal: PendingGoal) -> Iterator[None]:
-        """A wait for the end of a goal, or for news of it."""
+        """A wait for the end of a goal, or for news about it."""
         self.goals[future] = goal
         try:
             yield
@@ -131,7 +131,7 @@ class Ledger:
 
     @contextmanager
     def serving(self, future: Future[Any], goal_id: bytes) -> Iterator[None]:
-        """A wait of this process's own for the end of a goal that it carries out, to tell its result."""
+        """This process's own wait for the end of a goal that it executes, to report its result."""
         self.served[future] = goal_id
         try:
             yield
@@ -149,7 +149,7 @@ class Ledger:
 
     @contextmanager
     def asked_from(self, thread: int, task: asyncio.Task[Any]) -> Iterator[None]:
-        """A thread blocks until a task of the loop has its answer."""
+        """A thread blocks until a task on the loop has its response."""
         self.asking[thread] = task
         try:
             yield

@@ -1,4 +1,4 @@
-"""A runner feeds the items of one queue to one handler, a run at a time or as many as the group allows."""
+"""A runner feeds the items of one queue to one handler, one run at a time or as many as the group allows."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ BURST = 64
 _next_number = itertools.count(1).__next__
 
 RunnerKind = Literal["", "timer", "subscription", "service", "action", "reply"]
-"""What runs are begun for; `reply` delivers answers to a client that is in a group, and nothing drops them."""
+"""What runs are begun for; `reply` delivers responses to a client that is in a group, and nothing drops them."""
 
 
 class Run(Activity):
-    """An activity of a `Runner`, which it tells of its end. One is made for every message.
+    """An activity of a `Runner`, to which it reports its end. One is made for every message.
 
     Attributes:
-        item: What it was begun for.
+        item: What the run was begun for.
         number: Rises from run to run through the whole process, and is never used twice.
     """
 
@@ -44,7 +44,7 @@ class Run(Activity):
         context: Context,
         group: HandlerGroup | None,
     ) -> None:
-        # Written out: to call the constructor above would take a tenth of a run.
+        # Written out: calling the constructor above would take a tenth of a run.
         self.name = runner.name
         self._loop = runner._loop
         self._coroutine = coroutine
@@ -61,7 +61,7 @@ class Run(Activity):
     def _end(self, result: Any, error: BaseException | None) -> None:
         self._coroutine = None
         item = self.item
-        del self.item  # a message is free when its run has ended
+        del self.item  # a message is freed when its run has ended
         runner = self.runner
         runner.active.discard(self)
         runner._ended(self.group, item, result, error)
@@ -72,17 +72,17 @@ Finished = Callable[[Any, Any, BaseException | None], None]
 
 @dataclass(frozen=True, slots=True)
 class RunnerSpec:
-    """What a runner runs, and whom it tells.
+    """What a runner runs, and what it reports to.
 
     Attributes:
-        handler: The method, or what stands for one in messages.
+        handler: The method, or what messages call one.
         invoke: Called with an item; returns a result, or a coroutine that will.
         finished: Called with (item, result, error) after each run.
         node: The full name of the node.
         refused: Called with an item that is dropped because the group is full.
         dropped: How many items were lost because the queue was full.
         is_inner: Whether the handler belongs to graphflow, as every node's parameter services do.
-        is_serial: Whether its runs exclude each other whatever group they run in; None: when they run in none.
+        is_serial: Whether its runs exclude each other in any group; None: only when they run in no group.
     """
 
     handler: str
@@ -100,7 +100,7 @@ class Runner:
     """Feeds a queue to a handler under a group.
 
     Args:
-        items: The queue, filled by somebody else, who then calls `wake`.
+        items: The queue, filled by other code, which then calls `wake`.
         group: Whose slots the runs take; None for a runner that queues behind itself only.
     """
 
@@ -129,22 +129,22 @@ class Runner:
     def __init__(self, ledger: Ledger, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> None:
         self.spec = spec
         self.name = f"{spec.node}.{spec.handler}" if spec.node else spec.handler
-        """For messages."""
+        """The name used in messages."""
         self.number = _next_number()
         self.items = items
         self.at_hand: Any = None
-        """The item that its handler was called with and has not returned or suspended over yet."""
+        """The item that its handler was called with and for which it has not yet returned or suspended."""
         self.runs = 0
         """Runs begun since the start."""
         self.errors = 0
         """Runs that ended with an error."""
         self.group = group
         self.active: set[Run] = set()
-        """Runs that have begun and not ended."""
+        """Runs that have begun and not yet ended."""
         self._ledger, self._loop = ledger, ledger.loop
-        # What every run needs, without the way through the spec.
+        # What every run needs, without going through the spec.
         self._invoke, self._finished, self._is_serial = spec.invoke, spec.finished, spec.is_serial
-        # Every run begins with the variables of where the handler was made, never with those of an earlier run.
+        # Every run begins with the context variables of where the handler was made, never with those of an earlier run.
         self._context = copy_context()
         self._waking = False
         self._scheduled = False
@@ -164,7 +164,7 @@ class Runner:
 
     @property
     def is_serial(self) -> bool:
-        """Whether its runs come one after the other."""
+        """Whether the handler's runs come one after the other."""
         return self.group is None if self._is_serial is None else self._is_serial
 
     @property
@@ -177,7 +177,7 @@ class Runner:
         self._ledger.alert()
 
     def wake(self) -> None:
-        """There may be something in the queue: run what the group allows."""
+        """Run what the group allows of what may be in the queue."""
         if self._waking or self._closed or self._scheduled:
             return
         group, active, items = self.group, self.active, self.items
@@ -189,7 +189,7 @@ class Runner:
                 if active and (group is None if self._is_serial is None else self._is_serial):
                     self._ledger.alert()
                     return
-                # Nobody asks for more slots than the group has: who runs queues again, at the tail, after the run.
+                # No runner asks for more slots than the group has: after a run it queues again, at the tail.
                 if group is not None and (self._fills(group) or not group.admit(self)):
                     if group.when_full != "wait" and self.spec.kind != "reply":
                         self._overflow(group)
@@ -206,7 +206,7 @@ class Runner:
             self._loop.call_soon(self._go_on)
 
     def _fills(self, group: HandlerGroup) -> bool:
-        """Whether its own runs hold all slots of the group; those that have let go of theirs do not count."""
+        """Whether the runner's own runs hold all slots of the group; those that have released theirs do not count."""
         if group.limit is None or len(self.active) < group.limit:
             return False
         return sum(run.group is group for run in self.active) >= group.limit
@@ -216,7 +216,7 @@ class Runner:
         self.wake()
 
     def _overflow(self, group: HandlerGroup) -> None:
-        """The group is full, and not everything is to wait for it."""
+        """The group is full, and not everything may wait for it."""
         if group.when_full == "drop_new":
             group.withdraw(self)
             self._refuse(0)
@@ -233,14 +233,14 @@ class Runner:
                 min(runs, key=lambda run: run.number).cancel("cancelled for newer work of its group")
 
     def _refuse(self, keep: int) -> None:
-        """Drop what waits, but for the newest."""
+        """Drop what waits, except the newest."""
         while len(self.items) > keep:
             item = self.items.popleft()
             if self.spec.refused is not None:
                 self.spec.refused(item)
 
     def yields(self) -> None:
-        if self.spec.kind == "reply":  # somebody waits for it
+        if self.spec.kind == "reply":  # a caller waits for it
             return
         if self.group is not None:
             self.group.withdraw(self)
@@ -267,7 +267,7 @@ class Runner:
         self._loop.call_soon(self.wake)
 
     def _begin(self, item: Any, context: Context, group: HandlerGroup | None) -> None:
-        """Run the handler, within its context, to its end or to its first suspension."""
+        """Run the handler within its context, to its end or to its first suspension."""
         ledger = self._ledger
         around, ledger.at_work, self.at_hand = ledger.at_work, self, item
         try:
@@ -303,10 +303,10 @@ class Runner:
             self.wake()
 
     def cancel(self) -> asyncio.Future[None]:
-        """Begin no more runs and cancel those under way, but for those that clean up after having been cancelled.
+        """Begin no more runs and cancel those under way, except those already cleaning up after a cancellation.
 
         Returns:
-            A future that is done when all have ended.
+            A future that is done when all runs have ended.
         """
         if not self._closed and self.group is not None:
             self.group.withdraw(self)

@@ -1,8 +1,8 @@
 """Simulated time: a clock that /clock drives, for nodes whose `use_sim_time` is true.
 
-It says 0 until the first message. Then it keeps two counts: the time of day is what /clock said last, also when it
-jumps back, as when a recording starts anew; what sleeps and timers go by is how far it has moved forward in all, so
-that a jump back delays nobody and nothing is due twice. While /clock is silent, time stands still.
+It says 0 until the first message. Then it keeps two counts: the time of day is what /clock said last, even when it
+jumps back, as when a recording starts over; what sleeps and timers go by is how far it has moved forward in all, so
+that a jump back delays nothing and nothing is due twice. While /clock is silent, time stands still.
 
 Source: the ROS 2 design article "Clock and Time".
 """
@@ -21,7 +21,7 @@ class _SimAlarm:
     def __init__(self, callback: Callable[[], None]) -> None:
         self._callback: Callable[[], None] | None = callback
         self.elsewhere: Alarm | None = None
-        """What it became on another clock."""
+        """The alarm that replaced it on another clock."""
 
     def run(self) -> None:
         callback, self._callback = self._callback, None
@@ -35,7 +35,7 @@ class _SimAlarm:
 
 
 class SimClock(Clock):
-    """Time as somebody else tells it."""
+    """Time as given from outside."""
 
     def __init__(self, loop: AbstractEventLoop) -> None:
         self._loop = loop
@@ -62,7 +62,7 @@ class SimClock(Clock):
         return alarm
 
     def set_time(self, now_ns: int) -> None:
-        """It is `now_ns`. Whatever has become due runs in the loop's next turn."""
+        """Set the time to `now_ns`. Whatever has become due runs in the loop's next iteration."""
         if self._now_ns:  # the first message is where time begins, not a jump
             self._elapsed_ns += max(0, now_ns - self._now_ns)
         self._now_ns = now_ns
@@ -70,7 +70,7 @@ class SimClock(Clock):
             self._loop.call_soon(heapq.heappop(self._alarms)[2].run)
 
     def retire(self, successor: Clock) -> None:
-        """Follow /clock no more: who still waits here waits the rest on another clock."""
+        """Stop following /clock: whatever still waits here waits out the rest on another clock."""
         self._successor = successor
         while self._alarms:
             when_ns, _, alarm = heapq.heappop(self._alarms)

@@ -1,4 +1,4 @@
-"""The graph as its tokens tell it: they come and go in any order, several times each, and this is the picture.
+"""The graph as its liveliness tokens describe it: they come and go in any order, several times each.
 
 Source: rmw_zenoh graph_cache; the queries are those of rmw's graph functions.
 """
@@ -62,7 +62,7 @@ class GraphCache:
         return token in self._entities
 
     def nodes(self, *, hidden: bool = True) -> list[str]:
-        """Full node names, sorted; a name shared by several nodes appears as often."""
+        """Full node names, sorted; a name shared by several nodes appears once for each."""
         names = {(e.zid, e.nid): e.node_name for e in self}
         return sorted(n for n in names.values() if hidden or not is_hidden(n))
 
@@ -76,7 +76,7 @@ class GraphCache:
         return sorted(found, key=lambda e: (e.name, e.node_name, e.type, e.eid))
 
     def named(self, name: str) -> list[Entity]:
-        """Every endpoint of one topic or service, of whatever kind."""
+        """Every endpoint of one topic or service, of any kind."""
         return sorted((e for e in self if e.name == name), key=lambda e: (e.kind, e.node_name, e.eid))
 
     def owners(self, name: str) -> list[Entity]:
@@ -92,7 +92,7 @@ class GraphCache:
         return self._types(Kind.SERVICE, Kind.CLIENT, hidden=hidden)
 
     def actions(self) -> dict[str, list[str]]:
-        """Types by action, told by the feedback topics."""
+        """Types by action, taken from the feedback topics."""
         return {
             name.removesuffix(ACTION_FEEDBACK): [t.removesuffix(ACTION_FEEDBACK_TYPE) for t in types]
             for name, types in self.topics(hidden=True).items()

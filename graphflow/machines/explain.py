@@ -1,4 +1,4 @@
-"""A deadlock in words: who holds what and waits for what, where, and which change of one line ends it."""
+"""A deadlock in words: who holds what and waits for what, where, and which one-line change ends it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def explanation(deadlock: Deadlock, graph: WaitGraph) -> str:
 
 
 def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph: WaitGraph) -> str:
-    """Why a call of `service` can never be answered: all slots are held by activities that wait for it."""
+    """Why a call to `service` can never be answered: all slots are held by activities that wait for it."""
     [group] = [graph.groups[name] for name in queue.needs if graph.groups[name].name] or [graph.groups[queue.needs[0]]]
     held = " and ".join(f"{title(a)}{where(a)}" for a in holders)
     edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
@@ -32,13 +32,13 @@ def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph:
 def stall(
     group: GroupView, holders: list[ActivityView], waiting: list[QueueView], dropped: dict[str, int], seconds: float
 ) -> str:
-    """What is said of a group that the same runs keep for long.
+    """The report of a group that the same runs hold for long.
 
     Args:
-        dropped: By queue, what it had dropped before.
+        dropped: How many items each queue had dropped before.
     """
     who = " and ".join(f"{title(a)} ({''.join(_place(a))})" for a in holders)
-    lines = [f"STALL: {who} has kept {_slot(group)} for more than {seconds:.1f} s"]
+    lines = [f"STALL: {who} {'has' if len(holders) == 1 else 'have'} held {_slot(group)} for more than {seconds:.1f} s"]
     for queue in waiting:
         lost = queue.dropped - dropped.get(queue.id, 0)
         lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
@@ -61,7 +61,7 @@ def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
         activity = graph.activities[name]
         holding = _holding(activity, graph)
         if edge.loop and edge.to == name:
-            holding = f"{holding} blocks the event loop and" if not holding else f"{holding} blocks the event loop,"
+            holding = f"{holding.removesuffix(' and')}{',' if holding else ''} blocks the event loop and"
         yield f"  {title(activity)}{holding} waits for {wanted(edge)}{where(activity)}"
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
         yield f"    -> {_reason(edge, graph)}{back}"
@@ -78,17 +78,17 @@ def _holding(activity: ActivityView, graph: WaitGraph) -> str:
 
 
 def group_of(activity: ActivityView, graph: WaitGraph) -> str:
-    """The name of the group whose slot it holds; empty for none."""
+    """The name of the group whose slot an activity holds; empty for none."""
     return next((graph.groups[g].name for g in activity.holds if g in graph.groups and graph.groups[g].name), "")
 
 
 def wanted(edge: Edge) -> str:
-    """What it waits for."""
+    """What an activity waits for."""
     match edge.via:
         case Call(id=call, name=name):
-            return f"the {'result of action' if call.startswith('goal:') else 'answer of service'} {name}"
+            return f"the {'result of action' if call.startswith('goal:') else 'response of service'} {name}"
         case Slot():
-            return "its slot, to come back to its group"
+            return "its slot, to return to its group"
         case SetBy(what=what):
             return what
         case Free():
@@ -98,8 +98,8 @@ def wanted(edge: Edge) -> str:
 
 
 def where(activity: ActivityView) -> str:
-    """Where it waits, and since when."""
-    words = [*_place(activity), f"since {activity.age:.2f} s"]
+    """Where an activity waits, and for how long."""
+    words = [*_place(activity), f"for {activity.age:.2f} s"]
     if activity.left is not None:
         words.append(f"times out in {max(0.0, activity.left):.1f} s")
     return f"   ({', '.join(words)})"
@@ -117,10 +117,10 @@ def _reason(edge: Edge, graph: WaitGraph) -> str:
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
         return f"which {title(other)} holds"
     if not edge.group:
-        return f"which {title(other)} is to give"
+        return f"which {title(other)} must give"
     queue = graph.queues.get(edge.queue)
     who = "that" if queue is None else f"{queue.label} of {queue.node}"
-    verb = "sets it, and needs" if isinstance(edge.via, SetBy) else "waits for"
+    verb = "sets it and needs" if isinstance(edge.via, SetBy) else "waits for"
     more = ""
     if queue is not None and isinstance(edge.via, SetBy):
         more = f"; {queue.waiting} queued, {queue.dropped} dropped meanwhile"
@@ -148,7 +148,7 @@ def _fixes(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
         for fix in (*_fix(activity, edge, graph), *_release(activity, wanted_of_it)):
             if fix not in found:
                 found.append(fix)
-    # The same advice for every member of a ring is one advice: to follow it once is enough.
+    # Advice of the same kind for several members of a ring is given once: following it once is enough.
     kinds: dict[str, str] = {}
     for fix in found:
         kinds.setdefault(fix.split()[0], fix)
@@ -162,7 +162,7 @@ def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
         wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
         yield f"  {wait} in {at}"
         yield (
-            f"  let {_method(other.label)} block a thread, in the graph file\n"
+            f"  let {_method(other.label)} run in a thread, in the graph file\n"
             f"      {other.node}: {{concurrency: {{blocking: {{handlers: [{_method(other.label)}], thread: true}}}}}}\n"
             f"    or in the class: thread=True where {_method(other.label)} is declared"
         )
@@ -171,12 +171,12 @@ def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
     if isinstance(edge.via, SetBy) and edge.via.is_held:
         other = graph.activities[edge.to]
         at = Place(PurePath(other.place.file).name, other.place.line)
-        yield f"  leave {edge.via.what} before what is awaited in {at}"
+        yield f"  leave {edge.via.what} before the await in {at}"
     if queue is None or group is None:
         return
     handler = _method(queue.label)
     if queue.label.startswith("reply "):
-        yield f"  let replies pass: declare the client of {handler} without group="
+        yield f"  let replies through: declare the client of {handler} without group="
         queue, handler = replace(queue, node=activity.node, is_declared=True), _method(activity.label)
     if group.name and (queue.node, handler) != (activity.node, _method(activity.label)):
         yield _own_group(replace(queue, label=handler))
@@ -184,16 +184,16 @@ def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
         if group.limit is not None and not isinstance(edge.via, SetBy):
             yield _larger(group, sum(group.id in a.holds for a in graph.activities.values()) + 1)
     elif queue.label.startswith("action "):
-        yield f"  let several goals be under way: policy='parallel' where {handler} is declared"
+        yield f"  let several goals run at a time: policy='parallel' where {handler} is declared"
     elif not isinstance(edge.via, SetBy):
         own = f"{handler}_group"
         made = f"{own} = Group(None), and group={own} where it is declared"
         made = made if queue.is_declared else "group=Group(None) where it is made"
-        yield f"  let several runs of {handler} be under way: {made}"
+        yield f"  let several runs of {handler} overlap: {made}"
 
 
 def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
-    """To let go of a slot helps where the one before in the ring wants it."""
+    """Releasing a slot helps where the previous activity in the ring wants it."""
     if wanted is not None and wanted.name and activity.is_async:
         place = Place(PurePath(activity.place.file).name, activity.place.line)
         yield f"  release the slot while waiting, in {place}: async with self.group.released(): ..."
@@ -203,7 +203,7 @@ def _larger(group: GroupView, limit: int) -> str:
     made = f"Group({limit}{', thread=True' if group.is_threaded else ''})"
     text = "  allow more runs, if its handlers share no state"
     if not group.is_declared:
-        return f"{text}: {made} where the group of {group.node} is made that is called {group.name} here"
+        return f"{text}: {made} where {group.node} makes the group called {group.name} here"
     return (
         f"{text}\n      {group.node}: {{concurrency: {{{group.name}: {{limit: {limit}}}}}}}\n"
         f"    or in the class: {group.name} = {made}"

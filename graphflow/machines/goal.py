@@ -1,8 +1,8 @@
-"""The life of an action's goals at their server, as one table, and the book that a server keeps of them.
+"""The life of an action's goals at their server, as one table, and the book the server keeps of them.
 
 A goal is in one *phase* at a time; to clients each phase shows as one of ROS 2's states:
 
-    phase       state        what goes on
+    phase       state        what happens
     DECIDING    -            whether the goal is accepted is being decided
     ANSWERING   ACCEPTED     it is, and the answer goes out before anything else happens
     QUEUED      ACCEPTED     it waits for its turn, and for a slot of its group
@@ -12,7 +12,7 @@ A goal is in one *phase* at a time; to clients each phase shows as one of ROS 2'
     REJECTED, SUCCEEDED, CANCELED, ABORTED                it is over
 
 `STEPS` says, for each phase and each event, which phase follows and what the server is to do. What only some servers
-do, by their `GoalRules`, is left out by `step`. A goal that is over stays what it is, whatever comes late. One that a
+do, by their `GoalRules`, is left out by `step`. A goal that is over stays as it is, whatever comes late. One that a
 client has cancelled ends as its body decides; what the server ends by itself ends as ABORTED.
 
 Source: rcl_action goal_state_machine.c; action_msgs/srv/CancelGoal.
@@ -90,32 +90,32 @@ _STATUS = {
 class GoalEvent(Enum):
     """What can happen to a goal."""
 
-    ACCEPTED = "it was decided to accept it"
-    REFUSED = "it was decided not to"
+    ACCEPTED = "the decision is to accept it"
+    REFUSED = "the decision is to reject it"
     ANSWERED = "the answer has gone out"
-    BEGUN = "its turn has come, and there is a slot"
+    BEGUN = "its turn has come, and a slot is free"
     CANCEL = "a client cancels it, and may"
     NEWER = "a newer goal takes its place"
     CLIENT_LOST = "its client has gone"
     CLIENT_AWAY = "its client has not come back in time"
     RETURNED = "its body has returned a result"
-    FAILED = "its body has raised, or returned what is no result"
+    FAILED = "its body has raised, or returned something that is not a result"
     UNWOUND = "its body has ended by being cancelled"
-    OUTSTAYED = "its body still runs long after it was cancelled"
+    OUTSTAYED = "its body is still running long after it was cancelled"
     DROPPED = "its group drops work that finds it full"
     STOPPING = "the server stops"
 
 
 class Do(Enum):
-    """What a server is to do about it."""
+    """What a server must do about an event."""
 
-    PREEMPT_OTHERS = "tell every other goal that has not ended of a newer one"
-    ENQUEUE = "put it into the queue of its runner"
-    DEQUEUE = "take it out again"
+    PREEMPT_OTHERS = "say NEWER to every other goal that has not ended"
+    ENQUEUE = "put it in its runner's queue"
+    DEQUEUE = "take it out of that queue"
     CANCEL_BODY = "cancel its body"
     LIMIT_CLEANUP = "say OUTSTAYED when `cleanup_timeout` has passed"
     AWAIT_CLIENT = "say CLIENT_AWAY when `client_grace` has passed and its client has not come back"
-    DEGRADE = "say that a body has outstayed its cancellation"
+    DEGRADE = "report that a body has outstayed its cancellation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,9 +123,9 @@ class GoalRules:
     """How a server treats its goals.
 
     Attributes:
-        policy: What becomes of a goal that comes while another is under way.
+        policy: What becomes of a goal that arrives while another is under way.
         on_client_loss: What becomes of a goal whose client has gone.
-        queue_depth: Goals that wait for their turn under the policy `queue`; more are rejected.
+        queue_depth: Goals that may wait for their turn under the policy `queue`; any more are rejected.
         accept_limit: Seconds that the decision may take; then the goal is rejected.
         client_grace: Seconds that a client may be gone before `on_client_loss` acts.
         cleanup_timeout: Seconds that a cancelled body gets; then its goal is aborted, and its slot stays taken.
@@ -144,7 +144,7 @@ class Step:
     """What follows from an event.
 
     Attributes:
-        through: The state that ROS 2 has between the former and the new one, which clients are told too.
+        through: The state that ROS 2 has between the old and the new one; clients are told of it too.
     """
 
     phase: Phase
@@ -197,7 +197,7 @@ STEPS: Mapping[tuple[Phase, GoalEvent], Step] = {
     (Phase.CANCELING, GoalEvent.OUTSTAYED): Step(Phase.ABORTED, (Do.DEGRADE,)),
     (Phase.CANCELING, GoalEvent.STOPPING): Step(Phase.CANCELING),
     #
-    (Phase.PREEMPTED, GoalEvent.CANCEL): Step(Phase.CANCELING),  # its body is being cancelled as it is
+    (Phase.PREEMPTED, GoalEvent.CANCEL): Step(Phase.CANCELING),  # its body is already being cancelled
     (Phase.PREEMPTED, GoalEvent.NEWER): Step(Phase.PREEMPTED),
     (Phase.PREEMPTED, GoalEvent.CLIENT_LOST): Step(Phase.PREEMPTED, (Do.AWAIT_CLIENT,)),
     (Phase.PREEMPTED, GoalEvent.CLIENT_AWAY): Step(Phase.CANCELING),
@@ -207,11 +207,11 @@ STEPS: Mapping[tuple[Phase, GoalEvent], Step] = {
     (Phase.PREEMPTED, GoalEvent.OUTSTAYED): Step(Phase.ABORTED, (Do.DEGRADE,)),
     (Phase.PREEMPTED, GoalEvent.STOPPING): Step(Phase.PREEMPTED),
 }
-"""What follows from an event in a phase, by rules under which everything is done."""
+"""What follows from an event in a phase, under rules that leave nothing out."""
 
 
 def step(phase: Phase, event: GoalEvent, rules: GoalRules) -> Step:
-    """What follows from an event, by the rules of one server.
+    """What follows from an event, under the rules of one server.
 
     Raises:
         ValueError: The event cannot happen in this phase.
@@ -240,12 +240,12 @@ class CancelCode(IntEnum):
 
 
 ALL_GOALS = bytes(16)
-"""The goal id of a cancel request that means more than one goal."""
+"""The goal id of a cancel request that covers more than one goal."""
 
 
 @dataclass
 class GoalRecord:
-    """What the server's book says of one goal."""
+    """What the server's book says about one goal."""
 
     client: bytes = bytes(16)
     """The GID of the client that sent it."""
@@ -263,29 +263,29 @@ class GoalRecord:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What has followed from an event."""
+    """What followed from an event."""
 
     record: GoalRecord
     do: tuple[Do, ...]
-    """What the server is to do, in order."""
+    """What the server must do, in order."""
     told: tuple[GoalStatus, ...]
-    """The states that clients are to be told, in order: none if nothing has changed for them."""
+    """The states to report to clients, in order: none if nothing has changed for them."""
 
 
 class GoalBook:
     """The goals of one server, by id.
 
     Args:
-        keep_ns: How long the result of a goal can be asked for, from its end on.
-        show_ns: How long its end is told in the list of states.
-        keep_most: The oldest results go when there are more.
+        keep_ns: How long the result of a goal can be requested after its end.
+        show_ns: How long an ended goal stays in the status list.
+        keep_most: Results to keep at most; the oldest go first.
     """
 
     def __init__(self, rules: GoalRules, keep_ns: int, show_ns: int, keep_most: int) -> None:
         self.rules = rules
         self._keep_ns, self._show_ns, self._keep_most = keep_ns, show_ns, keep_most
         self.goals: dict[bytes, GoalRecord] = {}
-        """Those that were accepted, in that order."""
+        """Accepted goals, in the order of acceptance."""
         self.deciding: dict[bytes, GoalRecord] = {}
 
     def has_room(self) -> bool:
@@ -298,21 +298,21 @@ class GoalBook:
         return waiting < self.rules.queue_depth
 
     def ask(self, goal_id: bytes, client: bytes) -> GoalRecord:
-        """Enter a goal, to be decided.
+        """Enter a goal that is yet to be decided on.
 
         Raises:
-            ValueError: It is known already.
+            ValueError: The goal is already known.
         """
         if goal_id in self.goals or goal_id in self.deciding:
-            raise ValueError(f"goal {goal_id.hex()} is known already")
+            raise ValueError(f"goal {goal_id.hex()} is already known")
         self.deciding[goal_id] = record = GoalRecord(client)
         return record
 
     def step(self, goal_id: bytes, event: GoalEvent, now_ns: int) -> Outcome:
-        """Something has happened to a goal; errors as the function `step`.
+        """Take in what has happened to a goal; raises what the function `step` raises.
 
         Args:
-            now_ns: For ACCEPTED the time of day, otherwise that by which results are kept.
+            now_ns: The time of day for ACCEPTED, otherwise the time by which results are kept.
         """
         record = self.goals.get(goal_id) or self.deciding[goal_id]
         before = record.phase
@@ -339,7 +339,7 @@ class GoalBook:
         return sum(1 for record in self.goals.values() if record.ended_ns is None)
 
     def shown(self, now_ns: int) -> list[tuple[bytes, GoalRecord]]:
-        """What the list of states tells: goals that have not ended, or not long ago."""
+        """The goals in the status list: those that have not ended, or ended recently."""
         return [
             (goal_id, record)
             for goal_id, record in self.goals.items()
@@ -358,11 +358,11 @@ class GoalBook:
         return gone
 
     def to_cancel(self, goal_id: bytes, stamp_ns: int) -> tuple[CancelCode, list[bytes]]:
-        """Which goals a cancel request means.
+        """Which goals a cancel request covers.
 
         Args:
             goal_id: One goal, or `ALL_GOALS`.
-            stamp_ns: Goals accepted at or before it; 0 for no such condition.
+            stamp_ns: Goals accepted at or before this time; 0 for no such condition.
         """
         if goal_id != ALL_GOALS and not stamp_ns:
             record = self.goals.get(goal_id)

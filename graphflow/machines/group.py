@@ -2,8 +2,8 @@
 
 A *member* is anything whose runs the group counts: a subscription, a timer, a service, an action. It asks for a slot
 before each run and gives it back after. While the group is full it holds one ticket, in first-come order, however much
-work it has; when a slot is given back it goes straight to the head of the queue, so that nobody can take it in
-between. With n members of which each re-queues after a run, one that has work runs after at most n - 1 other runs.
+work it has; when a slot is given back it goes straight to the head of the queue, so that nothing can take it in
+between. With n members that each re-queue after a run, one that has work runs after at most n - 1 other runs.
 
 Source: docs/architecture.md, "The rules of groups": slots, tickets, hand-over. rclpy's MutuallyExclusiveCallbackGroup
 is a limit of 1.
@@ -25,7 +25,7 @@ class GroupState(Generic[M]):
     Args:
         limit: Runs at one time, None for any number.
         name: For people.
-        when_full: What members are to do with work that finds no slot free; the group itself only hands out tickets.
+        when_full: What members do with work that finds no free slot; the group itself only hands out tickets.
     """
 
     __slots__ = ("_queue", "limit", "members", "name", "running", "when_full")
@@ -49,7 +49,7 @@ class GroupState(Generic[M]):
         return tuple(self._queue)
 
     def admit(self, member: M) -> bool:
-        """Take a slot for `member`, or a ticket if there is none free. A second ticket is not given."""
+        """Take a slot for `member`, or a ticket if none is free. No member gets a second ticket."""
         if not self._queue and (self.limit is None or self.running < self.limit):
             self.running += 1
             return True
@@ -65,7 +65,7 @@ class GroupState(Generic[M]):
         return None
 
     def grant(self) -> M | None:
-        """Give a slot that is free to the head of the queue, as after a raised limit; None when there is none."""
+        """Give a free slot to the head of the queue, as after the limit was raised; None when there is none."""
         if self._queue and (self.limit is None or self.running < self.limit):
             self.running += 1
             return self._queue.popleft()

@@ -30,18 +30,18 @@ _WORDS = {
 
 
 class Verdict(NamedTuple):
-    """How an endpoint stands to a counterpart of the same name."""
+    """How an endpoint matches a counterpart of the same name."""
 
     reaches: bool
     """Whether what one of them sends arrives at the other."""
     policies: tuple[str, ...] = ()
     """Policies by which DDS would keep them apart."""
     complaint: str = ""
-    """What is wrong and what to do, in a sentence; empty when nothing is."""
+    """What is wrong and what to do, in a sentence; empty when nothing is wrong."""
 
 
 def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str = "here") -> Verdict | None:
-    """How `own` and `other` stand to each other; None when they have nothing to do with each other.
+    """How `own` and `other` match; None when they have nothing to do with each other.
 
     Args:
         profile: The wire profile of this process.
@@ -51,7 +51,7 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
         return None
     who, what = f"the {_WORDS[other.kind]} of {other.node_name}", f"the {_WORDS[own.kind]} {where}"
     if other.type != own.type:
-        remedy = advice(other, profile) or "give both one type, or one of them another name"
+        remedy = advice(other, profile) or "give both the same type, or rename one of them"
         return Verdict(
             False,
             complaint=f"{own.name}: nothing passes between {who}, of type {other.type}, and {what}, of type "
@@ -61,8 +61,8 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
         remedy = advice(other, profile) or "use the same definition file on both sides"
         return Verdict(
             False,
-            complaint=f"{own.name}: nothing passes between {who} and {what}: they have two definitions of {own.type} "
-            f"({_short(other.hash)} there, {_short(own.hash)} here): {remedy}",
+            complaint=f"{own.name}: nothing passes between {who} and {what}: they have different definitions of "
+            f"{own.type} ({_short(other.hash)} there, {_short(own.hash)} here): {remedy}",
         )
     if own.kind not in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
         return Verdict(True)

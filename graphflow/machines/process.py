@@ -5,8 +5,8 @@ r"""The life of one supervised process, as a table.
 
 A process waits (PENDING) until what it comes `after` is there. It is READY when all its nodes have said so themselves.
 Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the last rung at once. Whatever happens,
-`exit` is the only way to ENDED, so nothing is called ended that may still run. An end that nobody asked for is told
-apart by how it came: `failed` is true when the process left by a signal or with another code than 0.
+`exit` is the only way to ENDED, so nothing is called ended that may still be running. An end that nobody asked for is
+judged by how it came: `failed` is true when the process ended by a signal or with a code other than 0.
 
 Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's stop sequences.
 """
@@ -33,9 +33,9 @@ class State(Enum):
 
 class Event(Enum):
     GO = "go"
-    """What it comes after is there."""
+    """What the process comes after is ready."""
     READY = "ready"
-    """Its last node is ready."""
+    """The last of its nodes is ready."""
     STOP = "stop"
     KILL = "kill"
     LATE = "late"
@@ -50,7 +50,7 @@ class Action(Enum):
     KILL = "kill"
     """SIGKILL to the whole process group."""
     GIVE_UP = "give up"
-    """It did not get ready in time: report it."""
+    """The process was not ready in time: report it."""
 
 
 TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Action, ...]]]] = {

@@ -1,11 +1,12 @@
-"""Which activities of a picture can never go on.
+"""Which activities of a snapshot can never proceed.
 
-`deadlocked` is Holt's reduction: whoever may go on goes on and gives everything back, until nobody is left who can.
-It is optimistic: what the picture does not show may go on. So what remains cannot, whatever happens outside.
+`deadlocked` is Holt's reduction: every activity that may proceed does so and gives everything back, until none is left
+that can. It is optimistic: what the snapshot does not show may proceed. So what remains cannot, whatever happens
+outside.
 
-Pictures of several processes are not taken at one moment. An activity counts as stuck only if it was seen in the very
-same wait in a picture that was complete before the present one was begun: ids are never used twice, so there was a
-moment between the two at which all the waits that are left existed together.
+Snapshots of several processes are not taken at one moment. An activity counts as stuck only if it was seen in the very
+same wait in a snapshot that was complete before the present one was begun: ids are never reused, so at some moment
+between the two all the remaining waits existed together.
 
 Source: Holt, "Some deadlock properties of computer systems", 1972.
 """
@@ -30,22 +31,22 @@ from graphflow.machines.wait_graph import (
 )
 
 Lacking = tuple[str, ...]
-"""Activities that must go on, or groups that must get a free slot, before something can happen: one of them at least.
-Of nothing: it may happen now."""
+"""Activities that must go on, or groups that must get a free slot, before something can happen: at least one of them.
+Empty: it may happen now."""
 
 
 class Index:
-    """A picture by what is looked for.
+    """A snapshot indexed for lookup.
 
     Args:
-        may_fail: Whether an error of one of several that are waited for may end the wait for all of them.
-        may_guess: Whether to believe that nobody brings about what is waited for but those whom the source code shows.
+        may_fail: Whether an error in one of several things waited for may end the wait for all of them.
+        may_guess: Whether to assume that only what the source code shows brings about what is waited for.
     """
 
     def __init__(self, graph: WaitGraph, *, may_fail: bool = False, may_guess: bool = True) -> None:
         self.graph = graph
         self.holders: dict[str, list[str]] = {}
-        """Activities by the group of which they hold a slot."""
+        """Activities by the group whose slot they hold."""
         self.serving: dict[str, str] = {}
         """Activities by the call that they answer."""
         for activity in graph.activities.values():
@@ -69,7 +70,7 @@ class Index:
         return None if blocker == activity.id else blocker
 
     def lacking(self, activity: ActivityView, dead: Dead) -> Lacking:
-        """What keeps an activity from going on."""
+        """What keeps an activity from proceeding."""
         blocker = self.graph.blocked.get(activity.process)
         if blocker == activity.id:
             return () if self._is_met_outside(activity.wait) else (activity.id,)
@@ -98,7 +99,7 @@ class Index:
                 return ()
 
     def lacking_to_run(self, queue: QueueView, dead: Dead) -> Lacking:
-        """What keeps the next run of a handler from being begun."""
+        """What keeps the next run of a handler from beginning."""
         blocker = self._of(self.graph.blocked.get(queue.process), dead)
         return blocker or next(((group,) for group in queue.needs if group in dead.groups), ())
 
@@ -106,7 +107,7 @@ class Index:
         return (activity,) if activity is not None and activity in dead.activities else ()
 
     def _is_met_outside(self, condition: Condition) -> bool:
-        """Whether it may be fulfilled while the event loop, through which all of graphflow comes, is blocked."""
+        """Whether a condition may be met while the event loop, which carries all that is graphflow's, is blocked."""
         match condition:
             case SetBy():
                 return not self._may_guess
@@ -133,7 +134,7 @@ def _one_of(ways: Iterable[Lacking]) -> Lacking:
 
 
 class Dead:
-    """Activities that are taken for stuck, and the groups of which they therefore hold all slots."""
+    """Activities taken to be stuck, and the groups whose slots they therefore all hold."""
 
     def __init__(self, index: Index, activities: Iterable[str]) -> None:
         self.activities = set(activities)
@@ -141,7 +142,7 @@ class Dead:
         self.groups = {g for g, count in held.items() if count == len(index.holders[g]) and index.is_full(g)}
 
     def lose(self, activity: ActivityView) -> Iterable[str]:
-        """One of them goes on; what that changes for others."""
+        """Let one of them proceed; returns what that changes for others."""
         self.activities.discard(activity.id)
         freed = self.groups.intersection(activity.holds)
         self.groups -= freed
@@ -149,10 +150,10 @@ class Dead:
 
 
 def deadlocked(graph: WaitGraph, before: WaitGraph | None = None) -> set[str]:
-    """The activities that can never take another step, whatever happens outside of the picture.
+    """The activities that can never take another step, whatever happens outside the snapshot.
 
     Args:
-        before: A picture that was complete before this one was begun; None when this one was taken at one moment.
+        before: A snapshot that was complete before this one was begun; None when this one was taken at one moment.
     """
     index = Index(graph)
     suspects = [a for a in graph.activities.values() if a.wait is not FREE or index.loop_of(a)]
@@ -166,10 +167,10 @@ def _is_same(now: ActivityView, then: ActivityView | None) -> bool:
 
 
 def reduced(index: Index, suspects: Iterable[str]) -> set[str]:
-    """Those of the suspects who cannot go on, however the others do."""
+    """The suspects that cannot proceed, whatever the others do."""
     activities, dead = index.graph.activities, Dead(index, suspects)
     watching: dict[str, set[str]] = {}
-    """By what they lack: those who are to be looked at again when it changes."""
+    """By what they lack: the activities to look at again when it changes."""
     todo = list(dead.activities)
     while todo:
         name = todo.pop()

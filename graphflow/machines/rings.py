@@ -1,4 +1,4 @@
-"""Why activities are dead: the rings in which they wait for each other, and who waits behind them."""
+"""Why activities are dead: the rings in which they wait for each other, and what waits behind them."""
 
 from __future__ import annotations
 
@@ -24,44 +24,44 @@ from graphflow.machines.wait_graph import (
 )
 
 STARTS = 32
-"""Activities of one deadlock from which a ring is looked for, at most."""
+"""Activities of one deadlock from which to look for a ring, at most."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """Why one activity cannot go on before another does."""
+    """Why one activity cannot proceed before another does."""
 
     to: str
     """The activity that is waited for."""
     via: Condition
     queue: str = ""
-    """In which queue the call stands."""
+    """The queue that the call is in."""
     group: str = ""
-    """Whose slot is missing."""
+    """The group whose slot is missing."""
     loop: bool = False
-    """The other blocks the event loop."""
+    """Whether the other activity blocks the event loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Deadlock:
-    """Activities that wait for each other in a ring, and who waits for them."""
+    """Activities that wait for each other in a ring, and those that wait for them."""
 
     ring: tuple[str, ...]
     """Each waits for the next, and the last for the first."""
     edges: tuple[Edge, ...]
     """`edges[i]` is why `ring[i]` waits for the next."""
     victims: tuple[str, ...]
-    """Dead activities outside of the ring that wait for it, and in no deadlock that would stay without it."""
+    """Dead activities outside the ring that wait for it and are in no deadlock that would remain without it."""
     is_likely: bool
-    """It is certain only if nothing but what the source code shows sets what somebody in it waits for."""
+    """Whether the deadlock is certain only if the source code shows everything that sets what a member waits for."""
     is_partial: bool = False
-    """The failure of something alive, one of several things that are waited for, could still end it."""
+    """Whether the failure of something alive, one of several things waited for, could still end the deadlock."""
 
 
 def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
-    """The deadlocks among dead activities, those that have lasted longest first, and who waits for each.
+    """The deadlocks among dead activities, those that have lasted longest first, and what waits for each.
 
-    Each is one that would stay if all the others were mended.
+    Each would remain if all the others were fixed.
     """
     index = Index(graph)
     guess_free = Index(graph, may_guess=False)
@@ -89,9 +89,9 @@ def is_ring(names: Sequence[str], graph: WaitGraph, dead: Iterable[str]) -> bool
 
 
 class _Waits:
-    """Who waits for whom among dead activities.
+    """The wait-for graph of dead activities.
 
-    The way from one that wants a slot to those who hold it leads through the group: there may be many on both sides.
+    The way from one that wants a slot to those that hold it leads through the group: there may be many on both sides.
     """
 
     def __init__(self, index: Index, dead: Iterable[str]) -> None:
@@ -109,18 +109,18 @@ class _Waits:
         return found
 
     def after(self, thing: str) -> Sequence[str]:
-        """What an activity waits for, activities and groups; who holds a group's slots."""
+        """What an activity waits for, activities and groups; for a group, what holds its slots."""
         if thing in self._edges:
             return [edge.to for edge in self._edges[thing]]
         return self._index.holders[thing]
 
     def leads(self, here: str, there: str) -> bool:
-        """Whether one dead activity cannot go on before another does."""
+        """Whether one dead activity cannot proceed before another does."""
         edges = self._edges.get(here, ())
         return any(there == edge.to or (edge.group and there in self._index.holders[edge.group]) for edge in edges)
 
     def behind(self, members: set[str], others: set[str]) -> set[str]:
-        """The activities that wait for some of them, and those who wait for these, but for `others`."""
+        """The activities that wait for any of them, directly or through others, except `others`."""
         found, todo = set(members), list(members)
         while todo:
             new = [thing for thing in self._before.get(todo.pop(), ()) if thing not in found and thing not in others]
@@ -129,10 +129,10 @@ class _Waits:
         return found & self.dead.activities
 
     def ring(self) -> list[tuple[str, Edge]]:
-        """A ring through some of them, the shortest through one, told from the one that has waited longest.
+        """A ring through some of them, the shortest through one, beginning with the one that has waited longest.
 
-        Every process is to choose the same: so it depends on ids, and not on ages, and one within a process, which
-        that process sees by itself, comes before one through several.
+        Every process must choose the same: so the choice depends on ids, not on ages, and a ring within one process,
+        which that process sees by itself, comes before one through several.
         """
         rings = islice(filter(None, map(self._ring_of, sorted(self._edges))), STARTS)
         ring = min(rings, key=lambda ring: len({self._activities[name].process for name, _ in ring}))
@@ -197,14 +197,14 @@ class _Waits:
 
 
 def _knots(starts: Iterable[str], after: Callable[[str], Sequence[str]]) -> Iterator[set[str]]:
-    """The sets of things of which each leads to each, that is the strongly connected components.
+    """The sets of things that all lead to each other, that is the strongly connected components.
 
     Source: Tarjan, "Depth-first search and linear graph algorithms", 1972.
     """
     number: dict[str, int] = {}
     lowest: dict[str, int] = {}
     open_: list[str] = []
-    """In the order in which they were met: those whose knot is not known yet."""
+    """Things whose knot is not known yet, in the order they were met."""
     is_open: set[str] = set()
     for start in starts:
         path: list[tuple[str, Iterator[str]]] = []

@@ -1,6 +1,6 @@
-"""Who waits for whom, as one picture of a graph.
+"""The wait-for graph: who waits for whom, in one snapshot of a graph.
 
-The picture holds *activities* (runs of handlers and tasks under way), the *groups* whose slots they hold, and the
+The snapshot holds *activities* (runs of handlers and tasks under way), the *groups* whose slots they hold, and the
 *queues* of handlers. An activity that waits does so for a call, for a slot, for another activity, for something that
 only certain handlers set, or for all or any of several such things.
 """
@@ -19,22 +19,22 @@ class Call:
 
     id: str
     name: str
-    """Of the service or action."""
+    """The name of the service or action."""
 
 
 def call_id(gid: bytes, sequence: int) -> str:
-    """How pictures of all processes name a call."""
+    """The name of a call in the snapshots of all processes."""
     return f"{gid.hex()}:{abs(sequence)}"
 
 
 def goal_id(raw: bytes) -> str:
-    """How pictures of all processes name a goal."""
+    """The name of a goal in the snapshots of all processes."""
     return f"goal:{raw.hex()}"
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Wait for a slot of a group, to come back to it."""
+    """Wait for a slot of a group, to return to it."""
 
     group: str
     ticket: int
@@ -52,11 +52,11 @@ class SetBy:
     """Wait for something that, as far as the source code tells, only these handlers and activities bring about."""
 
     what: str
-    """In words: `self.arrived`."""
+    """What is waited for, in words: `self.arrived`."""
     queues: tuple[str, ...]
     activities: tuple[str, ...] = ()
     is_held: bool = False
-    """Whether it is a lock or its like, which those activities hold."""
+    """Whether that is a lock or the like, held by those activities."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +68,14 @@ class All:
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """Wait for one of these, whichever."""
+    """Wait for any one of these."""
 
     of: tuple[Condition, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """Wait for what the picture does not show: time, a thread, the outside world."""
+    """Wait for what the snapshot does not show: time, a thread, the outside world."""
 
 
 FREE = Free()
@@ -91,27 +91,27 @@ class ActivityView:
     """Method and kind: `tick`, `service add`."""
     node: str
     holds: tuple[str, ...] = ()
-    """The groups of which it holds a slot."""
+    """The groups whose slots the activity holds."""
     wait: Condition = FREE
     serves: str = ""
-    """The call or goal that it answers."""
+    """The call or goal that the activity answers."""
     place: Place = field(default_factory=lambda: Place(""))
-    """Where it waits."""
+    """Where the activity waits."""
     function: str = ""
     age: float = 0.0
-    """Seconds that it has waited."""
+    """Seconds that the activity has waited."""
     left: float | None = None
     """Seconds until its call times out; None if never."""
     process: str = ""
     is_inner: bool = False
-    """Whether it is graphflow's, and nothing that users have written."""
+    """Whether the activity is graphflow's own, not something users wrote."""
     is_async: bool = True
-    """Whether `await` can stand where it waits."""
+    """Whether `await` is allowed where the activity waits."""
 
 
 @dataclass(frozen=True, slots=True)
 class GroupView:
-    """A concurrency group of a node, or a handler's own queue, which is as good as a group of its own."""
+    """A concurrency group of a node, or a handler's own queue, which acts as a group of its own."""
 
     id: str
     name: str
@@ -119,7 +119,7 @@ class GroupView:
     node: str
     limit: int | None = 1
     is_declared: bool = True
-    """Whether the class or a graph file names it, and not only what makes handlers while the node runs."""
+    """Whether the class or a graph file names the group, not only code that makes handlers at run time."""
     is_threaded: bool = False
 
 
@@ -131,15 +131,15 @@ class QueueView:
     label: str
     node: str
     needs: tuple[str, ...]
-    """The groups of which the next run takes a slot."""
+    """The groups whose slots the next run takes."""
     calls: tuple[str, ...] = ()
     """Calls and goals that wait, in order."""
     waiting: int = 0
-    """Items that wait, of whatever kind."""
+    """Number of items that wait, of any kind."""
     dropped: int = 0
     process: str = ""
     is_declared: bool = True
-    """Whether the handler stands in the class, so that a graph file can move it."""
+    """Whether the handler is declared in the class, so that a graph file can move it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,11 +150,11 @@ class WaitGraph:
     groups: Mapping[str, GroupView] = field(default_factory=dict)
     queues: Mapping[str, QueueView] = field(default_factory=dict)
     blocked: Mapping[str, str] = field(default_factory=dict)
-    """By process whose loop is blocked: the activity that blocks it."""
+    """The activity that blocks the event loop, by process."""
 
 
 def joined(pictures: Iterable[WaitGraph]) -> WaitGraph:
-    """Several processes as one picture."""
+    """Several processes as one snapshot."""
     activities: dict[str, ActivityView] = {}
     groups: dict[str, GroupView] = {}
     queues: dict[str, QueueView] = {}

@@ -1,4 +1,4 @@
-"""Pictures of waits as JSON, for the way between processes."""
+"""Snapshots of waits as JSON, as processes exchange them."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | Non
 
 VERSION = 3
 DEEPEST = 50
-"""Conditions inside each other, at most: what comes from the network must not exhaust the stack."""
+"""How deep conditions may be nested: what comes from the network must not exhaust the stack."""
 
 
 def to_json(graph: WaitGraph) -> dict[str, Json]:
-    """A picture as plain data that `from_json` reads back."""
+    """A snapshot as plain data that `from_json` reads back."""
     return {
         "v": VERSION,
         "activities": [_activity(a) for a in graph.activities.values()],
@@ -51,7 +51,7 @@ def _activity(a: ActivityView) -> Json:
 def _condition(condition: Condition, depth: int = 0) -> Json:
     match condition:
         case All() | AnyOf() if depth >= DEEPEST:
-            return None  # which only makes the picture say less
+            return None  # the snapshot only says less then
         case Call(id=call, name=name):
             return ["call", call, name]
         case Slot(group=group, ticket=ticket):
@@ -69,19 +69,19 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
 
 
 def from_json(data: Mapping[str, object]) -> WaitGraph:
-    """Read a picture.
+    """Read a snapshot.
 
     Raises:
-        ValueError, KeyError, TypeError: It is none.
+        ValueError, KeyError, TypeError: The data is not a snapshot.
     """
     if data["v"] != VERSION:
-        raise ValueError(f"a picture of version {data['v']!r}")
+        raise ValueError(f"a snapshot of version {data['v']!r}")
     activities = [_read_activity(row) for row in _rows(data["activities"])]
     groups = [_read_group(row) for row in _rows(data["groups"])]
     queues = [_read_queue(row) for row in _rows(data["queues"])]
     blocked = data["blocked"]
     if not isinstance(blocked, dict):
-        raise TypeError("blocked is no mapping")
+        raise TypeError("blocked is not a mapping")
     return WaitGraph(
         {a.id: a for a in activities},
         {g.id: g for g in groups},
@@ -139,7 +139,7 @@ def _read_condition(data: object, depth: int) -> Condition:
             return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
         case ["any", parts]:
             return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
-    raise ValueError(f"{data!r} is no condition")
+    raise ValueError(f"{data!r} is not a condition")
 
 
 def _rows(data: object) -> list[list[object]]:
@@ -148,13 +148,13 @@ def _rows(data: object) -> list[list[object]]:
 
 def _list(data: object) -> list[object]:
     if not isinstance(data, list):
-        raise TypeError(f"{data!r} is no list")
+        raise TypeError(f"{data!r} is not a list")
     return data
 
 
 def _text(data: object) -> str:
     if not isinstance(data, str):
-        raise TypeError(f"{data!r} is no text")
+        raise TypeError(f"{data!r} is not a string")
     return data
 
 
@@ -164,7 +164,7 @@ def _texts(data: object) -> tuple[str, ...]:
 
 def _int(data: object) -> int:
     if not isinstance(data, int) or isinstance(data, bool):
-        raise TypeError(f"{data!r} is no whole number")
+        raise TypeError(f"{data!r} is not a whole number")
     return data
 
 
@@ -176,7 +176,7 @@ def _bool(data: object) -> bool:
 
 def _number(data: object) -> float:
     if not isinstance(data, (int, float)) or isinstance(data, bool):
-        raise TypeError(f"{data!r} is no number")
+        raise TypeError(f"{data!r} is not a number")
     try:
         return float(data)
     except OverflowError:
@@ -185,5 +185,5 @@ def _number(data: object) -> float:
 
 def _limit(data: object) -> int | None:
     if data is not None and _int(data) < 1:
-        raise ValueError(f"{data!r} is no limit")
+        raise ValueError(f"{data!r} is not a limit")
     return None if data is None else _int(data)

@@ -806,7 +806,7 @@ class Stuck(NamedTuple):
     marker: str
 
 
-CALLED = "the answer of service /ping"
+CALLED = "the response of service /ping"
 PLANNED = "the result of action /plan"
 
 
@@ -890,16 +890,16 @@ def dead_call(program: type[Node], *expected: str) -> Any:
         dead_call(CallsTwoAtOnce),
         dead_call(CallsAGroup),
         dead_call(TakesTheFirst),
-        dead_call(AnswersInTheGroup, "the answer of service /echo", "reply echo"),
-        dead_call(TwoServices, "the answer of service /left", "service on_left", "service on_right", ""),
+        dead_call(AnswersInTheGroup, "the response of service /echo", "reply echo"),
+        dead_call(TwoServices, "the response of service /left", "service on_left", "service on_right", ""),
         stuck(FollowsAParameter, CALLED, "service on_ping", "speed_changed", ""),
-        stuck(TaskAndService, "the answer of service /pung", "service on_pung", "task main", ""),
+        stuck(TaskAndService, "the response of service /pung", "service on_pung", "task main", ""),
         stuck(PlansByFlag, "self.planned", holder="action on_plan"),
         stuck(PlansByEvent, "self.planning", "timer look", "action on_plan"),
         dead_call(PlansByCall, CALLED, "service on_ping", "action on_plan"),
         dead_call(
             PlansInPairs,
-            "the answer of service /pung",
+            "the response of service /pung",
             "service on_pung",
             "action on_plan",
             "pair",
@@ -1082,7 +1082,7 @@ async def test_what_only_the_source_tells_must_have_lasted(graph: Graph, caplog:
 @pytest.mark.parametrize(
     ("program", "words", "says"),
     [
-        (AwaitsItsPlan, "since 0.00 s", False),
+        (AwaitsItsPlan, "for 0.00 s", False),
         (PlansWithinPlans, "Group(None)", False),
         (PlansWithinPlans, "policy='parallel'", True),
         (EventWithin, "times out in 4.5 s", True),

@@ -76,7 +76,7 @@ async def test_a_timer_that_calls_the_service_of_its_own_group(graph: Graph, cap
 
     text = the_report(caplog)
     assert text.startswith("DEADLOCK: one callback waits for itself\n  timer tick of /narcissus holds group 'work'")
-    assert f"/mirror   {at('stuck: Narcissus')}tick, since 0.25 s, times out in 7.8 s)\n" in text
+    assert f"/mirror   {at('stuck: Narcissus')}tick, for 0.25 s, times out in 7.8 s)\n" in text
     assert "service answer of /narcissus waits for group 'work' of /narcissus, which timer tick" in text
     assert "/narcissus: {concurrency: {answer_group: [answer]}}" in text
     await graph.clock.advance(7.0)
@@ -154,7 +154,7 @@ async def test_a_ring_through_several_processes(
     assert text.count(at("stuck: Peer")) == len(names)
     for peer in peers:
         mine, other = peer.full_name, peer.other.name.removesuffix("/answer")
-        assert f"subscription ask of {mine} holds group 'work' and waits for the answer of service {other}/ans" in text
+        assert f"subscription ask of {mine} holds group 'work' and waits for the response of service {other}/a" in text
         assert f"service answer of {other} waits for group 'work' of {other}, which subscription ask" in text
     await graph.clock.advance(7.0)
     assert reports(caplog) == [text]
@@ -341,7 +341,7 @@ async def test_who_queues_behind_a_ring_is_a_victim(graph: Graph, caplog: Caplog
 
     text = the_report(caplog)
     assert text.startswith("DEADLOCK: 2 callbacks wait for each other in a ring; 1 more wait")
-    assert f"\n  behind them: subscription ask of /late   {at('stuck: Peer')}ask, since 0.2" in text
+    assert f"\n  behind them: subscription ask of /late   {at('stuck: Peer')}ask, for 0.2" in text
     assert "holds group 'work' of /late" not in text
 
 
@@ -500,8 +500,8 @@ async def test_a_ring_through_the_result_of_an_action(graph: Graph, caplog: Capl
     text = the_report(caplog)
     assert text.startswith("DEADLOCK: 2 callbacks wait for each other in a ring")
     assert f"group 'motion' and waits for the result of action /order   {at('stuck: Customer')}go, " in text
-    assert "    -> which action deliver of /courier is to give" in text
-    assert f"courier waits for the answer of service /position   {at('stuck: Courier')}deliver, " in text
+    assert "    -> which action deliver of /courier must give" in text
+    assert f"courier waits for the response of service /position   {at('stuck: Courier')}deliver, " in text
     assert "service position of /customer waits for group 'motion' of /customer, which subscription go" in text
     # Not by its name: a deadlock that code beside the class is seen to end is none.
     assert await vars(customer)["sent"].cancel()

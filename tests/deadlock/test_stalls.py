@@ -49,7 +49,7 @@ async def test_a_group_that_is_kept_for_long(graph: Graph, caplog: Caplog) -> No
     [text] = warnings(caplog)
     lines = text.splitlines()
     who = f"subscription fly of /drone (test_stalls.py:{line_of('# flies')} in fly)"
-    assert lines[0] == f"STALL: {who} has kept group 'motion' of /drone for more than 5.0 s"
+    assert lines[0] == f"STALL: {who} has held group 'motion' of /drone for more than 5.0 s"
     assert lines[1] == "  subscription hear of /drone waits for it: 2 queued, 3 dropped meanwhile"
     assert "      /drone: {concurrency: {hear_group: [hear]}}" in lines
 

@@ -156,8 +156,8 @@ def test_a_period_or_a_rate(period: float | None, hz: float | None, expected: in
 @pytest.mark.parametrize(
     ("period", "hz", "text"),
     [
-        (None, None, "give a period in seconds or hz=, one of them"),
-        (1.0, 1.0, "give a period in seconds or hz=, one of them"),
+        (None, None, "give either a period in seconds or hz="),
+        (1.0, 1.0, "give either a period in seconds or hz="),
         (0.0, None, "a period must be a positive number, not 0.0"),
         (-1.0, None, "a period must be a positive number, not -1.0"),
         (float("nan"), None, "a period must be a positive number, not nan"),

@@ -434,7 +434,7 @@ async def test_awaiting_something_foreign_is_an_error_there(graphflow_runner: as
     bench.put(1)
     await settle()
 
-    assert "'something', which is nothing asyncio knows" in bench.results[0]
+    assert "'something', which asyncio cannot await" in bench.results[0]
 
 
 # cancellation

@@ -28,8 +28,8 @@ PAIRS = {
     "self_call": Pair(
         "DEADLOCK: one callback waits for itself",
         (
-            "timer tick of /narcissus holds group 'default_group' and waits for the answer of service /narcissus/add",
-            "(self_call.py:18 in tick, since 0.",
+            "timer tick of /narcissus holds group 'default_group' and waits for the response of service /narcissus/add",
+            "(self_call.py:18 in tick, for 0.",
             "/narcissus: {concurrency: {add_group: [add]}}",
         ),
         "1 + 2 = 3",
@@ -38,15 +38,15 @@ PAIRS = {
         "DEADLOCK: one callback waits for itself",
         (
             "reply add_two_ints of /asker waits for group 'everything' of /asker, which timer tick of /asker holds",
-            "let replies pass: declare the client of add_two_ints without group=",
+            "let replies through: declare the client of add_two_ints without group=",
         ),
         "1 + 2 = 3",
     ),
     "blocked_loop": Pair(
         "DEADLOCK: one callback waits for itself",
         (
-            "timer tick of /blocker blocks the event loop and waits for the answer of service /blocker/add",
-            "(blocked_loop.py:17 in tick, since 0.",
+            "timer tick of /blocker blocks the event loop and waits for the response of service /blocker/add",
+            "(blocked_loop.py:17 in tick, for 0.",
             "/blocker: {concurrency: {blocking: {handlers: [tick], thread: true}}}",
         ),
         "1 + 2 = 3",
@@ -63,7 +63,7 @@ PAIRS = {
         "LIKELY DEADLOCK: one callback waits for itself; 1 more waits for it",
         (
             "action execute of /patient holds group 'everything' and waits for self.time_has_come   (event.py:26 in",
-            "timer tick of /patient sets it, and needs group 'everything' of /patient",
+            "timer tick of /patient sets it and needs group 'everything' of /patient",
         ),
         "after 4 ticks",
     ),
@@ -84,7 +84,7 @@ PAIRS = {
         "LIKELY DEADLOCK: one callback waits for itself",
         (
             "action execute of /turtle1/driver holds group 'everything' and waits for self.x and self.y",
-            "subscription located of /turtle1/driver sets it, and needs group 'everything' of /turtle1/driver",
+            "subscription located of /turtle1/driver sets it and needs group 'everything' of /turtle1/driver",
         ),
         "[turtle1.driver]: there",
     ),
@@ -96,7 +96,7 @@ PAIRS = {
     "arrival": Pair(
         "DEADLOCK: 2 callbacks wait for each other in a ring",
         (
-            "timer control of /turtle1/follower holds group 'all' and waits for the answer of service /turtle1/notify",
+            "timer control of /turtle1/follower holds group 'all' and waits for the response of service /turtle1/n",
             "service set_goal of /turtle1/follower waits for group 'all' of /turtle1/follower",
         ),
         "next: (8, 1)",
@@ -209,7 +209,7 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     up = machine.start("up", str(FOLDER / "arrival_broken.yaml"))
     up.wait_for("DEADLOCK: 2 callbacks")
     shown = machine.run("waits")
-    assert "! timer control of /turtle1/follower, holds 'all': waits for the answer of /turtle1/notify_arrival" in shown
+    assert "! timer control of /turtle1/follower, holds 'all': waiting for the response of /turtle1/notify_arr" in shown
     assert "service set_goal of /turtle1/follower is queued for group 'all', held by timer control" in shown
     assert "DEADLOCK: 2 callbacks wait for each other in a ring" in machine.run("doctor", code=1)
     assert "all  (limit 1)\n    set_goal  service  1 runs, 1 waiting" in machine.run("groups", "/turtle1/follower")
@@ -219,7 +219,7 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     assert "  /turtle1/follower: {concurrency: {goals: [set_goal, enable]}}" in told
     up.wait_for("the deadlock of")
     up.wait_for("has cleared")
-    machine.until(lambda: machine.run("waits") == "nobody waits\n", "the waits are over")
+    machine.until(lambda: machine.run("waits") == "nothing is waiting\n", "the waits are over")
     assert "nothing wrong" in machine.run("doctor")
     assert "did you mean 'enable'?" in machine.run("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
     assert up.end() == 0

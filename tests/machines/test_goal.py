@@ -218,5 +218,5 @@ def test_the_list_of_states_tells_of_ends_for_a_while() -> None:
 
 def test_an_id_is_good_for_one_goal() -> None:
     """A goal cannot be entered twice."""
-    with pytest.raises(ValueError, match="is known already"):
+    with pytest.raises(ValueError, match="is already known"):
         book().ask(A, bytes(16))

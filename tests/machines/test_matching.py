@@ -61,7 +61,7 @@ def test_another_definition_is_reported() -> None:
     judged = verdict(HERE, endpoint(Kind.PUBLISHER, hash_="RIHS01_00112233445566"))
     assert judged == Verdict(
         False,
-        complaint="/t: nothing passes between the publisher of /there and the subscription here: they have two "
+        complaint="/t: nothing passes between the publisher of /there and the subscription here: they have different "
         "definitions of std_msgs/msg/String (RIHS01_00112233 there, RIHS01_df668c74 here): use the same definition "
         "file on both sides",
     )
