@@ -13,7 +13,7 @@ def domain_id(given: int | None = None) -> int:
     """The domain to use: the given one, else GRAPHFLOW_DOMAIN, else ROS_DOMAIN_ID, else 0.
 
     Raises:
-        GraphflowError: A variable holds something else than a number of 0 or more.
+        GraphflowError: A variable holds something other than a whole number, 0 or more.
     """
     if given is not None:
         return given

@@ -2,9 +2,9 @@
 
 GraphflowError
 |-- DeclarationError          a node class is declared wrongly (raised when it is imported)
-|-- InvalidName               a topic, service or node name, or a remap rule, is not a legal one
+|-- InvalidName                a topic, service or node name, or a remap rule, is not legal
 |-- InterfaceError            a .msg, .srv or .action definition is missing or wrong
-|   `-- UnknownInterface      nothing is called that; the text names the nearest
+|   `-- UnknownInterface      nothing has that name; the text gives the nearest
 |-- EncodeError               a message holds a value that its type cannot carry
 |-- DecodeError               bytes from the network are not what their type says (the peer did that)
 |-- ParameterError            a parameter is unknown, of another type, out of range or read-only
@@ -17,11 +17,11 @@ GraphflowError
 |-- UsageFault                the words on the command line are wrong
 |-- Abort                     what an action's handler raises to end its goal as aborted
 |-- GoalError                 a goal ended without success
-|   |-- GoalRejected          the server did not take it
-|   |-- GoalAborted           the server gave it up; carries its result
+|   |-- GoalRejected          the server did not accept it
+|   |-- GoalAborted           the server gave up on it; carries its result
 |   |-- GoalCanceled          somebody cancelled it; carries its partial result
 |   `-- GoalLost              the server went away: nobody knows how it ended
-|-- LoopBlockedError          a call that blocks was made on the event loop
+|-- LoopBlockedError          a blocking call was made on the event loop
 `-- CallError                 a call ended without a response
     |-- ServiceUnavailable    nobody serves that name
     |-- ServerLost            the server went away during the call
@@ -70,7 +70,7 @@ class ParameterError(GraphflowError, ValueError):
 
 
 class TransportError(GraphflowError):
-    """The network, or something in its place, refused."""
+    """The network, or something that listens in its place, refused."""
 
 
 class ClosedError(GraphflowError):
@@ -139,11 +139,11 @@ class GraphFileError(GraphflowError):
 
 
 LONGEST_TEXT = 4_000
-"""Characters of a text from another process that an error repeats."""
+"""Characters of another process's text that an error repeats at most."""
 
 
 def printable(text: str) -> str:
-    """A text from another process as it may stand in an error: nothing in it that a terminal would obey."""
+    """A text from another process, safe to put in an error: with nothing in it that a terminal would obey."""
     return "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in text[:LONGEST_TEXT])
 
 
@@ -176,7 +176,7 @@ class GoalRejected(GoalError):
 
 
 class GoalAborted(GoalError):
-    """The server gave the goal up."""
+    """The server gave up on the goal."""
 
 
 class GoalCanceled(GoalError):
@@ -184,11 +184,11 @@ class GoalCanceled(GoalError):
 
 
 class GoalLost(GoalError):
-    """The server went away; what has become of the goal is not known."""
+    """The server went away; what became of the goal is not known."""
 
 
 class LoopBlockedError(GraphflowError):
-    """A call that blocks was made on the event loop, which would stop the whole process; await it instead."""
+    """A blocking call was made on the event loop, which would stop the whole process; await it instead."""
 
 
 class CallError(GraphflowError):
@@ -232,7 +232,7 @@ class RemoteError(CallError):
 
     @classmethod
     def from_payload(cls, payload: bytes, service: str) -> RemoteError:
-        """Read an error reply; one of another form becomes the message."""
+        """Read an error reply; a payload of another form becomes the message."""
         import json
 
         try:

@@ -1,6 +1,6 @@
 """What a node class declares, as frozen data: known without making a node, and readable as JSON.
 
-Checks, plans and listings speak this; nothing here refers to a class or a function object.
+Checks, plans and listings use this; nothing here refers to a class or a function object.
 """
 
 from __future__ import annotations
@@ -65,15 +65,15 @@ class Parameter:
     lt: float | None = None
     read_only: bool = False
     step: float = 0.0
-    """Distance between allowed values, counted from `ge`, or from 0; 0 for all. The limits are always allowed."""
+    """Distance between allowed values, counted from `ge`, or from 0; 0 allows all. The limits are always allowed."""
     dynamic: bool = False
-    """Takes values of every type, and may be deleted (ROS 2's dynamic typing)."""
+    """Whether the parameter takes values of any type and may be deleted (ROS 2's dynamic typing)."""
 
     def fit(self, value: Any) -> Any:
         """`value` as the declared type, integers widened to floats.
 
         Raises:
-            ParameterError: It is of another type or out of range; the text says what is allowed.
+            ParameterError: `value` is of another type or out of range; the text says what is allowed.
         """
         if self.dynamic:
             return None if value is None else self._any(value)
@@ -121,14 +121,14 @@ class Parameter:
         if self.step and number not in (self.ge, self.le) and math.isfinite(number):
             start = self.ge or 0
             nearest = start + round((number - start) / self.step) * self.step
-            # As rclpy: whole numbers exactly, others within a millionth.
+            # As in rclpy: whole numbers exactly, others within a millionth.
             fits = (
                 nearest == number if self.type in ("int", "list[int]") else math.isclose(nearest, number, rel_tol=1e-6)
             )
             if not fits:
                 raise ParameterError(
-                    f"parameter {self.name!r} = {number} is not a valid step: {start:g} and multiples of {self.step:g} "
-                    f"more, such as {nearest:g}"
+                    f"parameter {self.name!r} = {number} is not a valid step: {start:g} plus a multiple of "
+                    f"{self.step:g}, such as {nearest:g}"
                 )
 
     def range_text(self) -> str:
@@ -144,17 +144,17 @@ _NOWHERE = Place("graphflow")
 COMMON_PARAMETERS: dict[str, Parameter] = {
     p.name: p
     for p in (
-        Parameter("use_sim_time", "bool", False, _NOWHERE, doc="Go by the time that /clock tells."),
+        Parameter("use_sim_time", "bool", False, _NOWHERE, doc="Use the time published on /clock."),
         Parameter(
-            "start_type_description_service", "bool", True, _NOWHERE, doc="Describe types to others.", read_only=True
+            "start_type_description_service", "bool", True, _NOWHERE, doc="Serve type descriptions.", read_only=True
         ),
     )
 }
-"""Parameters that every node has, as every ROS 2 node."""
+"""Parameters that every node has, as in ROS 2."""
 
 
 WhenFull = Literal["wait", "drop_new", "drop_old", "cancel_running"]
-"""What becomes of work that finds no slot free.
+"""What becomes of work that finds no free slot.
 
 `wait`: it queues. `drop_new`: it is dropped. `drop_old`: it queues, and whatever queued before it is dropped.
 `cancel_running`: the same, and the oldest run under way is cancelled.
@@ -164,27 +164,27 @@ DeadlockPolicy = Literal["raise", "report", "break", "off"]
 """What is done about a deadlock.
 
 `raise`: a call that cannot succeed fails at once, and any other deadlock is reported. `report`: it is reported.
-`break`: as raise, and the youngest call of a deadlock is ended with DeadlockError. `off`: nobody looks.
+`break`: as raise, and the youngest call of a deadlock is ended with DeadlockError. `off`: deadlocks are not looked for.
 """
 GoalPolicy = Literal["reject", "queue", "preempt", "parallel"]
-"""What becomes of a goal that comes while another is under way.
+"""What becomes of a goal that arrives while another is under way.
 
 `reject`: it is not accepted. `queue`: it waits for its turn. `preempt`: the one under way is ended, as aborted, and the
-new one begins when that has ended. `parallel`: they run beside each other, as far as their group allows.
+new one begins when that has ended. `parallel`: they run concurrently, as far as their group allows.
 """
 OnClientLoss = Literal["continue", "cancel"]
 """What becomes of a goal whose client has gone."""
 
 OnError = Literal["budget", "log", "end"]
-"""What an error of a timer or subscription means for its node.
+"""What an error in a timer or subscription means for its node.
 
 `budget`: it is logged and counted, and too many end the node. `log`: it is logged. `end`: it ends the node.
 """
 
 CALL_TIMEOUT = 10.0
-"""Seconds that a call waits for its answer, unless somebody says otherwise."""
+"""Seconds that a call waits for its response, unless told otherwise."""
 NO_GROUP = "none"
-"""In a graph file: the handlers that are to be in no group."""
+"""In a graph file: the handlers that should be in no group."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +199,7 @@ class GroupInfo:
 
 @dataclass(frozen=True, slots=True)
 class GroupChange:
-    """What a graph file says of one group of a node: who is in it, and what is to differ from the declaration."""
+    """What a graph file says about one group of a node: its members and what differs from the declaration."""
 
     handlers: tuple[str, ...] = ()
     limit: int | None = 1
@@ -223,7 +223,7 @@ class HandlerInfo:
     kind: HandlerKind
     place: Place
     group: str = ""
-    """The name of its group; empty: it queues behind itself only."""
+    """The name of its group; empty for a handler that queues behind itself only."""
     is_async: bool = True
     thread: bool = False
 
@@ -280,7 +280,7 @@ def type_of(value: Any) -> ParamType:
     """The parameter type of a Python value.
 
     Raises:
-        ParameterError: It has none.
+        ParameterError: The value has none.
     """
     if isinstance(value, bool):
         return "bool"

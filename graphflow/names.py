@@ -25,7 +25,7 @@ MAX_LENGTH = 255
 
 def nearest(word: str, choices: Iterable[str]) -> str | None:
     """The choice most like `word`, or None when none is like it."""
-    import difflib  # only when somebody has erred
+    import difflib  # only after a mistake
 
     found = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
     return found[0] if found else None
@@ -50,8 +50,8 @@ def check_node_name(name: str) -> str:
     """
     if not _NODE.match(name):
         raise InvalidName(
-            f"{name!r} is no node name: use letters, digits and _, and do not begin with a digit"
-            + (f" (for a namespace give {name.rpartition('/')[0] or '/'!r} apart)" if "/" in name else "")
+            f"{name!r} is not a node name: use letters, digits and _, and do not begin with a digit"
+            + (f" (give the namespace {name.rpartition('/')[0] or '/'!r} separately)" if "/" in name else "")
         )
     return name
 
@@ -64,7 +64,7 @@ def check_full_name(name: str, what: str = "name") -> str:
     """
     problem = _fault(name)
     if problem:
-        raise InvalidName(f"{name!r} is no {what}: {problem}")
+        raise InvalidName(f"{name!r} is not a {what}: {problem}")
     return name
 
 
@@ -89,7 +89,7 @@ def check_namespace(namespace: str) -> str:
     """The namespace in its full form (`/`, `/a/b`); a missing leading slash is added.
 
     Raises:
-        InvalidName: It is not made of legal names.
+        InvalidName: It has parts that are not legal names.
     """
     if namespace in ("", "/"):
         return "/"
@@ -132,14 +132,14 @@ def expand(name: str, namespace: str, node: str) -> str:
         text = f"{join(namespace, node)}{text[1:]}"
     problem = "it is empty" if not text else _fault(join(namespace, text))
     if problem:
-        raise InvalidName(f"{name!r} is no topic or service name: {problem}")
+        raise InvalidName(f"{name!r} is not a topic or service name: {problem}")
     return join(namespace, text)
 
 
 def _substitute(word: str, name: str, namespace: str, node: str) -> str:
     values = {"node": node, "ns": namespace, "namespace": namespace}
     if word not in values:
-        raise InvalidName(f"{name!r} has {{{word}}} in it; {{node}} and {{ns}} are known")
+        raise InvalidName(f"{name!r} has {{{word}}} in it; only {{node}} and {{ns}} are known")
     return values[word]
 
 
@@ -163,11 +163,11 @@ class Remap:
         """A rule from the command line: `from:=to`, `node:from:=to`, `__ns:=/ns`, `__node:=name`.
 
         Raises:
-            InvalidName: There is no `:=`, a side is empty, `node` is no node name, or `__word` is not a known one.
+            InvalidName: There is no `:=`, a side is empty, `node` is not a node name, or `__word` is not a known one.
         """
         match, arrow, replacement = text.partition(":=")
         if not arrow or not match or not replacement:
-            raise InvalidName(f"{text!r} is no remap rule; write it as from:=to, for example pose:=/turtle1/pose")
+            raise InvalidName(f"{text!r} is not a remap rule; write it as from:=to, for example pose:=/turtle1/pose")
         node: str | None = None
         head, colon, rest = match.partition(":")
         if colon and not rest.startswith("//"):
@@ -178,7 +178,7 @@ class Remap:
                 match, kind = match.removeprefix(scheme), meant  # type: ignore[assignment]
         if match.startswith("__") and match not in ("__ns", "__node", "__name"):
             known = ("__ns", "__node", "__name")
-            raise InvalidName(f"{match!r} is no remap key{did_you_mean(match, known)}")
+            raise InvalidName(f"{match!r} is not a remap key{did_you_mean(match, known)}")
         return cls(match, replacement, node, kind, source)
 
 
@@ -259,5 +259,5 @@ class Resolver:
         return expanded
 
     def unused(self) -> list[Remap]:
-        """Rules meant for this node that no name of it has matched so far."""
+        """Rules meant for this node that none of its names has matched so far."""
         return [rule for rule in self.rules if rule not in self.used]

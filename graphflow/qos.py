@@ -20,7 +20,7 @@ class Reliability(IntEnum):
     RELIABLE = 1
     BEST_EFFORT = 2
     BEST_AVAILABLE = 4
-    """What fits the other side as it is when the endpoint is opened; never announced."""
+    """Whatever fits the other side when the endpoint is opened; never announced."""
 
 
 class Durability(IntEnum):
@@ -55,7 +55,7 @@ class Qos:
     lease_ns: int = INFINITE_NS
 
     def __post_init__(self) -> None:
-        # rmw_zenoh adapts a requested profile likewise: no depth and no duration of 0 reaches the wire.
+        # rmw_zenoh adapts a requested profile likewise: neither a depth nor a duration of 0 reaches the wire.
         if self.depth < 0:
             raise ValueError(f"a queue depth cannot be {self.depth}; give 1 or more")
         if not self.depth:

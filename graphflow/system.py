@@ -1,8 +1,8 @@
-"""This machine, its user, and which of an operating system's ways are taken: Linux's, or those that every system has.
+"""This machine, its user, and which means of the operating system are used: Linux's, or those every system has.
 
-The portable ways are slower to start and cost more memory: workers are started and not forked, the control socket is
-on loopback with a token and not a Unix socket, the loop is woken as asyncio does it. Windows and macOS take them;
-`GRAPHFLOW_PORTABLE=1` takes them on Linux too, so that they can be tested there.
+The portable ones start more slowly and cost more memory: workers are spawned instead of forked, the control socket is
+on loopback with a token instead of a Unix socket, the loop is woken as asyncio does it. Windows and macOS use them;
+`GRAPHFLOW_PORTABLE=1` selects them on Linux too, so that they can be tested there.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ PORTABLE_VARIABLE = "GRAPHFLOW_PORTABLE"
 
 
 def is_portable() -> bool:
-    """Whether the ways are taken that every system has."""
+    """Whether only the means that every system has are used."""
     return sys.platform != "linux" or os.environ.get(PORTABLE_VARIABLE, "") not in ("", "0")
 
 

@@ -22,7 +22,7 @@ class Duration:
 
     @classmethod
     def of(cls, seconds: float) -> Duration:
-        """The span of so many seconds."""
+        """A span of this many seconds."""
         return cls(to_ns(seconds))
 
     @property

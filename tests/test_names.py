@@ -36,14 +36,14 @@ def test_node_names(name: str) -> None:
 @pytest.mark.parametrize("name", ["", "2nd", "a-b", "a b", "a\n", "é", "~", "a.b", "{node}"])
 def test_wrong_node_names(name: str) -> None:
     """Anything else is refused, with the rule."""
-    with pytest.raises(InvalidName, match="is no node name: use letters, digits and _"):
+    with pytest.raises(InvalidName, match="is not a node name: use letters, digits and _"):
         check_node_name(name)
 
 
 @pytest.mark.parametrize(("name", "namespace"), [("/a/b", "/a"), ("a/b", "a"), ("/b", "/")])
 def test_a_node_name_with_a_namespace_in_it(name: str, namespace: str) -> None:
     """Who writes the namespace into the name is told to give it apart."""
-    with pytest.raises(InvalidName, match=f"for a namespace give '{namespace}' apart"):
+    with pytest.raises(InvalidName, match=f"give the namespace '{namespace}' separately"):
         check_node_name(name)
 
 
@@ -73,7 +73,7 @@ def test_full_names(name: str) -> None:
 )
 def test_wrong_full_names(name: str, problem: str) -> None:
     """What would not be legal in ROS 2, or would break a Zenoh key, is refused with the rule."""
-    with pytest.raises(InvalidName, match=f"is no topic: .*{problem}"):
+    with pytest.raises(InvalidName, match=f"is not a topic: .*{problem}"):
         check_full_name(name, "topic")
 
 
@@ -86,7 +86,7 @@ def test_namespaces_get_their_slash(given: str, full: str) -> None:
 @pytest.mark.parametrize("namespace", ["/a/", "a//b", "2", "~"])
 def test_wrong_namespaces(namespace: str) -> None:
     """A namespace that is not made of legal names is refused."""
-    with pytest.raises(InvalidName, match="is no namespace"):
+    with pytest.raises(InvalidName, match="is not a namespace"):
         check_namespace(namespace)
 
 
@@ -154,7 +154,7 @@ def test_the_namespace_is_substituted(word: str) -> None:
         ("2a", "'2a' may have"),
         ("a b", "may have only"),
         ("a__b", "two underscores"),
-        ("{nod}", r"has \{nod\} in it; \{node\} and \{ns\} are known"),
+        ("{nod}", r"has \{nod\} in it; only \{node\} and \{ns\} are known"),
         ("a{", "may have only"),
     ],
 )
@@ -212,20 +212,20 @@ def test_a_rule_prints_as_it_is_written(text: str) -> None:
 @pytest.mark.parametrize("text", ["", "a", "a=b", "a:b", ":=b", "a:=", ":="])
 def test_what_is_no_rule(text: str) -> None:
     """A rule without `:=`, or with nothing on a side, is refused with an example."""
-    with pytest.raises(InvalidName, match="is no remap rule; write it as from:=to"):
+    with pytest.raises(InvalidName, match="is not a remap rule; write it as from:=to"):
         Remap.parse(text)
 
 
 @pytest.mark.parametrize("text", [":a:=b", "/ns/n:a:=b", "2n:a:=b"])
 def test_a_rule_for_what_is_no_node(text: str) -> None:
     """A rule for one node that no node can be called is refused."""
-    with pytest.raises(InvalidName, match="is no node name"):
+    with pytest.raises(InvalidName, match="is not a node name"):
         Remap.parse(text)
 
 
 def test_a_misspelt_key_is_helped() -> None:
     """An unknown `__key` is refused with the nearest known one."""
-    with pytest.raises(InvalidName, match="'__nod' is no remap key; did you mean '__node'"):
+    with pytest.raises(InvalidName, match="'__nod' is not a remap key; did you mean '__node'"):
         Remap.parse("__nod:=x")
 
 

@@ -102,7 +102,7 @@ nodes:
         ("override: {}\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:1:1: override: goes with include:"),
         (
             "include: sub/base.yaml\noverride: {/a: {concurrency: {g: [x], h: [x]}}}\n",
-            r"x is put into two groups, 'g' an",
+            r"x is put in two groups, 'g' an",
         ),
         (
             "include: sub/base.yaml\noverride: {/a: {concurrency: {g: {limit: 0}}}}\n",

@@ -220,9 +220,9 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ),
         (
             "nodes:\n  a: {class: x:Y, remap: {b c: d}}\n",
-            "2:27: 'b c' is no topic or service name: 'b c' may have only",
+            "2:27: 'b c' is not a topic or service name: 'b c' may have only",
         ),
-        ("nodes:\n  a: {class: x:Y, remap: {b: /c/}}\n", "2:27: '/c/' is no topic or service name: it ends with /"),
+        ("nodes:\n  a: {class: x:Y, remap: {b: /c/}}\n", "2:27: '/c/' is not a topic or service name: it ends with /"),
         ("nodes:\n  a: {class: x:Y, remap: {b: 3}}\n", "2:30: nodes.a.remap.b: expected text, got 3"),
         (
             "nodes:\n  a: {class: x:Y, remap: {__ns: /n}}\n",
@@ -241,10 +241,10 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ),
         ("nodes:\n  a: {class: x:Y, after: [3]}\n", "2:27: nodes.a.after.0: expected text, got 3"),
         ("nodes:\n  a: {class: x:Y, after: a}\n", "2:3: waits for itself: /a after /a; remove one of these after:"),
-        ("nodes:\n  1a: {class: x:Y}\n", "2:3: '/1a' is no node name: '1a' may have only letters, digits and _, and"),
-        ("nodes:\n  a-b: {class: x:Y}\n", "2:3: '/a-b' is no node name: 'a-b' may have only letters"),
-        ("nodes:\n  /: {class: x:Y}\n", "2:3: '/' is no node name: it ends with /"),
-        ("nodes:\n  a: {class: x:Y, namespace: 1n}\n", "2:30: '/1n' is no namespace: '1n' may have only letters"),
+        ("nodes:\n  1a: {class: x:Y}\n", "2:3: '/1a' is not a node name: '1a' may have only letters, digits and _"),
+        ("nodes:\n  a-b: {class: x:Y}\n", "2:3: '/a-b' is not a node name: 'a-b' may have only letters"),
+        ("nodes:\n  /: {class: x:Y}\n", "2:3: '/' is not a node name: it ends with /"),
+        ("nodes:\n  a: {class: x:Y, namespace: 1n}\n", "2:30: '/1n' is not a namespace: '1n' may have only letters"),
         (
             "nodes:\n  /a: {class: x:Y, namespace: n}\n",
             "2:31: /a is a full name, so its namespace would not count; call the node a, or remove this",
@@ -277,7 +277,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         (HEAD + "steps: {s: {}}\n", "3:9: the key 'call' is missing"),
         (HEAD + "steps: {s: /spawn}\n", "3:12: steps.s: expected a mapping, got '/spawn', for example {call: /spawn}"),
         (HEAD + "steps: [{call: /x}]\n", "3:8: steps: expected a mapping, got [{'call': '/x'}], for example steps: "),
-        (HEAD + "steps: {s: {call: b c}}\n", "3:19: 'b c' is no topic or service name: 'b c' may have only letters"),
+        (HEAD + "steps: {s: {call: b c}}\n", "3:19: 'b c' is not a topic or service name: 'b c' may have only letters"),
         (HEAD + "steps: {s: {call: /b, type: Spawn}}\n", "3:29: 'Spawn' is no service type; write package/srv/Name"),
         (HEAD + "steps: {s: {call: /b, request: [1]}}\n", "3:32: steps.s.request: expected a mapping, got [1], for"),
         (HEAD + "steps: {s: {call: /b, timeout: 0}}\n", "3:32: steps.s.timeout: expected more than 0, got 0"),
@@ -356,12 +356,12 @@ steps:
   t: {call: /x, after: [s, ss]}
 """.replace("5,", "'5',")
     ) == [
-        "2:3: '/a-b' is no node name: 'a-b' may have only letters, digits and _, and may not begin with a digit",
+        "2:3: '/a-b' is not a node name: 'a-b' may have only letters, digits and _, and may not begin with digit",
         "3:28: parameter 'p' has no value; an empty text is ''",
         "3:37: parameter 'q.r' has no value; an empty text is ''",
-        "4:30: '/5' is no namespace: '5' may have only letters, digits and _, and may not begin with a digit",
+        "4:30: '/5' is not a namespace: '5' may have only letters, digits and _, and may not begin with digit",
         "5:3: there are two nodes /c; the other is in line 3",
-        "7:13: 'x y' is no topic or service name: 'x y' may have only letters, digits and _, and may not begin with a "
+        "7:13: 'x y' is not a topic or service name: 'x y' may have only letters, digits and _, and may not begin with "
         "digit",
         "8:28: after: there is no node or step 'ss'; did you mean 's'?",
     ]

@@ -95,8 +95,8 @@ def test_values_for_one_node() -> None:
         (["--log-level"], "--log-level needs a value after it"),
         (["-p", "rate=2"], "-p 'rate=2': write name:=value, for example rate:=2.0"),
         (["-p", ":=2"], "-p ':=2': write name:=value"),
-        (["-r", "nothing"], "'nothing' is no remap rule; write it as from:=to"),
-        (["-r", "__nod:=x"], "'__nod' is no remap key; did you mean '__node'?; use --ros-args -r __ns:=/turtle1"),
+        (["-r", "nothing"], "'nothing' is not a remap rule; write it as from:=to"),
+        (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node'?; use --ros-args -r __ns:=/turtle1"),
         (["--ros-args", "--remp", "a:=b"], "'--remp' is no ROS argument; did you mean '--remap'?"),
     ],
 )

@@ -377,9 +377,9 @@ async def test_a_graph_file_moves_handlers(graph: Graph) -> None:
 
 async def test_a_graph_file_that_names_what_is_not_there(graph: Graph) -> None:
     """An unknown handler and one in two groups are errors with the nearest name."""
-    with pytest.raises(DeclarationError, match="first is put into two groups, 'a' and 'b'"):
+    with pytest.raises(DeclarationError, match="first is put in two groups, 'a' and 'b'"):
         Node("n", concurrency={"a": GroupChange(("first",)), "b": GroupChange(("first",))})
-    with pytest.raises(DeclarationError, match="names 'frist', which is no handler of this node; did you mean 'first'"):
+    with pytest.raises(DeclarationError, match="'frist', which is not a handler of this node; did you mean 'first'"):
         await graph.start(MisplacedWorker())
 
 
