@@ -1,1 +1,1 @@
-"""The command line: ROS 2's verbs, and those of graphs. One module a verb group, imported when it is used."""
+"""The command line: ROS 2's verbs and those for graphs. One module per verb group, imported when used."""

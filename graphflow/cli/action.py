@@ -17,13 +17,13 @@ from graphflow.wire.liveliness import Kind
 
 @click.group()
 def action() -> None:
-    """List actions, and send goals to them."""
+    """List actions and send goals to them."""
 
 
 @action.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-actions", is_flag=True, help="Only how many.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-t", "--show-types", is_flag=True, help="Also show types.")
+@click.option("-c", "--count-actions", is_flag=True, help="Only the count.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(show_types: bool, count_actions: bool, as_json: bool) -> None:
     """List the names of all actions."""
     with View(domain_id()) as view:
@@ -46,7 +46,7 @@ def type_(name: str) -> None:
 
 @action.command()
 @click.argument("type_name", metavar="TYPE")
-@click.option("-c", "--count-actions", is_flag=True, help="Only how many.")
+@click.option("-c", "--count-actions", is_flag=True, help="Only the count.")
 def find(type_name: str, count_actions: bool) -> None:
     """List the actions of a type."""
     from graphflow.msgs import registry
@@ -60,11 +60,11 @@ def find(type_name: str, count_actions: bool) -> None:
 
 @action.command()
 @click.argument("name", metavar="ACTION")
-@click.option("-t", "--show-types", is_flag=True, help="With the type that each node has.")
-@click.option("-c", "--count", is_flag=True, help="Only how many.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-t", "--show-types", is_flag=True, help="Also show the type each node uses.")
+@click.option("-c", "--count", is_flag=True, help="Only the count.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
-    """Tell which nodes serve an action, and which send goals to it."""
+    """Show which nodes serve an action and which send goals to it."""
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         _types(view, full)
@@ -87,29 +87,31 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
 
 
 def _types(view: View, name: str) -> list[str]:
-    """The types of an action that is there."""
+    """The types of an action in the graph."""
     actions = view.cache.actions()
     if name not in actions:
-        raise UsageFault(f"there is no action {name}{did_you_mean(name, actions) or '; graphflow action list has all'}")
+        raise UsageFault(
+            f"there is no action {name}{did_you_mean(name, actions) or '; graphflow action list shows all'}"
+        )
     return actions[name]
 
 
-@action.command(name="send_goal", cls=ValueCommand, short_help="Send a goal in YAML, and wait for its end.")
+@action.command(name="send_goal", cls=ValueCommand, short_help="Send a goal given in YAML and wait for its result.")
 @click.argument("name", metavar="ACTION")
 @click.argument("type_name", metavar="TYPE", required=False)
 @click.argument("values", nargs=-1)
-@click.option("-f", "--feedback", is_flag=True, help="Show the feedback as it comes.")
+@click.option("-f", "--feedback", is_flag=True, help="Show feedback as it arrives.")
 @click.option(
     "--timeout",
     type=click.FloatRange(0, min_open=True),
     default=10.0,
     show_default=True,
-    help="Seconds in which a server must be there and accept.",
+    help="Seconds to wait until a server accepts.",
 )
 def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float) -> int:
     """Send a goal: VALUES are its fields in YAML, such as "{theta: 1.57}". Ctrl-C cancels the goal.
 
-    Exit code 0: it succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost; 4: no server came.
+    Exit code 0: the goal succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost.
     """
     from graphflow.cli.sending import send
     from graphflow.msgs import registry

@@ -25,7 +25,7 @@ class Step(NamedTuple):
 
     name: str
     seconds: float
-    """How long the fixed one is shown, and the broken one when nothing is found."""
+    """How long the fixed graph is shown, and the broken one when nothing is found."""
 
 
 DEADLOCKS = (
@@ -42,7 +42,7 @@ DEADLOCKS = (
     Step("arrival", 9.0),
 )
 _AFTER_REPORT = 1.0
-"""Seconds that a broken graph is shown on after its report has begun."""
+"""Seconds that a broken graph stays on screen after its report has begun."""
 _END_LIMIT = 20.0
 
 
@@ -53,12 +53,12 @@ def demo() -> None:
 
 @demo.command()
 @click.argument("steps", nargs=-1, metavar="[STEP]...")
-@click.option("-l", "--list", "only_list", is_flag=True, help="Only the names of the steps.")
-@click.option("-y", "--yes", is_flag=True, help="Go on without being asked.")
+@click.option("-l", "--list", "only_list", is_flag=True, help="Only list the steps.")
+@click.option("-y", "--yes", is_flag=True, help="Do not ask before each step.")
 def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
-    """Show eleven deadlocks and races, each explained while it is there, and then fixed by a change of its graph file.
+    """Show eleven deadlocks and races, each explained as it happens and then fixed by a change to its graph file.
 
-    Each runs in a domain of its own and on a port of its own. STEPs choose some by name.
+    Each runs in its own domain and on its own port. Name STEPs to run only those.
     """
     known = {step.name: step for step in DEADLOCKS}
     if only_list:
@@ -66,7 +66,7 @@ def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
         return exits.OK
     for name in steps:
         if name not in known:
-            raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list has all'}")
+            raise exits.UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
     from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 
@@ -104,7 +104,7 @@ def _show(step: Step, *, asks: bool) -> None:
 
 
 def _run(file: Path, seconds: float) -> Iterator[str]:
-    """The lines of a graph's nodes, until its time is over."""
+    """The lines that a graph's nodes print until its time is up."""
     command = [sys.executable, "-m", "graphflow.cli.main", "up", str(file)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert process.stdout is not None

@@ -22,7 +22,7 @@ from graphflow.wire.liveliness import Kind
 from graphflow.wire.schema import FieldType
 
 DISCOVERY = 0.2
-"""Seconds to wait for the topic's publishers to be known."""
+"""Seconds to wait for the topic's publishers to be discovered."""
 
 
 @dataclass
@@ -45,7 +45,7 @@ class EchoOptions:
 
 
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
-    """Print messages until the end; returns the exit code."""
+    """Print messages until done or stopped; returns the exit code."""
     path = _field_path(options.field, type_name) if options.field else []
 
     async def work(node: Node) -> int:
@@ -79,7 +79,7 @@ def _tell_loss(event: QosEvent) -> None:
 
 
 async def _known(node: Node, topic: str) -> None:
-    """Give the graph a moment to tell of the topic's publishers, whose QoS decides ours."""
+    """Give the graph a moment to report the topic's publishers, whose QoS decides ours."""
     try:
         async with node.clock.timeout(DISCOVERY):
             await node.context.wait_for(lambda: bool(node.context.cache.endpoints(Kind.PUBLISHER, topic)))
@@ -130,7 +130,7 @@ def _field_path(text: str, type_name: str) -> list[str | int]:
         UsageFault: The type has no such field or element.
     """
     if not re.fullmatch(r"\w+(\[\d+\])?(\.\w+(\[\d+\])?)*", text):
-        raise UsageFault(f"{text!r} is no field of a message; write FIELD.FIELD or FIELD[0]")
+        raise exits.UsageFault(f"{text!r} is not a field of a message; write FIELD.FIELD or FIELD[0]")
     parts: list[str | int] = []
     type_, at = FieldType(type_name), ""
     for word, index in re.findall(r"(\w+)(?:\[(\d+)\])?", text):
@@ -139,18 +139,18 @@ def _field_path(text: str, type_name: str) -> list[str | int]:
         parts.append(word)
         if index:
             if not type_.array:
-                raise UsageFault(f"{at} is a {type_}, it has no elements")
+                raise exits.UsageFault(f"{at} is a {type_} and has no elements")
             type_, at = type_._replace(array="", size=0), f"{at}[{index}]"
             parts.append(int(index))
     return parts
 
 
 def _field_type(type_: FieldType, at: str, word: str) -> FieldType:
-    """The type of field `word` of what is at `at`."""
+    """The type of field `word` in what stands at `at`."""
     if type_.array:
         raise UsageFault(f"{at} is a list; say which element, as in {at}[0]")
     if type_.is_primitive:
-        raise UsageFault(f"{at} is a {type_}, it has no field {word!r}")
+        raise exits.UsageFault(f"{at} is a {type_} and has no field {word!r}")
     fields = {f.name: f.type for f in registry.message_schema(type_.base).fields}
     if word not in fields:
         raise UsageFault(f"{type_.base} has no field {word!r}{did_you_mean(word, fields)}")

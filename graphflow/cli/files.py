@@ -16,7 +16,7 @@ def find_graph(text: str) -> Path:
     """The file that `up NAME` means: a path, or the name of a graph that comes with graphflow.
 
     Raises:
-        UsageFault: There is neither.
+        UsageFault: `text` is neither.
     """
     path = Path(text)
     if path.is_file():
@@ -26,7 +26,7 @@ def find_graph(text: str) -> Path:
     bundled = bundled_graphs()
     if text.removesuffix(".yaml") in bundled:
         found = bundled[text.removesuffix(".yaml")]
-        output.talk(f"{text}: the one that comes with graphflow, {found}")
+        output.talk(f"{text}: using the one that comes with graphflow, {found}")
         return found
     folder = path if path.is_dir() else path.parent
     near = [str(p) for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))]
@@ -37,9 +37,9 @@ def find_graph(text: str) -> Path:
 @click.command()
 @click.argument("graph", metavar="GRAPH.yaml")
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def plan(graph: str, args: tuple[str, ...], as_json: bool) -> None:
-    """Show exactly what a graph file would run, with the place each setting comes from. Imports nothing."""
+    """Show exactly what a graph file would run and where each setting comes from. Imports nothing."""
     path = find_graph(graph)
     from graphflow.graph.resolve import load
 
@@ -56,7 +56,7 @@ def plan(graph: str, args: tuple[str, ...], as_json: bool) -> None:
 def check(graph: str, args: tuple[str, ...]) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
-    Deadlocks that the source tells of are reported with it: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE.
+    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE.
     """
     path = find_graph(graph)
     from graphflow.errors import GraphFileError

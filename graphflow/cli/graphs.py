@@ -1,4 +1,4 @@
-"""`graphflow up`, `down`, `ps` and `logs`: graphs that run."""
+"""`graphflow up`, `down`, `ps` and `logs`: running graphs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from graphflow.errors import SupervisorError, UsageFault
 from graphflow.wire.profile import PROFILES, VARIABLE
 
 GONE_LIMIT = 10.0
-"""Seconds that a supervisor may take to end when its nodes have."""
+"""Seconds that a supervisor may take to end once its nodes have."""
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 
@@ -25,11 +25,11 @@ _graph = click.option("--graph", "name", metavar="NAME", help="Which running gra
 @click.argument("graph", metavar="GRAPH.yaml|NAME")
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
-@click.option("-s", "--show-args", is_flag=True, help="Show the arguments of the file, and start nothing.")
-@click.option("--private", is_flag=True, help="On a port and in a domain of its own.")
-@click.option("--races", is_flag=True, help="Report updates of nodes' attributes that are lost between handlers.")
-@click.option("--domain", type=click.IntRange(0), help="Domain id, before the file's own.")
-@click.option("--wire", type=click.Choice(PROFILES), help="Whose message definitions to use.")
+@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
+@click.option("--private", is_flag=True, help="Use a port and a domain of its own.")
+@click.option("--races", is_flag=True, help="Report updates of node attributes that are lost between handlers.")
+@click.option("--domain", type=click.IntRange(0), help="Domain id; overrides the file's.")
+@click.option("--wire", type=click.Choice(PROFILES), help="ROS 2 distribution whose message definitions to use.")
 @reach_options
 def up(
     graph: str,
@@ -58,7 +58,7 @@ def up(
         from graphflow.domain import domain_id
 
         domain = domain_id()
-    # From here to the fork nothing heavy may have been imported: the children share what this process has.
+    # Nothing heavy may be imported before the fork: the children share what this process has.
     from graphflow.supervisor.launch import launch
 
     report = launch(path, list(args), domain, attached=not detach)
@@ -106,7 +106,7 @@ def _show_args(path: Path) -> int:
 @click.command()
 @_graph
 @click.option("--all", "everything", is_flag=True, help="Every running graph.")
-@click.option("--now", is_flag=True, help="Kill, without time for cleanup.")
+@click.option("--now", is_flag=True, help="Kill at once, without time for cleanup.")
 def down(name: str | None, everything: bool, now: bool) -> int:
     """Stop a running graph; returns when all its processes have ended."""
     from graphflow.supervisor import rundir
@@ -125,7 +125,7 @@ def down(name: str | None, everything: bool, now: bool) -> int:
                 elif event["event"] == "end":
                     break
         if not run.wait_gone(GONE_LIMIT):
-            output.error(f"the supervisor of {run.graph}, process {run.pid}, is still there")
+            output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
             code = exits.TIMEOUT
         else:
             output.data(f"graph {run.graph} is down")
@@ -134,9 +134,9 @@ def down(name: str | None, everything: bool, now: bool) -> int:
 
 @click.command()
 @_graph
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ps(name: str | None, as_json: bool) -> int:
-    """List the nodes of running graphs: state, process, how long."""
+    """List the nodes of running graphs: state, process, uptime."""
     from graphflow.supervisor import rundir
     from graphflow.supervisor.control import ControlClient
 
@@ -186,11 +186,11 @@ def _ago(seconds: float) -> str:
 
 @click.command()
 @click.argument("nodes", nargs=-1, metavar="[NODE]...")
-@click.option("-f", "--follow", is_flag=True, help="Go on as more is written. Ctrl-C ends it.")
-@click.option("-n", "--lines", type=click.IntRange(0), help="Only the last so many lines of each node.")
+@click.option("-f", "--follow", is_flag=True, help="Keep printing as more is written. Ctrl-C stops it.")
+@click.option("-n", "--lines", type=click.IntRange(0), help="Only the last N lines of each node.")
 @_graph
 def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | None) -> int:
-    """Show what the nodes of a graph have written, also after it has ended."""
+    """Show what the nodes of a graph have written, even after it has ended."""
     from graphflow.cli.streaming import LogReader
     from graphflow.names import did_you_mean
     from graphflow.supervisor import rundir

@@ -1,4 +1,4 @@
-"""`graphflow init NAME`: a project to begin with."""
+"""`graphflow init NAME`: a starter project."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ testpaths = ["tests"]
 pythonpath = ["."]
 
 [tool.mypy]
-mypy_path = "typings" # graphflow interface stubs writes there what editors read of interfaces/
+mypy_path = "typings" # where `graphflow interface stubs` writes what editors read
 """,
     "README.md": """\
 # @name
 
     graphflow up graphs/@name.yaml       run it, until Ctrl-C
     graphflow topic echo /greeting       in a second terminal: what it says
-    graphflow param set /greeter rate 5  and change it while it runs
-    python -m pytest                     test it, without network and without waiting
+    graphflow param set /greeter rate 5  change it while it runs
+    python -m pytest                     test it, with no network and no waiting
 
 `nodes/` has the nodes, `graphs/` says which of them run together, `interfaces/` has message and service types of your
-own: save a file there, and import it.
+own: save a file there and import it.
 """,
     "interfaces/@name_interfaces/msg/Greeting.msg": """\
 string text
 uint32 count
 """,
     "nodes/greeter.py": '''\
-"""A node: what it holds, and what it does."""
+"""A node: what it holds and what it does."""
 
 from graphflow import Node, Param, Publisher, timer
 from graphflow.msgs.@name_interfaces.msg import Greeting
 
 
 class Greeter(Node):
-    """Greets, again and again."""
+    """Greets over and over."""
 
     rate = Param(1.0, unit="Hz", gt=0.0, doc="Greetings per second.")
     text = Param("hello", doc="What it says.")
@@ -59,7 +59,7 @@ class Greeter(Node):
     async def greet(self) -> None:
         self.count += 1
         self.greeting.publish(Greeting(text=self.text, count=self.count))
-        self.log.info("%s, the %d. time", self.text, self.count)
+        self.log.info("%s, time %d", self.text, self.count)
 ''',
     "graphs/@name.yaml": """\
 args:
@@ -93,13 +93,15 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 @click.command()
 @click.argument("name")
 def init(name: str) -> None:
-    """Write a project to begin with: the folder NAME with a node, a graph, a message type and a test that passes."""
+    """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test."""
     folder = Path(name)
     word = folder.name
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", word):
-        raise UsageFault(f"{word!r}: a project's name is in small letters, digits and single _, as in my_lab")
+        raise UsageFault(
+            f"{word!r}: a project's name has only lower-case letters, digits and single underscores, as in my_lab"
+        )
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise UsageFault(f"{folder} is there already; take another name, or remove it")
+        raise UsageFault(f"{folder} already exists; choose another name or remove it")
     for path, text in _FILES.items():
         file = folder / path.replace("@name", word)
         file.parent.mkdir(parents=True, exist_ok=True)

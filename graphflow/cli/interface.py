@@ -37,9 +37,11 @@ def show(type_name: str, no_comments: bool) -> None:
 
 
 @interface.command()
-@click.option("--output", "-o", "folder", default="typings", show_default=True, help="Where to, in the project.")
+@click.option(
+    "--output", "-o", "folder", default="typings", show_default=True, help="Folder in the project to write to."
+)
 def stubs(folder: str) -> int:
-    """Write what editors and type checkers read of the project's own types. Again when a definition has changed."""
+    """Write what editors and type checkers read about the project's own types. Repeat when a definition changes."""
     from graphflow.graph.project import project_root, shown
     from graphflow.msgs import registry
     from graphflow.msgs import stubs as writer
@@ -56,12 +58,12 @@ def stubs(folder: str) -> int:
         return exits.FAILED
     output.lines(shown(file) for file in files if file.parent.name in registry.KINDS)
     if folder == "typings":
-        output.talk('editors look there; for mypy, pyproject.toml needs: [tool.mypy] mypy_path = "typings"')
+        output.talk('editors look there; mypy needs in pyproject.toml: [tool.mypy] mypy_path = "typings"')
     return exits.OK
 
 
 def _nested(line: str, package: str, depth: int) -> Iterator[str]:
-    """The fields of the type that a line names, indented, and those of their types below them."""
+    """The fields of the type that a line names, indented, with those of their types below."""
     from graphflow.errors import InterfaceError
     from graphflow.msgs import registry
     from graphflow.wire import idl

@@ -18,7 +18,7 @@ from graphflow.names import did_you_mean, nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
 _VERBS = {
-    "init": ("init", "Write a project to begin with."),
+    "init": ("init", "Write a starter project."),
     "up": ("graphs", "Start a graph from its file."),
     "down": ("graphs", "Stop a running graph."),
     "ps": ("graphs", "List the nodes of running graphs."),
@@ -28,20 +28,20 @@ _VERBS = {
     "run": ("run", "Run one node."),
     "demo": ("demo", "Walk through an example, step by step."),
     "node": ("node", "List and describe nodes."),
-    "topic": ("topic", "List, describe, show and publish topics."),
+    "topic": ("topic", "List, describe, show and publish to topics."),
     "service": ("service", "List and call services."),
-    "action": ("action", "List actions, and send goals to them."),
+    "action": ("action", "List actions and send goals to them."),
     "param": ("param", "List, get, set, describe, dump and load parameters."),
-    "waits": ("waits", "Tell who holds a slot, who waits for what, and where."),
+    "waits": ("waits", "Show who holds a slot, who waits for what, and where."),
     "groups": ("waits", "Show a node's concurrency groups, or move a handler into another."),
-    "doctor": ("waits", "Look for what is wrong with the running graph."),
+    "doctor": ("waits", "Check the running graph for problems."),
     "interface": ("interface", "Show message, service and action types."),
 }
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
 _OTHER_WORDS = {"launch": "up", "start": "up", "stop": "down", "kill": "down", "interfaces": "interface"}
-"""What people type who come from elsewhere."""
+"""What people coming from other tools type."""
 
 
 class _Verbs(click.Group):
@@ -72,13 +72,17 @@ class _Verbs(click.Group):
 @click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="graphflow")
 @click.option("--domain", type=click.IntRange(0), help="Domain id; else GRAPHFLOW_DOMAIN, ROS_DOMAIN_ID, or 0.")
-@click.option("--wire", type=click.Choice(PROFILES), help="Whose definitions to use; else GRAPHFLOW_WIRE, or jazzy.")
+@click.option(
+    "--wire",
+    type=click.Choice(PROFILES),
+    help="ROS 2 distribution to match; else GRAPHFLOW_WIRE, or jazzy.",
+)
 @reach_options
 def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str | None) -> None:
-    """Node graphs for robots, with ROS 2's concepts and on ROS 2's wire.
+    """Node graphs for robots, with ROS 2's concepts and wire protocol.
 
     \b
-    Begin with:   graphflow up turtlesim
+    Start with:   graphflow up turtlesim
     Then try:     graphflow topic list
     """  # noqa: D301 - click wants the character
     if domain is not None:
@@ -88,8 +92,8 @@ def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str
     reach(connect, net)
     try:
         wire_profile()
-    except GraphflowError as error:  # a misspelt variable is told before anything is done
-        raise UsageFault(str(error)) from None
+    except GraphflowError as error:  # a misspelt variable is reported before anything is done
+        raise exits.UsageFault(str(error)) from None
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:

@@ -28,9 +28,9 @@ def node() -> None:
 
 
 @node.command(name="list")
-@click.option("-a", "--all", "everything", is_flag=True, help="Hidden nodes too.")
-@click.option("-c", "--count-nodes", is_flag=True, help="Only how many.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-a", "--all", "everything", is_flag=True, help="Include hidden nodes.")
+@click.option("-c", "--count-nodes", is_flag=True, help="Only the count.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(everything: bool, count_nodes: bool, as_json: bool) -> None:
     """List the names of all nodes."""
     with View(domain_id()) as view:
@@ -55,9 +55,9 @@ def _warn_of_twins(names: list[str]) -> None:
 
 @node.command()
 @click.argument("name", metavar="NODE")
-@click.option("--include-hidden", is_flag=True, help="Hidden topics, services and actions too.")
-@click.option("-v", "--verbose", is_flag=True, help="With the QoS of each endpoint.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--include-hidden", is_flag=True, help="Include hidden topics, services and actions.")
+@click.option("-v", "--verbose", is_flag=True, help="Also show each endpoint's QoS.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
     """Show a node's publishers, subscriptions, services and actions."""
     with View(domain_id()) as view:

@@ -1,4 +1,4 @@
-"""All writing of the command line: data to stdout, talk to stderr."""
+"""Everything the command line prints: data to stdout, talk to stderr."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def _plain(value: Any) -> Any:
 
 
 def talk(text: str) -> None:
-    """A word to the person: progress, hints, warnings."""
+    """A word to the user: progress, hints, warnings."""
     print(text, file=sys.stderr, flush=True)
 
 
 def error(text: str) -> None:
-    """Why it failed, and what to do."""
+    """Why the command failed, and what to do."""
     print(text if text.startswith("error:") else f"error: {text}", file=sys.stderr, flush=True)

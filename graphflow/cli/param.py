@@ -32,12 +32,12 @@ _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), de
 
 @param.command(name="list")
 @click.argument("name", metavar="[NODE]", required=False)
-@click.option("--param-type", is_flag=True, help="With their types.")
-@click.option("--include-hidden-nodes", is_flag=True, help="Parameters of hidden nodes too.")
+@click.option("--param-type", is_flag=True, help="Also show types.")
+@click.option("--include-hidden-nodes", is_flag=True, help="Include parameters of hidden nodes.")
 @_timeout
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(name: str | None, param_type: bool, include_hidden_nodes: bool, timeout: float, as_json: bool) -> None:
-    """List the parameters of a node, or of all."""
+    """List the parameters of one node or of all."""
     from graphflow.interface import TYPE_NAMES
 
     found: dict[str, dict[str, str]] = {}
@@ -69,7 +69,7 @@ def list_(name: str | None, param_type: bool, include_hidden_nodes: bool, timeou
 @click.argument("parameter")
 @click.option("--hide-type", is_flag=True, help="Only the value.")
 @_timeout
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: bool) -> None:
     """Show the value of a parameter."""
     from graphflow.runtime.values import from_message, type_word
@@ -78,7 +78,7 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
         remote = RemoteParameters(view, view.node(name), timeout)
         message = remote.get([parameter])[0]
         if message.type == 0:
-            remote.known(parameter)  # a parameter without a value, if it is one
+            remote.known(parameter)  # raises unless the parameter exists without a value
             output.as_json(None) if as_json else output.data("Parameter not set.")
             return
     value = from_message(message)
@@ -95,7 +95,7 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
 @click.argument("value", nargs=-1, required=True)
 @_timeout
 def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> int:
-    """Set a parameter: VALUE is YAML, read as the type the parameter has."""
+    """Set a parameter: VALUE is YAML, read as the parameter's type."""
     with View(domain_id()) as view:
         remote = RemoteParameters(view, view.node(name), timeout)
         declared = remote.known(parameter)
@@ -131,9 +131,9 @@ def delete(name: str, parameter: str, timeout: float) -> int:
 @click.argument("name", metavar="NODE")
 @click.argument("parameters", nargs=-1, metavar="[PARAMETER]...")
 @_timeout
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
-    """Show the type, the description and the limits of parameters; of all, without a name."""
+    """Show the type, description and limits of parameters; of all when none is named."""
     from graphflow.introspect.echo import plain
 
     with View(domain_id()) as view:
@@ -185,7 +185,7 @@ def dump(name: str, timeout: float) -> None:
 @param.command()
 @click.argument("name", metavar="NODE")
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option("--no-use-wildcard", is_flag=True, help="Only what is there for the node by its name.")
+@click.option("--no-use-wildcard", is_flag=True, help="Only the sections that name the node.")
 @_timeout
 def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
     """Set the parameters of a node to those in a file."""
@@ -202,7 +202,7 @@ def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
 
 
 def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
-    """Set what can be set; returns whether something could not."""
+    """Set what can be set; returns whether anything could not."""
     described = remote.describe(list(settings))
     present = dict(zip(described, remote.get(list(described)), strict=True))
     failed = False
@@ -213,7 +213,7 @@ def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
             continue
         message = _message(_as_declared(setting.value, described[name].type), described[name])
         if described[name].read_only and message == present[name]:
-            output.data(f"Parameter {name} is read-only, and has this value")
+            output.data(f"Parameter {name} is read-only and already has this value")
             continue
         result = remote.set({name: message})[0]
         if result.successful:
@@ -225,7 +225,7 @@ def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
 
 
 def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
-    """A value as message; an empty list has the declared type."""
+    """A value as a message; an empty list has the declared type."""
     from graphflow.interface import type_id
     from graphflow.runtime.values import to_message
 
@@ -233,13 +233,13 @@ def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
 
 
 def read_value(text: str, type_: int) -> Any:
-    """A value from the command line as the declared type wants it: quoted or not, `on` for a bool, 2 for a double.
+    """A value from the command line as the declared type takes it: quoted or not, `on` for a bool, 2 for a double.
 
     Args:
-        type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter that takes all.
+        type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter of any type.
 
     Raises:
-        UsageFault: It is not YAML.
+        UsageFault: `text` is not YAML.
     """
     from graphflow.graph.source import parse_value
 

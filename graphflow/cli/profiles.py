@@ -1,4 +1,4 @@
-"""The QoS options that `topic echo` and `topic pub` share, named as ROS 2's."""
+"""The QoS options that `topic echo` and `topic pub` share, named as in ROS 2."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ENUMS: dict[str, type[IntEnum]] = {
 def qos_options(command: F) -> F:
     """Add `--qos-profile`, `--qos-depth` and the rest to a command."""
     options = [
-        click.option("--qos-profile", type=click.Choice(list(PROFILES)), help="Begin with this profile."),
+        click.option("--qos-profile", type=click.Choice(list(PROFILES)), help="Start from this profile."),
         click.option("--qos-depth", type=click.IntRange(1), help="Messages kept."),
         *(
             click.option(f"--qos-{name}", type=click.Choice([m.name.lower() for m in enum]), help=f"The {name}.")
@@ -41,7 +41,7 @@ def qos_options(command: F) -> F:
 
 
 def take_qos(options: dict[str, Any], default: Qos) -> Qos:
-    """Take the QoS options out of a command's; what none of them says is as in `default`."""
+    """Take the QoS options out of a command's; what they leave open is as in `default`."""
     profile = options.pop("qos_profile")
     given: dict[str, Any] = {"depth": options.pop("qos_depth")}
     for name, enum in _ENUMS.items():

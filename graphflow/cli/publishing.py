@@ -28,7 +28,7 @@ class PubOptions:
 
 
 def run(topic: str, message: Message, options: PubOptions) -> int:
-    """Publish until the end; returns the exit code."""
+    """Publish until done or stopped; returns the exit code."""
 
     async def work(node: Node) -> int:
         return await _publish(node, topic, message, options)

@@ -22,13 +22,13 @@ def reach_options(command: F) -> F:
         "--connect",
         multiple=True,
         metavar="tcp/HOST:7447",
-        help=f"Link this machine to a router elsewhere, a ROS 2 robot's perhaps; else {_CONNECT}.",
+        help=f"Link this machine to a router elsewhere, such as a ROS 2 robot's; else {_CONNECT}.",
     )
     net = click.option(
         "--net",
         type=click.Path(exists=True, dir_okay=False, resolve_path=True),
         metavar="PROFILE.yaml",
-        help=f"Let others reach this machine, encrypted, as the profile says; else {_NET}.",
+        help=f"Let others reach this machine, encrypted as the profile says; else {_NET}.",
     )
     return connect(net(command))
 

@@ -63,5 +63,5 @@ def _import(class_path: str) -> type[Node]:
     except GraphflowError as error:
         raise UsageFault(str(error)) from None
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
-        output.talk(f"{class_path}: the one that comes with graphflow, {getfile(cls)}")
+        output.talk(f"{class_path}: using the one that comes with graphflow, {getfile(cls)}")
     return cls

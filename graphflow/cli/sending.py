@@ -16,7 +16,7 @@ from graphflow.runtime.action_client import ClientGoalHandle
 from graphflow.runtime.node import Node
 
 STRAGGLERS = 0.1
-"""Seconds in which feedback may still come when the goal has ended."""
+"""Seconds in which feedback may still arrive after the goal has ended."""
 
 
 def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float) -> int:
@@ -49,7 +49,7 @@ async def _follow(sending: Any, show_feedback: bool) -> int:
             try:
                 if show_feedback:
                     await _show_feedback(sent)
-                    # The result goes another way through the network than feedback, and may overtake the last of it.
+                    # The result takes another path through the network than feedback and may overtake the last of it.
                     await asyncio.sleep(STRAGGLERS)
                     await _show_feedback(sent)
                 return await _result(sent)

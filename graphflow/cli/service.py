@@ -21,10 +21,10 @@ def service() -> None:
 
 
 @service.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-services", is_flag=True, help="Only how many.")
-@click.option("--include-hidden-services", is_flag=True, help="Hidden services too.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-t", "--show-types", is_flag=True, help="Also show types.")
+@click.option("-c", "--count-services", is_flag=True, help="Only the count.")
+@click.option("--include-hidden-services", is_flag=True, help="Include hidden services.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(show_types: bool, count_services: bool, include_hidden_services: bool, as_json: bool) -> None:
     """List the names of all services."""
     with View(domain_id()) as view:
@@ -42,10 +42,10 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
 @click.argument("type_name", metavar="TYPE", required=False)
 @click.argument("values", nargs=-1)
 @click.option(
-    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call again and again, so many times a second."
+    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call repeatedly, this many times a second."
 )
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
-@click.option("--json", "as_json", is_flag=True, help="The response for programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print the response as JSON.")
 def call(
     name: str, type_name: str | None, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool
 ) -> None:

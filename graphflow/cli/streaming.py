@@ -17,9 +17,9 @@ from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.rundir import GraphRun
 
 _POLL = 0.1
-"""Seconds between two looks at the log files."""
+"""Seconds between reads of the log files."""
 _GONE_LIMIT = 5.0
-"""Seconds that a supervisor may take to end when its graph has."""
+"""Seconds that a supervisor may take to end once its graph has."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -60,7 +60,7 @@ def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
-    # First this: a graph that fails at once waits for a follower, tells it everything, and is gone.
+    # This comes first: a graph that fails at once waits for a follower, tells it everything, and is gone.
     nodes = _list_nodes(run["socket"])
     with ControlClient(run["socket"]) as client:
         client.send(do="follow", lifeline=not detach)
@@ -90,7 +90,7 @@ class _Stream:
     ) -> None:
         self._run, self._classes, self._client, self._detach = run, classes, client, detach
         self._interrupts = interrupts
-        """Signals that asked to stop, as they came."""
+        """Signals that asked to stop, in order of arrival."""
         self._stop_sent = 0
         self._nodes = nodes
         self._logs: LogReader | None = None
@@ -123,7 +123,7 @@ class _Stream:
         return exits.FAILED
 
     def _show(self, event: dict[str, Any]) -> int | None:
-        """Tell of one event; an exit code when it is the last."""
+        """Show one event; returns an exit code when it is the last."""
         what = event["event"]
         if what == "step":
             mark = "done" if event["ok"] else "FAILED"
@@ -155,7 +155,7 @@ class _Stream:
             self._logs.show()
         names = ", ".join(event["nodes"])
         reason = f": {event['error']}" if event["error"] else ""
-        output.error(f"{names} has died, process {event['pid']}, {event['how']}{reason}\n  its log: {event['log']}")
+        output.error(f"{names} died, process {event['pid']}, {event['how']}{reason}\n  its log: {event['log']}")
 
     def _greet(self, seconds: float) -> None:
         run = self._run
@@ -173,7 +173,7 @@ class _Stream:
             "graphflow topic list": "what the nodes say to each other",
             f"graphflow node info {name}": "what a node does",
             f"graphflow param list {name}": "what can be set",
-            "graphflow ps": "how the nodes are",
+            "graphflow ps": "how the nodes are doing",
         }
         if run["domain"] != domain_id():
             hints = {f"export GRAPHFLOW_DOMAIN={run['domain']}": "first: the file has its own domain", **hints}

@@ -23,15 +23,15 @@ from graphflow.wire.liveliness import Entity, Kind
 
 @click.group()
 def topic() -> None:
-    """List, describe, show and publish topics."""
+    """List, describe, show and publish to topics."""
 
 
 @topic.command(name="list")
-@click.option("-t", "--show-types", is_flag=True, help="With their types.")
-@click.option("-c", "--count-topics", is_flag=True, help="Only how many.")
-@click.option("-v", "--verbose", is_flag=True, help="With the number of publishers and subscribers.")
-@click.option("--include-hidden-topics", is_flag=True, help="Hidden topics too.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-t", "--show-types", is_flag=True, help="Also show types.")
+@click.option("-c", "--count-topics", is_flag=True, help="Only the count.")
+@click.option("-v", "--verbose", is_flag=True, help="Also show the number of publishers and subscribers.")
+@click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(show_types: bool, count_topics: bool, verbose: bool, include_hidden_topics: bool, as_json: bool) -> None:
     """List the names of all topics."""
     with View(domain_id()) as view:
@@ -58,8 +58,8 @@ def list_(show_types: bool, count_topics: bool, verbose: bool, include_hidden_to
 
 @topic.command()
 @click.argument("name", metavar="TOPIC")
-@click.option("-v", "--verbose", is_flag=True, help="With every endpoint: node, QoS, GID, type hash.")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("-v", "--verbose", is_flag=True, help="Show every endpoint: node, QoS, GID, type hash.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def info(name: str, verbose: bool, as_json: bool) -> int:
     """Show a topic's type, publishers and subscriptions."""
     full = expand(name, "/", "cli")
@@ -83,7 +83,7 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
 
 
 def _misfits(e: Entity, cache: GraphCache) -> list[str]:
-    """What keeps an endpoint from counterparts on its topic, here or over DDS."""
+    """What keeps an endpoint apart from others on its topic, here or over DDS."""
     judged = [(other, verdict(e, other)) for other in cache.named(e.name)]
     return [
         f"INCOMPATIBLE with {other.node_name}: {', '.join(found.policies) or _difference(e, other)}"
@@ -93,7 +93,7 @@ def _misfits(e: Entity, cache: GraphCache) -> list[str]:
 
 
 def _difference(e: Entity, other: Entity) -> str:
-    return f"type {other.type}" if e.type != other.type else f"another definition of the type, {other.hash}"
+    return f"type {other.type}" if e.type != other.type else f"a different definition of the type, {other.hash}"
 
 
 def _row(e: Entity, cache: GraphCache) -> dict[str, object]:
@@ -141,27 +141,29 @@ def _described(e: Entity, cache: GraphCache) -> str:
 @topic.command()
 @click.argument("name", metavar="TOPIC")
 @click.argument("type_name", metavar="[TYPE]", required=False)
-@click.option("--once", is_flag=True, help="End after the first message.")
+@click.option("--once", is_flag=True, help="Exit after the first message.")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), help="Seconds to wait for the first message.")
-@click.option("--field", help="Only this part, as in linear.x or ranges[0].")
+@click.option("--field", help="Show only this part, such as linear.x or ranges[0].")
 @click.option("--flow-style", is_flag=True, help="Each field on one line.")
 @click.option("--csv", is_flag=True, help="Values separated by commas.")
-@click.option("--no-arr", is_flag=True, help="Without the elements of arrays.")
-@click.option("--no-str", is_flag=True, help="Without the text of strings.")
-@click.option("-f", "--full-length", is_flag=True, help="Long arrays and strings whole.")
-@click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Else cut here.")
-@click.option("-i", "--include-message-info", is_flag=True, help="With sequence number, time and sender.")
-@click.option("--no-lost-messages", is_flag=True, help="Do not tell of messages that were lost on the way.")
+@click.option("--no-arr", is_flag=True, help="Leave out the elements of arrays.")
+@click.option("--no-str", is_flag=True, help="Leave out the text of strings.")
+@click.option("-f", "--full-length", is_flag=True, help="Show long arrays and strings in full.")
+@click.option(
+    "-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Otherwise cut here."
+)
+@click.option("-i", "--include-message-info", is_flag=True, help="Also show sequence number, time and sender.")
+@click.option("--no-lost-messages", is_flag=True, help="Do not report messages lost on the way.")
 @qos_options
-@click.option("--json", "as_json", is_flag=True, help="One JSON object a line.")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object per line.")
 def echo(name: str, type_name: str | None, **options: Any) -> int:
-    """Show the messages of a topic as they come. Ctrl-C ends it."""
+    """Show the messages of a topic as they arrive. Ctrl-C stops it."""
     from graphflow.cli import echoing
     from graphflow.cli.types import use_project
 
     use_project()
     full = expand(name, "/", "cli")
-    # Without a word about it, whatever fits all the publishers there are.
+    # Unless told otherwise, whatever fits all current publishers.
     options["qos"] = take_qos(options, replace(BEST_AVAILABLE, depth=100))
     chosen = echoing.EchoOptions(**options)
     return echoing.run(full, _echo_type(full, type_name), chosen)
@@ -186,7 +188,7 @@ def _echo_type(full: str, given: str | None) -> str:
         visible = [t for t in topics if not is_hidden(t)]
         raise CallError(
             f"topic {full} does not appear to be published yet{did_you_mean(full, visible)}"
-            f"; to wait for it give its type: graphflow topic echo {full} TYPE"
+            f"; to wait for it, give its type: graphflow topic echo {full} TYPE"
         )
     if not types:
         output.talk(f"WARNING: topic [{full}] does not appear to be published yet")
@@ -202,18 +204,18 @@ def _echo_type(full: str, given: str | None) -> str:
 @click.argument("type_name", metavar="TYPE")
 @click.argument("values", nargs=-1)
 @click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Hz.")
-@click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
-@click.option("-t", "--times", type=click.IntRange(1), help="Publish so many messages and end.")
-@click.option("-p", "--print", "print_every", type=click.IntRange(0), default=1, help="Print every N-th message only.")
+@click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
+@click.option("-t", "--times", type=click.IntRange(1), help="Publish this many messages and exit.")
+@click.option("-p", "--print", "print_every", type=click.IntRange(0), default=1, help="Print only every N-th message.")
 @click.option(
-    "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="First wait for so many. [1 with -1 or -t]"
+    "-w", "--wait-matching-subscriptions", type=click.IntRange(0), help="First wait for this many. [1 with -1 or -t]"
 )
-@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Give up that waiting after.")
+@click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Seconds to wait for them at most.")
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @qos_options
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
-    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; it need not be quoted."""
+    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional."""
     from graphflow.cli import publishing
     from graphflow.cli.types import agree, use_project
     from graphflow.errors import SupervisorError
@@ -226,7 +228,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     try:
         with View(domain_id()) as view:
             known = view.cache.topics(hidden=True).get(full, [])
-    except SupervisorError:  # the first of all: others may come
+    except SupervisorError:  # nothing is running yet; others may come
         known = []
     if known and wanted not in known:
         wanted = agree(wanted, known[0], full)

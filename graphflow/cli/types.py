@@ -7,7 +7,7 @@ from graphflow.errors import UsageFault
 
 
 def use_project() -> None:
-    """Know the interfaces of the project around the working directory."""
+    """Make the interfaces of the project around the working directory known."""
     from pathlib import Path
 
     from graphflow.graph.project import add_interfaces, project_root
@@ -19,7 +19,7 @@ def agree(given: str, actual: str, name: str) -> str:
     """The type to use: the graph's, when the given one has the same definition under another name.
 
     Raises:
-        UsageFault: They are two different types.
+        UsageFault: The two types differ.
     """
     if given == actual:
         return actual

@@ -1,4 +1,4 @@
-"""Commands that take part in the graph for a while: a hidden node, until Ctrl-C or the end."""
+"""Commands that take part in the graph for a while: a hidden node, until Ctrl-C or until its work is done."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
 
 ANSWER_LIMIT = 1.0
-"""Seconds that the processes of a graph get to answer."""
+"""Seconds that the processes of a graph have to answer."""
 
 
 def _read(view: View) -> found.ConcurrencyReport:
@@ -23,9 +23,9 @@ def _read(view: View) -> found.ConcurrencyReport:
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def waits(as_json: bool) -> None:
-    """Tell who holds a slot, who waits for what, and where."""
+    """Show who holds a slot, who waits for what, and where."""
     with View(domain_id()) as view:
         read = _read(view)
         unresponsive = found.unresponsive(read, view)
@@ -42,10 +42,10 @@ def waits(as_json: bool) -> None:
         )
         return
     if not rows and not queued:
-        output.data("nobody waits")
+        output.data("nothing is waiting")
     for row in rows:
         holds = f", holds {row['holds']!r}" if row["holds"] else ""
-        waiting = f" waits for {row['waits_for']} since {row['since']:.1f} s" if row["waits_for"] else " runs"
+        waiting = f" waiting for {row['waits_for']}, {row['since']:.1f} s so far" if row["waits_for"] else " running"
         left = f", times out in {row['left']:.1f} s" if row["left"] is not None else ""
         output.data(f"{'!' if row['stuck'] else ' '} {row['activity']}{holds}:{waiting}{left}")
         if row["place"]:
@@ -60,7 +60,7 @@ def waits(as_json: bool) -> None:
 
 
 class _Groups(click.Group):
-    """`groups NODE` beside `groups move ...`."""
+    """`groups NODE` alongside `groups move ...`."""
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -82,7 +82,7 @@ def groups() -> None:
 
 @groups.command(hidden=True)
 @click.argument("node")
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def show(node: str, as_json: bool) -> None:
     """List a node's groups and the handlers in each."""
     with View(domain_id()) as view:
@@ -93,7 +93,7 @@ def show(node: str, as_json: bool) -> None:
 
 def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
     if node not in read.nodes:
-        raise UsageFault(f"{node} is not graphflow's, so that nothing is known of its groups")
+        raise exits.UsageFault(f"{node} is not a graphflow node, so its groups are unknown")
     return read.nodes[node]
 
 
@@ -122,9 +122,9 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
 @click.argument("group")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds.")
 def move(node: str, handler: str, group: str, timeout: float) -> None:
-    """Move a handler of a running node into another group, made if there is none; `none` for no group.
+    """Move a handler of a running node into another group, made if missing; `none` for no group.
 
-    Prints the lines of a graph file that make it so for good.
+    Prints the lines of a graph file that make the move permanent.
     """
     with View(domain_id()) as view:
         full = view.node(node)
@@ -140,17 +140,17 @@ def move(node: str, handler: str, group: str, timeout: float) -> None:
     known = json.loads(answer.payload)["groups"]
     _show(full, known, as_json=False)
     together = [h["handler"] for g in known if g["name"] == group for h in g["handlers"]] or [handler]
-    output.data("\nFor good, in the graph file under nodes: or override:")
+    output.data("\nTo keep it so, in the graph file under nodes: or override:")
     output.data(f"  {full}: {{concurrency: {{{group}: [{', '.join(together)}]}}}}")
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="For programs.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def doctor(as_json: bool) -> int:
-    """Look for what is wrong with the running graph: deadlocks, groups that are kept for long, processes that do not
-    answer, event loops that are blocked or were late, endpoints that do not fit.
+    """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
+    that are blocked or were late, endpoints that do not match.
 
-    Exit code 1 when something is; late loops alone are none.
+    Exit code 1 when there is one; late loops alone do not count.
     """
     with View(domain_id()) as view:
         read = _read(view)
@@ -159,8 +159,13 @@ def doctor(as_json: bool) -> int:
         ours = view.processes()
         nodes = view.cache.nodes(hidden=False)
         others = [name for name in nodes if not any(e.zid in ours for e in view.cache.owners(name))]
-    late = [f"{who}: the event loop was late {n} times, by {most:.1f} s at most" for who, n, most in read.late]
-    blocked = [f"{who}: the event loop is blocked since {seconds:.1f} s; see its log" for who, seconds in read.blocked]
+    late = [
+        f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
+        for who, n, most in read.late
+    ]
+    blocked = [
+        f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log" for who, seconds in read.blocked
+    ]
     faults = {
         "deadlocks": read.reports,
         "stalls": read.stalls,
@@ -173,9 +178,9 @@ def doctor(as_json: bool) -> int:
     else:
         output.lines([*(f"{text}\n" for text in read.reports + read.stalls), *unresponsive, *blocked, *misfits, *late])
         if others:
-            output.data(f"said nothing of their handlers: {', '.join(others)} (not graphflow's)")
+            output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(others)}")
         if read.unreadable:
-            output.data(f"{read.unreadable} processes answered as another version of graphflow does: not understood")
+            output.data(f"processes running another version of graphflow, not understood: {read.unreadable}")
         if not any(faults.values()) and not late:
             count = len(read.nodes)
             output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")

@@ -1,8 +1,8 @@
 """Splitting a command line into options and values, where values may look like options.
 
 `graphflow topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist {linear: {x: -2.0}} -1` comes from the shell as many words.
-A word is an option when it is written as one of the command's options (`-r10` too), stands outside of all brackets and
-not behind a field's colon; everything else is a value, and the values of a message are joined again.
+A word is an option when it is written as one of the command's options (`-r10` too), stands outside all brackets and
+not after a field's colon; everything else is a value, and the values of a message are joined again.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ def split_values(words: Sequence[str], flags: frozenset[str], valued: frozenset[
 
 
 def _is_open(values: list[str]) -> bool:
-    """Whether the next word belongs to these: a bracket is open, or a field waits for its value."""
+    """Whether the next word belongs to `values`: a bracket is open, or a field waits for its value."""
     text = _QUOTED.sub("", " ".join(values))
     brackets = sum(text.count(c) for c in "{[") - sum(text.count(c) for c in "}]")
     return brackets > 0 or text.endswith(":")
 
 
 class ValueCommand(click.Command):
-    """A command whose values may begin with a minus sign, and whose options may stand anywhere."""
+    """A command whose values may begin with a minus sign, and whose options may be anywhere."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         flags, valued = {"--help", "-h"}, set[str]()
@@ -74,7 +74,7 @@ def message_values(words: Sequence[str]) -> Any:
     """The values of a message from the words after its type; None for none.
 
     Raises:
-        UsageFault: They are not YAML, or not a mapping for want of a space.
+        UsageFault: The words are not YAML, or a missing space keeps them from being a mapping.
     """
     from graphflow.errors import UsageFault
     from graphflow.graph.source import parse_value
@@ -86,5 +86,5 @@ def message_values(words: Sequence[str]) -> Any:
         raise UsageFault(str(error)) from None
     keys = [values] if isinstance(values, str) else values if isinstance(values, dict) else []
     if any(_TIGHT.search(key) for key in keys):
-        raise UsageFault(f"{text!r}: write a space after each colon, and quotes around all, for example '{{x: 2.0}}'")
+        raise UsageFault(f"{text!r}: write a space after each colon and quotes around all, for example '{{x: 2.0}}'")
     return values

@@ -53,5 +53,5 @@ def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "lab").mkdir()
     machine.run("init", "lab", cwd=tmp_path)
     (tmp_path / "lab" / "README.md").write_text("mine")
-    assert "lab is there already" in machine.run("init", "lab", cwd=tmp_path, code=2)
+    assert "lab already exists" in machine.run("init", "lab", cwd=tmp_path, code=2)
     assert (tmp_path / "lab" / "README.md").read_text() == "mine"

@@ -54,7 +54,7 @@ def test_help_lists_every_verb(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     listed = [line.split()[0] for line in text.partition("Commands:\n")[2].splitlines()]
     assert tuple(listed) == VERBS
-    assert "\n  Begin with:   graphflow up turtlesim\n" in text
+    assert "\n  Start with:   graphflow up turtlesim\n" in text
     assert "\\b" not in text
     assert "\b" not in text
 
@@ -92,7 +92,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["check", "nothing.yaml"], "error: nothing.yaml: there is no such file"),
         (["check", "turtlesm"], "error: turtlesm: there is no such file; did you mean 'turtlesim'?"),
         (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, for example nodes.talker:"),
-        (["topic", "info", "a b"], "error: 'a b' is no topic or service name"),
+        (["topic", "info", "a b"], "error: 'a b' is not a topic or service name"),
     ],
 )
 def test_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

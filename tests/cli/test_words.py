@@ -154,7 +154,7 @@ def test_what_is_missing_is_left_to_click(words: list[str]) -> None:
     ("words", "message"),
     [
         (["{x:", "1"], "'{x: 1', character 6: not valid YAML"),
-        (["{x:2.0}"], "'{x:2.0}': write a space after each colon, and quotes around all, for example '{x: 2.0}'"),
+        (["{x:2.0}"], "'{x:2.0}': write a space after each colon and quotes around all, for example '{x: 2.0}'"),
         (["x:2.0", "y:1"], "'x:2.0 y:1': write a space after each colon"),
         (["{a: *b}"], "*b: aliases are not used here"),
     ],

@@ -44,7 +44,7 @@ def test_a_node_that_is_killed_is_reported_and_the_others_go_on(machine: Machine
 
     os.kill(before["/a"]["pid"], signal.SIGKILL)
 
-    up.wait_for("/a has died")
+    up.wait_for("/a died")
     assert "SIGKILL" in up.text
     after = rows(machine)
     assert after["/a"]["state"] == "failed"
