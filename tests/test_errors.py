@@ -51,7 +51,7 @@ def whole_tree(cls: type[BaseException]) -> Iterator[type[BaseException]]:
 def import_everything() -> None:
     """Import every module of the package, so that no class is missing."""
     root = Path(graphflow.__file__).parent
-    for path in root.rglob("*.py"):
+    for path in set(root.rglob("*.py")) - {root / "__main__.py"}:  # which would run a command
         words = path.relative_to(root.parent).with_suffix("").parts
         import_module(".".join(words).removesuffix(".__init__"))
 

@@ -120,7 +120,7 @@ def test_steps(type_: ParamType, limits: dict[str, float], inside: list[Any], ou
     for value in inside:
         assert made.fit(value) == value
     for value in outside:
-        with pytest.raises(ParameterError, match=r"is not a valid step: .* and multiples of"):
+        with pytest.raises(ParameterError, match=r"is not a valid step: .* plus a multiple of"):
             made.fit(value)
 
 

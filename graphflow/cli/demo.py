@@ -66,7 +66,7 @@ def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
         return exits.OK
     for name in steps:
         if name not in known:
-            raise exits.UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
+            raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
     from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 

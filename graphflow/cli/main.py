@@ -93,7 +93,7 @@ def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str
     try:
         wire_profile()
     except GraphflowError as error:  # a misspelt variable is reported before anything is done
-        raise exits.UsageFault(str(error)) from None
+        raise UsageFault(str(error)) from None
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:

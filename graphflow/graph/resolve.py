@@ -237,7 +237,7 @@ def _concurrency(
         for i, handler in enumerate(_names(spec.handlers)):
             places[handler] = src.place((*at, i))
             if handler in taken:
-                text = f"{handler} is put into two groups, {taken[handler]!r} and {name!r}; it can be in one"
+                text = f"{handler} is put in two groups, {taken[handler]!r} and {name!r}; it can be in only one"
                 problems.add(places[handler], text)
             taken[handler] = name
         limit = None if spec.limit == "none" else spec.limit

@@ -126,7 +126,9 @@ def words(condition: Condition, graph: WaitGraph) -> str:
     match condition:
         case Call(id=call, name=name):
             server = next((a for a in graph.activities.values() if a.serves == call), None)
-            what = f"the {'goal' if call.startswith('goal:') else 'response'} of {name}" if name else "the end of a goal"
+            what = (
+                f"the {'goal' if call.startswith('goal:') else 'response'} of {name}" if name else "the end of a goal"
+            )
             return f"{what} (which {title(server)} is handling)" if server is not None else what
         case Slot(group=group):
             return f"a slot of group {graph.groups[group].name!r}" if group in graph.groups else "a slot"

@@ -50,7 +50,7 @@ class Node:
     Raises:
         InvalidName: The name, the namespace or a rule is not legal.
         ParameterError: A parameter value does not fit its declaration.
-        DeclarationError: `concurrency` puts a handler into two groups.
+        DeclarationError: `concurrency` puts a handler in two groups.
     """
 
     default_group: ClassVar[Group | None] = None

@@ -10,8 +10,8 @@ from unittest.mock import patch
 import click
 import pytest
 
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.reaching import reach, reach_options
+from graphflow.errors import UsageFault
 from graphflow.transport.config import CONNECT_VARIABLE, PROFILE_VARIABLE
 
 

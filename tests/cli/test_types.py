@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.types import agree, use_project
+from graphflow.errors import UsageFault
 from graphflow.msgs import registry
 
 

@@ -11,7 +11,7 @@ from graphflow import ActionClient, GoalCanceled, GoalLost, GoalStatus, Node, Se
 from graphflow.errors import EncodeError
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.runtime.actions import ActionServer
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from tests.runtime.cast import Asker, Log, Server, pair
 

@@ -55,7 +55,7 @@ WRONG: list[tuple[Any, str]] = [
     (lambda: checks.check_type(AddTwoInts.Request, base.Service, "X", HERE), "as in AddTwoInts, not its Request"),
     (lambda: checks.check_type(String, base.Action, "X", HERE), "X needs an action class, not <class"),
     (lambda: checks.check_name(String, "X", HERE), "X: the type comes first, then the name; <class "),
-    (lambda: checks.check_name("a b", "X", HERE), "X: 'a b' is no topic or service name"),
+    (lambda: checks.check_name("a b", "X", HERE), "X: 'a b' is not a topic or service name"),
     (lambda: checks.check_qos(Qos(), 5, HERE), "give a Qos or a depth, not both: Qos(depth=5, ...) is both in one"),
     (lambda: checks.check_qos(20, 5, HERE), "give a Qos or a depth, not both"),
     (lambda: checks.check_qos(10, -1, HERE), "a queue depth cannot be -1"),

@@ -28,7 +28,7 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime import core
 from graphflow.runtime.context import Context
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.runtime.run import serve
 from graphflow.testing import Graph
 from graphflow.transport.memory import MemorySession
@@ -376,7 +376,7 @@ async def test_a_failing_task_ends_the_node(graph: Graph, caplog: pytest.LogCapt
     await graph.start(node)
 
     with pytest.raises(ValueError, match="spawned" if spawned else "declared"):
-        await core_of(node).wait_ended()
+        await node.wait_ended()
     [record] = caplog.records
     name = "fail" if spawned else "work"
     assert record.getMessage().startswith(f"task /worker.{name}: ValueError: ")
@@ -398,7 +398,7 @@ async def test_an_error_of_graphflows_own_is_a_sentence(graph: Graph, caplog: py
     await graph.start(node)
     await graph.clock.advance(1.0)
     with pytest.raises(ServiceUnavailable):
-        await core_of(node).wait_ended()
+        await node.wait_ended()
 
     [record] = caplog.records
     assert record.getMessage().startswith("task /caller.work: nobody offers the service /add")
@@ -422,7 +422,7 @@ async def test_the_first_failure_counts(graph: Graph, caplog: pytest.LogCaptureF
     await graph.start(node)
 
     with pytest.raises(ValueError, match="first"):
-        await core_of(node).wait_ended()
+        await node.wait_ended()
     assert str(core_of(node).failure) == "first"
 
 
@@ -438,7 +438,7 @@ async def test_shutdown_ends_the_node_from_within(graph: Graph) -> None:
     node = Quitter()
     node.shutdown()  # before the start there is nothing to end
     await graph.start(node)
-    waiting = asyncio.create_task(core_of(node).wait_ended())
+    waiting = asyncio.create_task(node.wait_ended())
     await graph.clock.advance(0.9)
     assert not waiting.done()
     await graph.clock.advance(0.1)
@@ -451,13 +451,13 @@ async def test_waiting_for_the_end_can_be_cancelled(graph: Graph) -> None:
     """The node does not notice."""
     node = Talker()
     await graph.start(node)
-    waiting = asyncio.create_task(core_of(node).wait_ended())
+    waiting = asyncio.create_task(node.wait_ended())
     await graph.settle()
     waiting.cancel()
     await graph.settle()
 
     assert waiting.cancelled()
-    again = asyncio.create_task(core_of(node).wait_ended())
+    again = asyncio.create_task(node.wait_ended())
     await graph.settle()
     assert not again.done()
     node.shutdown()
@@ -595,14 +595,14 @@ async def test_a_task_that_fails_while_it_stops(graph: Graph, caplog: pytest.Log
 
     assert [r.getMessage() for r in caplog.records] == ["task /clumsy.work: ValueError: broke it while tidying up"]
     with pytest.raises(ValueError, match="tidying up"):
-        await core_of(node).wait_ended()
+        await node.wait_ended()
 
 
 async def test_a_stopped_node_has_ended(graph: Graph) -> None:
     """Whoever waits for its end is cancelled with it."""
     node = Talker()
     await graph.start(node)
-    waiting: asyncio.Task[None] = asyncio.create_task(core_of(node).wait_ended())
+    waiting: asyncio.Task[None] = asyncio.create_task(node.wait_ended())
     await graph.stop(node)
 
     assert waiting.cancelled()

@@ -10,9 +10,9 @@ from graphflow import ClosedError, Node, Qos
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.core import core_of
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.host import Host
-from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 from graphflow.wire.liveliness import Entity, Kind
 

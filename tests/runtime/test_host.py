@@ -8,9 +8,8 @@ import pytest
 
 from graphflow import Node
 from graphflow.deadlock.protocols import Subject
-from graphflow.runtime.core import NodeCore
+from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.host import Host, Part
-from graphflow.runtime.node import core_of
 from graphflow.testing import Graph
 
 

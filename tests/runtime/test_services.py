@@ -12,7 +12,7 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.runtime import services
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
 from graphflow.wire import attachment
