@@ -7,11 +7,24 @@ from typing import Any
 
 import pytest
 
-from graphflow import ActionClient, GoalCanceled, GoalLost, GoalStatus, Node, ServiceUnavailable, task
+from graphflow import (
+    Abort,
+    ActionClient,
+    GoalAborted,
+    GoalCanceled,
+    GoalLost,
+    GoalStatus,
+    Node,
+    ServiceUnavailable,
+    action,
+    task,
+)
 from graphflow.errors import EncodeError
 from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.runtime import action_client
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
+from graphflow.runtime.direct import ServerLines
 from graphflow.testing import Graph
 from tests.runtime.cast import Asker, Log, Server, pair
 
@@ -127,3 +140,105 @@ async def test_a_result_that_is_not_to_be_had(graph: Graph, monkeypatch: pytest.
 
     with pytest.raises(GoalLost, match="result cannot be had, last known as EXECUTING"):
         await goal.result()
+
+
+REASONS = [
+    (Abort("the way is blocked"), "the way is blocked"),
+    (KeyError("lost"), "KeyError: 'lost'"),
+    (Abort("\x1b[2Jcleared\x9b31m\a"), "\\x1b[2Jcleared\\x9b31m\\x07"),
+    (OSError("\x1b[2J"), "OSError: \\x1b[2J"),
+    (Abort("x" * 100_000), "x" * 1000),
+    (Abort("ä" * 100_000), "ä" * 500),
+]
+
+
+class Giving(Node):
+    """Gives every goal up."""
+
+    def __init__(self, error: Exception) -> None:
+        super().__init__()
+        self.error = error
+
+    @action(Fibonacci, "fibonacci")
+    async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        goal.partial = Fibonacci.Result(sequence=[4])
+        raise self.error
+
+
+async def aborted(graph: Graph, error: Exception, caplog: pytest.LogCaptureFixture) -> tuple[GoalAborted, list[str]]:
+    """The error of a goal that is given up so, and what the log of its client says."""
+    _, asker = await pair(graph, Giving(error))
+    goal = await asker.order(1)
+    with pytest.raises(GoalAborted) as caught:
+        await goal.result()
+    return caught.value, [r.getMessage() for r in caplog.records if r.name == "graphflow.node.asker"]
+
+
+@pytest.mark.parametrize(("error", "reason"), REASONS, ids=[reason[:20] for _, reason in REASONS])
+async def test_the_client_learns_why(
+    graph: Graph, caplog: pytest.LogCaptureFixture, error: Exception, reason: str
+) -> None:
+    """The reason comes with the result over a direct line, bounded and fit for a terminal; the log has it too."""
+    caught, said = await aborted(graph, error, caplog)
+
+    assert str(caught) == f"/fibonacci has aborted the goal: {reason}"
+    assert list(caught.result.sequence) == [4]  # type: ignore[attr-defined]
+    [line] = said
+    assert line.endswith(f" was aborted: {reason}")
+
+
+async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """There is nothing to be logged."""
+    caught, said = await aborted(graph, Abort(), caplog)
+
+    assert (str(caught), said) == ("/fibonacci has aborted the goal", [])
+
+
+async def test_ros_2_knows_no_reasons(
+    graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A server that answers by queries alone, as other programs do, sends what ROS 2 sends and nothing beside it."""
+    monkeypatch.setattr(ServerLines, "client_came", lambda self: None)
+    caught, said = await aborted(graph, Abort("the way is blocked"), caplog)
+
+    assert (str(caught), said) == ("/fibonacci has aborted the goal", [])
+
+
+async def test_feedback_that_nobody_reads_is_bounded(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The newest wait for the first reader, the others are counted; `latest` is always the last."""
+    monkeypatch.setattr(action_client, "FEEDBACK_KEPT", 2)
+    _, asker = await pair(graph)
+    goal = await asker.order(6)
+    await graph.clock.advance(4.0)
+
+    assert [len(feedback.sequence) async for feedback in goal.feedback()] == [5, 6]
+    assert goal.dropped == 2
+    assert goal.latest is not None
+    assert len(goal.latest.sequence) == 6
+
+
+async def test_a_result_may_be_awaited_for_a_while(graph: Graph) -> None:
+    """The goal goes on when the time is up."""
+    _, asker = await pair(graph)
+    goal = await asker.order(4)
+    waiting = asyncio.create_task(goal.result(timeout=1.5))
+    await graph.clock.advance(1.5)
+    with pytest.raises(TimeoutError):
+        await waiting
+    assert not goal.done
+    await graph.clock.advance(0.5)
+
+    assert list((await goal.result(timeout=1.0)).sequence) == [0, 1, 1, 2]
+
+
+async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:
+    """Whoever waits for one is told."""
+    _, asker = await pair(graph)
+    goal = await asker.order(50)
+    waiting = asyncio.create_task(goal.result())
+    await graph.settle()
+    asker.fibonacci.close()
+
+    with pytest.raises(GoalLost, match="the client of /fibonacci was closed before the goal ended"):
+        await waiting
+    assert goal.status is GoalStatus.LOST

@@ -12,17 +12,20 @@ import pytest
 
 from graphflow import (
     Client,
+    DeclarationError,
     GraphflowError,
     Node,
     ParameterError,
     Publisher,
     ServiceUnavailable,
+    action,
     service,
     subscription,
     task,
     timer,
 )
 from graphflow.errors import ClosedError
+from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
@@ -628,3 +631,78 @@ def test_spawn_needs_a_running_node() -> None:
 
     with pytest.raises(ClosedError):
         Talker().spawn(work)
+
+
+NAMES = ("stop", "start", "tasks", "group", "runner", "id")
+"""What a node's workings use themselves, and users may want to call their handlers."""
+
+
+def named(name: str, kind: str) -> Any:
+    """A handler of that name; the service, topic or action is called by the name too."""
+
+    async def of_self(self: Any) -> None:
+        self.said.append(name)
+
+    async def of_two(self: Any, given: Any) -> Any:
+        self.said.append(name)
+        return {"service": Empty.Response, "action": Fibonacci.Result}.get(kind, lambda: None)()
+
+    function = of_self if kind == "timer" else of_two
+    function.__name__ = name
+    declare: dict[str, Any] = {
+        "timer": timer(1.0),
+        "service": service(Empty, name),
+        "subscription": subscription(Int32, name),
+        "action": action(Fibonacci, name),
+    }
+    return declare[kind](function)
+
+
+@pytest.mark.parametrize("kind", ["timer", "service", "subscription", "action"])
+async def test_handlers_may_be_called_as_they_like(graph: Graph, kind: str) -> None:
+    """No name of a node's workings is in their way: each is called, and the node stops."""
+    body: dict[str, Any] = {name: named(name, kind) for name in NAMES}
+    node: Any = type("Free", (Node,), {**body, "said": []})()
+    await graph.start(node)
+    for name in NAMES:
+        if kind == "service":
+            await graph.call(Empty, f"/{name}", Empty.Request())
+        elif kind == "subscription":
+            graph.publisher(Int32, f"/{name}").publish(Int32())
+        elif kind == "action":
+            client = graph.action_client(Fibonacci, f"/{name}")
+            await graph.settle()
+            await (await client.send_goal(Fibonacci.Goal())).result()
+    await graph.clock.advance(1.0)
+    assert node.said == [*NAMES]
+
+    await graph.stop(node)
+    assert not node.is_running
+    assert not any("free" in token for token in graph.network.tokens)
+
+
+async def test_attributes_may_be_called_as_they_like(graph: Graph) -> None:
+    """All but the few that every node has; those are told when it starts, with the class."""
+
+    class Busy(Node):
+        def __init__(self) -> None:
+            super().__init__()
+            self.tasks = ["wash up"]
+            self.id, self.runners, self.held = 7, "two", None
+
+        @task
+        async def work(self) -> None:
+            self.tasks.append("dry")
+
+    busy = Busy()
+    await graph.start(busy)
+    await graph.stop(busy)
+    assert (busy.tasks, busy.id, busy.runners, busy.held) == (["wash up", "dry"], 7, "two", None)
+
+    class Hiding(Node):
+        def __init__(self) -> None:
+            super().__init__()
+            self.log = ["wash up"]  # type: ignore[assignment]
+
+    with pytest.raises(DeclarationError, match=r"Hiding: every node has self\.log; choose another name"):
+        await graph.start(Hiding())

@@ -8,11 +8,12 @@ from typing import Any
 
 import pytest
 
-from graphflow import CallTimeout, DecodeError, EncodeError, Node, RemoteError, ServerLost, ServiceUnavailable
-from graphflow.errors import ClosedError
+from graphflow import CallTimeout, DecodeError, EncodeError, Node, RemoteError, ServerLost, ServiceUnavailable, service
+from graphflow.errors import ClosedError, LoopBlockedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.service_client import ServiceClient
+from graphflow.runtime.services import ServiceServer
 from graphflow.testing import Graph
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
@@ -335,3 +336,44 @@ async def test_waiting_for_a_server_ends_with_the_client(graph: Graph) -> None:
     client.close()
     with pytest.raises(ClosedError, match="was closed while a call waited"):
         await ready
+
+
+async def test_an_error_text_clears_no_screen(graph: Graph) -> None:
+    """What a handler raises may hold what another has sent; escape sequences of it are spelt out, lines stay."""
+
+    class Rude(Node):
+        @service(AddTwoInts, "add")
+        async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+            raise ValueError("\x1b[2Jone\ntwo\x9b31m")
+
+    await graph.start(Rude())
+    client = await client_of(graph)
+    with pytest.raises(RemoteError) as caught:
+        await client.call(AddTwoInts.Request())
+
+    assert caught.value.message == "\\x1b[2Jone\ntwo\\x9b31m"
+    assert str(caught.value) == f"the handler of /add raised ValueError: {caught.value.message}"
+
+
+async def test_a_note_is_bounded_and_cannot_be_obeyed(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A server's note comes with the response, a thousand bytes of it, spelt out where a terminal would obey."""
+    notes = [b"", b"\x1b[2Jbe\xff", b"x" * 100_000]
+    monkeypatch.setattr(ServiceServer, "_note", lambda self, request: notes.pop(0))
+    await graph.start(Adder())
+    client = await client_of(graph)
+
+    got = [await client.call_noted(AddTwoInts.Request(a=1, b=2)) for _ in range(3)]
+
+    assert [response.sum for response, _ in got] == [3, 3, 3]
+    assert [note for _, note in got] == ["", "\\x1b[2Jbe\N{REPLACEMENT CHARACTER}", "x" * 1000]
+
+
+async def test_calling_from_a_thread(graph: Graph) -> None:
+    """`call_sync` blocks a thread until the answer is there, and refuses to block the loop that has to receive it."""
+    await graph.start(Adder())
+    client = await client_of(graph)
+    asked = AddTwoInts.Request(a=1, b=2)
+
+    assert (await asyncio.to_thread(client.call_sync, asked)).sum == 3
+    with pytest.raises(LoopBlockedError, match="/add: call_sync would block the event loop"):
+        client.call_sync(asked)
