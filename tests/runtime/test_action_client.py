@@ -21,7 +21,7 @@ from graphflow import (
 )
 from graphflow.errors import EncodeError
 from graphflow.msgs.example_interfaces.action import Fibonacci
-from graphflow.runtime import action_client
+from graphflow.runtime import action_client, service_client
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
 from graphflow.runtime.direct import ServerLines
@@ -185,6 +185,16 @@ async def test_the_client_learns_why(
     assert list(caught.result.sequence) == [4]  # type: ignore[attr-defined]
     [line] = said
     assert line.endswith(f" was aborted: {reason}")
+
+
+async def test_a_server_sends_no_more_of_a_reason_than_clients_take(
+    graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is too long does not travel, also if the client would take it."""
+    monkeypatch.setattr(service_client, "NOTE_LIMIT", 1_000_000)
+    caught, _ = await aborted(graph, Abort("x" * 100_000), caplog)
+
+    assert str(caught).count("x") == 1000
 
 
 async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:

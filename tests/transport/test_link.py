@@ -9,7 +9,12 @@ from pathlib import Path
 
 import pytest
 import trustme
+import zenoh
 
+from graphflow.errors import TransportError
+from graphflow.graph.net import read_profile
+from graphflow.transport import link
+from graphflow.transport.link import dial
 from tests.conftest import PROGRAMS, Machine, Program
 from tests.network.hosts import Hosts, why_not
 
@@ -218,3 +223,55 @@ def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     text = near.run("param", "get", "/turtlesim", "background_r", code=None)
     assert "error" in text, text
     assert graph.end(signal.SIGTERM) == 0
+
+
+@pytest.fixture
+def net(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A net profile that is in force."""
+    made = profile(tmp_path, "here", trustme.CA(), "127.0.0.1", connect="tls/127.0.0.1:1")
+    monkeypatch.setenv("GRAPHFLOW_NET", made)
+    return Path(made)
+
+
+@pytest.mark.parametrize(
+    ("connect", "text"),
+    [
+        ("robot", "robot"),
+        ("tcp/127.0.0.1:1 udp/127.0.0.1:2", "udp"),
+    ],
+)
+def test_an_endpoint_that_is_misspelt(monkeypatch: pytest.MonkeyPatch, connect: str, text: str) -> None:
+    """It is told before anything is opened."""
+    monkeypatch.setenv("GRAPHFLOW_CONNECT", connect)
+    with pytest.raises(TransportError, match=text):
+        dial()
+
+
+def test_with_a_profile_everything_is_encrypted(net: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plain endpoint beside it is refused, with what to write."""
+    monkeypatch.setenv("GRAPHFLOW_CONNECT", "tcp/127.0.0.1:1")
+    with pytest.raises(TransportError, match=r"tcp/.*:1: with a net profile everything is encrypted; write tls/"):
+        dial()
+
+
+def test_without_endpoints_nobody_is_dialled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A profile alone may only listen."""
+    monkeypatch.delenv("GRAPHFLOW_CONNECT", raising=False)
+    monkeypatch.delenv("GRAPHFLOW_NET", raising=False)
+    assert dial() is None
+
+
+def test_only_what_a_profile_allows_passes_to_others(net: Path) -> None:
+    """Over TLS the names that are allowed, with their latched messages and who is there; on this machine everything."""
+    access = link._access(read_profile(net), 3)
+
+    assert access["default_permission"] == "deny"
+    assert {(p["rules"][0], p["subjects"][0]) for p in access["policies"]} == {("here", "here"), ("there", "there")}
+    assert {s["id"]: s["link_protocols"] for s in access["subjects"]} == {"here": ["tcp"], "there": ["tls"]}
+    keys = {rule["id"]: rule["key_exprs"] for rule in access["rules"]}
+    assert "**" in keys["here"]
+    assert keys["there"][0] == "@ros2_lv/3/**"
+    said, asked, other = (zenoh.KeyExpr(f"3/{name}/type/hash") for name in ("turtle1/pose", "spawn", "kill"))
+    allowed = [zenoh.KeyExpr(key) for key in keys["there"]]
+    assert [any(key.includes(name) for key in allowed) for name in (said, asked, other)] == [True, True, False]
+    assert not any(key.intersects(zenoh.KeyExpr("@graphflow/**")) for key in allowed)

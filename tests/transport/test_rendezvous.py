@@ -2,41 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 import threading
-from collections.abc import Iterator
 
 import pytest
 import zenoh
 
-from graphflow.errors import SupervisorError, TransportError
+from graphflow.errors import TransportError
 from graphflow.transport import rendezvous
 from graphflow.transport.client import Client
 from graphflow.transport.config import close_session
 
 pytestmark = pytest.mark.real
-
-
-@pytest.fixture
-def port(monkeypatch: pytest.MonkeyPatch) -> int:
-    """A rendezvous port of the test's own."""
-    endpoint = rendezvous.free_endpoint()
-    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", endpoint)
-    return rendezvous.address(endpoint)[1]
-
-
-@pytest.fixture
-def foreign_router(port: int) -> Iterator[zenoh.Session]:
-    """A Zenoh router that is not graphflow's, as rmw_zenohd is."""
-    config = {
-        "mode": "router",
-        "listen": {"endpoints": [f"tcp/127.0.0.1:{port}"]},
-        "scouting": {"delay": 0, "multicast": {"enabled": False}},
-    }
-    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))) as session:
-        yield session
 
 
 def test_a_free_port_is_vacant_and_can_be_hosted(port: int) -> None:
@@ -110,10 +88,3 @@ def test_the_rendezvous_stays_on_this_machine(host: str, monkeypatch: pytest.Mon
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", f"tcp/{host}:7447")
     with pytest.raises(TransportError, match="on this machine only"):
         rendezvous.establish()
-
-
-def test_a_command_says_when_nothing_is_running(port: int) -> None:
-    """And ends with code 3."""
-    with pytest.raises(SupervisorError, match="nothing is running") as caught:
-        Client()
-    assert caught.value.exit_code == 3

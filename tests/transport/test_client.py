@@ -1,0 +1,92 @@
+"""The client session of short commands: what it is told, and that it says when there is nobody."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+import zenoh
+
+from graphflow.errors import SupervisorError
+from graphflow.transport import rendezvous
+from graphflow.transport.base import Answer
+from graphflow.transport.client import Client
+
+pytestmark = pytest.mark.real
+
+Answering = Callable[[zenoh.Query], None]
+
+
+@pytest.fixture
+def client(foreign_router: zenoh.Session) -> Iterator[Client]:
+    """The session of a command."""
+    made = Client()
+    yield made
+    made.close()
+
+
+def serve(session: zenoh.Session, key: str, answer: Answering) -> None:
+    """Answer on a key, as a service does."""
+    session.declare_queryable(key, answer, complete=True)
+
+
+def test_who_is_there(foreign_router: zenoh.Session, client: Client) -> None:
+    """Tokens that match, and no others; the client itself has none."""
+    declare = foreign_router.liveliness().declare_token
+    with declare("test/one"), declare("test/two"), declare("other/three"):
+        assert sorted(client.tokens("test/*")) == ["test/one", "test/two"]
+        assert not [token for token in client.tokens("**") if client.zid in token]
+        assert client.tokens("nobody/*") == []
+
+
+def test_everybody_reports(foreign_router: zenoh.Session, client: Client) -> None:
+    """Whoever matches; errors are left out."""
+    serve(foreign_router, "test/one", lambda query: query.reply("test/one", b"first"))
+    serve(foreign_router, "test/two", lambda query: query.reply("test/two", b"second"))
+    serve(foreign_router, "test/three", lambda query: query.reply_err(b"no"))
+
+    assert sorted(client.reports("test/*", 5.0)) == [b"first", b"second"]
+    assert client.reports("nobody/*", 5.0) == []
+
+
+def test_a_call_is_answered(foreign_router: zenoh.Session, client: Client) -> None:
+    """With what stands beside the answer, if anything does; an error is one; a key without servers answers None."""
+
+    def echo(query: zenoh.Query) -> None:
+        assert query.payload is not None
+        assert query.attachment is not None
+        query.reply("test/echo", query.payload.to_bytes()[::-1], attachment=query.attachment.to_bytes())
+
+    serve(foreign_router, "test/echo", echo)
+    serve(foreign_router, "test/bare", lambda query: query.reply("test/bare", b"bare"))
+    serve(foreign_router, "test/wrong", lambda query: query.reply_err(b"wrong"))
+
+    assert client.call("test/echo", b"abc", b"beside", 5.0) == Answer(b"cba", b"beside", False)
+    assert client.call("test/bare", b"abc", b"", 5.0) == Answer(b"bare", None, False)
+    assert client.call("test/wrong", b"abc", b"", 5.0) == Answer(b"wrong", None, True)
+    assert client.call("test/nobody", b"abc", b"", 5.0) is None
+
+
+def test_a_call_that_is_not_answered(foreign_router: zenoh.Session, client: Client) -> None:
+    """It ends when its time is up."""
+    kept: list[zenoh.Query] = []
+    serve(foreign_router, "test/silent", kept.append)
+
+    with pytest.raises(TimeoutError):
+        client.call("test/silent", b"abc", b"", 0.05)
+    kept.clear()
+
+
+def test_a_command_says_when_nothing_is_running(port: int) -> None:
+    """And ends with code 3."""
+    with pytest.raises(SupervisorError, match="nothing is running") as caught:
+        Client()
+    assert caught.value.exit_code == 3
+
+
+def test_a_command_that_reaches_out_says_where_it_looked(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here and there, if it was told to look there; it ends with code 3 too."""
+    monkeypatch.setenv("GRAPHFLOW_CONNECT", rendezvous.free_endpoint())
+    with pytest.raises(SupervisorError, match="nor where --connect or --net point to") as caught:
+        Client()
+    assert caught.value.exit_code == 3
