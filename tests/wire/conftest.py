@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +25,11 @@ def fixture_interfaces() -> Iterator[None]:
 
 
 @pytest.fixture
-def fresh_registry() -> Iterator[None]:
-    """Definitions are read anew in this test, and again after it: it changes where they come from."""
-    registry.forget()
-    yield
-    registry.forget()
+def fresh_registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Definitions are read anew in this test, which changes where they come from; after it, all is as it was before.
+
+    To forget them would not do: other tests hold classes that would then be made a second time.
+    """
+    for name, memory in vars(registry).copy().items():
+        if hasattr(memory, "cache_clear"):
+            monkeypatch.setattr(registry, name, cache(memory.__wrapped__))
