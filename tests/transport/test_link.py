@@ -19,7 +19,7 @@ from tests.conftest import PROGRAMS, Machine, Program
 from tests.network.hosts import Hosts, why_not
 
 NEAR = "nodes:\n  /draw_circle: {class: nodes.draw_circle:DrawCircle}\n"
-ROUTER = str(Path(__file__).with_name("rmw_router.py"))
+ROUTER = str(Path(__file__).parents[1] / "network" / "rmw_router.py")
 
 
 @pytest.fixture(scope="module")
