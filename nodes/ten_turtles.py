@@ -9,10 +9,9 @@ The simulator and this node, in two terminals:
 from __future__ import annotations
 
 import graphflow
-from graphflow import Client, Node, Param, timer
+from graphflow import Client, Node, Param, TopicPublisher, timer
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.turtlesim.srv import Spawn
-from graphflow.runtime.topics import TopicPublisher
 
 
 class TenTurtles(Node):

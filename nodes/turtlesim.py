@@ -17,8 +17,7 @@ import asyncio
 from typing import Any
 
 import graphflow
-from graphflow import Abort, Node, Param, service, task, timer
-from graphflow.errors import InvalidName
+from graphflow import Abort, InvalidName, Node, Param, service, task, timer
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
