@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import click
 import pytest
 
 import graphflow
@@ -99,3 +100,10 @@ def test_what_is_not_there_yet_is_not_there() -> None:
     assert [words for words in missing if has_command(words)] == []
     assert has_command("action send_goal")
     assert not has_command("action sing")
+
+
+@pytest.mark.parametrize("file", ["README.md", "CHANGELOG.md"])
+def test_every_command_is_listed(file: str) -> None:
+    """The list of what there is names each of graphflow's commands."""
+    text = (PROJECT / file).read_text(encoding="utf-8")
+    assert [verb for verb in cli.list_commands(click.Context(cli)) if f"`{verb}`" not in text] == []
