@@ -1,4 +1,4 @@
-"""How handlers run: asyncio works inside them from their first line, and groups hold them apart."""
+"""How handlers run: each from its queue, with a context of its own, held apart by groups, and in turns."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ import gc
 import weakref
 from asyncio import CancelledError
 from collections import deque
-from collections.abc import Awaitable, Callable, Coroutine, Generator
+from collections.abc import Callable
 from contextvars import ContextVar
 from random import Random
 from typing import Any
 
 import pytest
 
-from graphflow.executor.activity import Activity
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import Ledger
-from graphflow.executor.runner import BURST, Runner, RunnerSpec
+from graphflow.executor.runner import BURST, Run, Runner, RunnerSpec
 from graphflow.testing.clock import settle
 
 Handler = Callable[[Any], Any]
@@ -30,27 +29,17 @@ class Bench:
         self.loop = asyncio.get_running_loop()
         self.items: deque[Any] = deque()
         self.ended: list[tuple[Any, Any, BaseException | None]] = []
-        self._enough: tuple[int, asyncio.Future[None]] | None = None
         slots: HandlerGroup = group if group is not None else HandlerGroup(1)
         spec = RunnerSpec(name, handler, self._finished)
         self.runner = Runner(Ledger(self.loop), spec, self.items, slots)
 
     def _finished(self, item: Any, result: Any, error: BaseException | None) -> None:
         self.ended.append((item, result, error))
-        if self._enough is not None and len(self.ended) >= self._enough[0]:
-            self._enough[1].set_result(None)
-            self._enough = None
 
     def put(self, *items: Any) -> None:
         """Have items arrive as they do in life: by the loop, outside of every task."""
         self.items.extend(items)
         self.loop.call_soon(self.runner.wake)
-
-    async def until(self, count: int) -> None:
-        """Wait for so many ends of runs, where threads have a part in them."""
-        if len(self.ended) < count:
-            self._enough = count, self.loop.create_future()
-            await self._enough[1]
 
     @property
     def results(self) -> list[Any]:
@@ -61,221 +50,23 @@ class Bench:
         return [error for _, _, error in self.ended]
 
 
-async def outcome(body: Callable[[], Awaitable[Any]]) -> Any:
-    """What a handler returns, or raises, whose first line is the body's."""
-
-    async def handler(_: object) -> Any:
-        return await body()
-
-    bench = Bench(handler)
-    bench.put(0)
-    await bench.until(1)
-    [(_, result, error)] = bench.ended
-    if error is not None:
-        raise error
-    return result
-
-
 # what asyncio offers
 
 
 async def test_current_task_is_the_run(graphflow_runner: asyncio.Runner) -> None:
-    """The run is the current task from the first line on and after every suspension, and has a name."""
+    """A handler's current task is its run, with its item and the handler's name."""
     seen: list[Any] = []
 
     async def handler(item: object) -> None:
-        seen.append(asyncio.current_task())
-        await asyncio.sleep(0)
-        seen.append(asyncio.current_task())
+        run = asyncio.current_task()
+        assert isinstance(run, Run)
+        seen.append((run.get_name(), run.item))
 
-    test = asyncio.current_task()
     bench = Bench(handler, name="/talker.greet")
     bench.put(0)
     await settle()
 
-    assert isinstance(seen[0], Activity)
-    assert seen[0] is seen[1]
-    assert seen[0].get_name() == "/talker.greet"
-    assert seen[0].get_loop() is asyncio.get_running_loop()
-    assert seen[0].done()
-    assert asyncio.current_task() is test
-
-
-async def test_a_timeout_that_expires(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.timeout` cancels the wait and raises TimeoutError, and the handler goes on."""
-
-    async def body() -> str:
-        try:
-            async with asyncio.timeout(0):
-                await asyncio.Event().wait()
-        except TimeoutError:
-            await asyncio.sleep(0)
-            task = asyncio.current_task()
-            assert task is not None
-            return f"late, {task.cancelling()} cancellations left"
-        return "in time"
-
-    assert await outcome(body) == "late, 0 cancellations left"
-
-
-async def test_a_timeout_that_does_not_expire(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.timeout` around what is quick enough changes nothing."""
-
-    async def body() -> str:
-        async with asyncio.timeout(3600) as scope:
-            await asyncio.sleep(0)
-        assert not scope.expired()
-        return "in time"
-
-    assert await outcome(body) == "in time"
-
-
-async def test_a_timeout_inside_a_timeout(graphflow_runner: asyncio.Runner) -> None:
-    """The outer one's expiry passes through the inner as a cancellation."""
-
-    async def body() -> str:
-        try:
-            async with asyncio.timeout(0):
-                async with asyncio.timeout(3600):
-                    await asyncio.Event().wait()
-        except TimeoutError:
-            return "outer"
-        return "none"
-
-    assert await outcome(body) == "outer"
-
-
-async def test_a_task_group_waits_for_its_children(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.TaskGroup` runs children beside each other and ends when they have."""
-
-    async def child(n: int) -> int:
-        await asyncio.sleep(0)
-        return n * n
-
-    async def body() -> list[int]:
-        async with asyncio.TaskGroup() as group:
-            children = [group.create_task(child(n)) for n in range(3)]
-        return [c.result() for c in children]
-
-    assert await outcome(body) == [0, 1, 4]
-
-
-@pytest.mark.parametrize("waits", [False, True])
-async def test_a_child_error_cancels_the_group(graphflow_runner: asyncio.Runner, waits: bool) -> None:
-    """One child's error cancels its siblings and the block, and arrives as a group of errors, as in any task."""
-    cancelled: list[str] = []
-
-    async def sibling() -> None:
-        try:
-            await asyncio.Event().wait()
-        except CancelledError:
-            cancelled.append("sibling")
-            raise
-
-    async def wrong() -> None:
-        raise ValueError("wrong")
-
-    async def body() -> tuple[str, int]:
-        try:
-            async with asyncio.TaskGroup() as group:
-                group.create_task(sibling())
-                group.create_task(wrong())
-                if waits:
-                    try:
-                        await asyncio.Event().wait()
-                    except CancelledError:
-                        cancelled.append("block")
-                        raise
-        except* ValueError as errors:
-            text = str(errors.exceptions)
-        await asyncio.sleep(0)
-        task = asyncio.current_task()
-        assert task is not None
-        return text, task.cancelling()
-
-    text, cancelling = await outcome(body)
-
-    assert text == "(ValueError('wrong'),)"
-    assert sorted(cancelled) == (["block", "sibling"] if waits else ["sibling"])
-    # How many cancellations are left over differs between Python's versions.
-    assert (text, cancelling) == await asyncio.create_task(body())
-
-
-async def test_wait_for(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.wait_for` gives the result, or TimeoutError after cancelling what it waited for."""
-    cleaned: list[str] = []
-
-    async def never() -> None:
-        try:
-            await asyncio.Event().wait()
-        finally:
-            cleaned.append("up")
-
-    async def body() -> tuple[str, str]:
-        quick = await asyncio.wait_for(asyncio.sleep(0, "quick"), 3600)
-        try:
-            await asyncio.wait_for(asyncio.ensure_future(never()), 0.001)
-        except TimeoutError:
-            return quick, "late"
-        return quick, "?"
-
-    assert await outcome(body) == ("quick", "late")
-    assert cleaned == ["up"]
-
-
-async def test_gather(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.gather` gives results in order, and errors as results if asked to."""
-
-    async def wrong() -> None:
-        raise ValueError("wrong")
-
-    async def body() -> Any:
-        return await asyncio.gather(asyncio.sleep(0, 1), wrong(), asyncio.sleep(0, 2), return_exceptions=True)
-
-    first, error, last = await outcome(body)
-    assert (first, str(error), last) == (1, "wrong", 2)
-
-
-async def test_shield(graphflow_runner: asyncio.Runner) -> None:
-    """A cancelled run leaves what it shielded alone."""
-    gate = asyncio.Event()
-    inner: list[asyncio.Task[str]] = []
-
-    async def work() -> str:
-        await gate.wait()
-        return "done"
-
-    async def handler(_: object) -> None:
-        inner.append(asyncio.ensure_future(work()))
-        await asyncio.shield(inner[0])
-
-    bench = Bench(handler)
-    bench.put(0)
-    await settle()
-    bench.runner.cancel()
-    await settle()
-    assert isinstance(bench.errors[0], CancelledError)
-
-    gate.set()
-    assert await inner[0] == "done"
-
-
-async def test_to_thread(graphflow_runner: asyncio.Runner) -> None:
-    """`asyncio.to_thread` gives the thread's result, and its error; the context goes with it."""
-    where: ContextVar[str] = ContextVar("where", default="nowhere")
-
-    def wrong() -> None:
-        raise ValueError("in the thread")
-
-    async def body() -> tuple[int, str, str]:
-        where.set("here")
-        try:
-            await asyncio.to_thread(wrong)
-        except ValueError as error:
-            text = str(error)
-        return await asyncio.to_thread(pow, 2, 10), await asyncio.to_thread(where.get), text
-
-    assert await outcome(body) == (1024, "here", "in the thread")
+    assert seen == [("/talker.greet", 0)]
 
 
 async def test_events_queues_and_locks(graphflow_runner: asyncio.Runner) -> None:
@@ -415,28 +206,6 @@ async def test_runs_begin_with_the_context_of_where_the_runner_was_made(graphflo
     assert seen == ["the program"]
 
 
-async def test_awaiting_something_foreign_is_an_error_there(graphflow_runner: asyncio.Runner) -> None:
-    """An awaitable that asyncio does not know raises RuntimeError at the await, and the queue goes on."""
-
-    class Foreign:
-        def __await__(self) -> Generator[object, None, None]:
-            yield "something"
-
-    bench = Bench(lambda item: Foreign().__await__() if item is None else handler(item))
-
-    async def handler(item: object) -> str:
-        try:
-            await Foreign()
-        except RuntimeError as error:
-            return str(error)
-        return "?"
-
-    bench.put(1)
-    await settle()
-
-    assert "'something', which asyncio cannot await" in bench.results[0]
-
-
 # cancellation
 
 
@@ -514,156 +283,6 @@ async def test_cancelling_twice_waits_for_the_same_end(graphflow_runner: asyncio
     await settle()
     assert early.done()
     assert late.done()
-
-
-def activity(coroutine: Coroutine[Any, Any, Any]) -> tuple[Activity, list[tuple[Any, BaseException | None]]]:
-    ended: list[tuple[Any, BaseException | None]] = []
-    made = Activity(
-        asyncio.get_running_loop(), coroutine, "activity", lambda result, error: ended.append((result, error))
-    )
-    return made, ended
-
-
-async def begin(run: Activity) -> None:
-    asyncio.get_running_loop().call_soon(run.start)
-    await settle()
-
-
-async def test_cancelled_before_its_first_step(graphflow_runner: asyncio.Runner) -> None:
-    """A run that is cancelled before it began does not begin."""
-    log: list[str] = []
-
-    async def body() -> None:
-        log.append("began")
-
-    run, ended = activity(body())
-    assert run.cancel("no more")
-    await begin(run)
-
-    assert log == []
-    assert isinstance(ended[0][1], CancelledError)
-    assert ended[0][1].args == ("no more",)
-    assert not run.cancel()
-
-
-async def test_cancelled_at_each_of_its_awaits(graphflow_runner: asyncio.Runner) -> None:
-    """Wherever a run waits, cancellation arrives there and nowhere else, and its `finally` blocks all run."""
-
-    async def body(log: list[str]) -> None:
-        loop = asyncio.get_running_loop()
-        try:
-            log.append("sleep")
-            await asyncio.sleep(0)
-            log.append("future")
-            await loop.create_future()
-            log.append("lock")
-            async with asyncio.Lock():
-                log.append("child")
-                await loop.create_task(asyncio.Event().wait())
-        finally:
-            log.append("finally")
-            await asyncio.sleep(0)
-            log.append("end")
-
-    steps = ["sleep", "future", "lock", "child"]
-    for count in (1, 2, 4):
-        log: list[str] = []
-        run, ended = activity(body(log))
-        asyncio.get_running_loop().call_soon(run.start)
-        while len(log) < count:
-            await asyncio.sleep(0)
-            if log[-1:] == ["future"] and count > 2 and run._fut_waiter is not None:
-                run._fut_waiter.set_result(None)
-        run.cancel()
-        await settle()
-
-        assert log == [*steps[:count], "finally", "end"]
-        assert isinstance(ended[0][1], CancelledError)
-        assert run.done()
-
-
-async def test_cancelled_in_its_finally(graphflow_runner: asyncio.Runner) -> None:
-    """A second cancellation interrupts the cleanup at its await."""
-    log: list[str] = []
-
-    async def body() -> None:
-        try:
-            await asyncio.Event().wait()
-        finally:
-            log.append("cleaning")
-            try:
-                await asyncio.Event().wait()
-            finally:
-                log.append("interrupted")
-
-    run, ended = activity(body())
-    await begin(run)
-    run.cancel()
-    await settle()
-    assert log == ["cleaning"]
-    run.cancel()
-    await settle()
-
-    assert log == ["cleaning", "interrupted"]
-    assert isinstance(ended[0][1], CancelledError)
-
-
-@pytest.mark.parametrize("waits", [False, True])
-async def test_cancelled_by_itself(graphflow_runner: asyncio.Runner, waits: bool) -> None:
-    """A run that cancels itself goes on to its next await, be it one that would last for ever."""
-    log: list[str] = []
-
-    async def body() -> None:
-        task = asyncio.current_task()
-        assert task is not None
-        task.cancel()
-        log.append("still here")
-        await (asyncio.Event().wait() if waits else asyncio.sleep(0))
-        log.append("not here")
-
-    run, ended = activity(body())
-    await begin(run)
-
-    assert log == ["still here"]
-    assert isinstance(ended[0][1], CancelledError)
-
-
-async def test_cancelled_when_what_it_waits_for_is_done(graphflow_runner: asyncio.Runner) -> None:
-    """A cancellation between the result and the step that would bring it still cancels."""
-    future = asyncio.get_running_loop().create_future()
-
-    async def body() -> object:
-        return await future
-
-    run, ended = activity(body())
-    await begin(run)
-    future.set_result("result")
-    run.cancel()
-    await settle()
-
-    assert isinstance(ended[0][1], CancelledError)
-
-
-async def test_a_cancellation_that_is_caught_is_over(graphflow_runner: asyncio.Runner) -> None:
-    """A run may refuse to end, and its result counts."""
-
-    async def body() -> str:
-        try:
-            await asyncio.Event().wait()
-        except CancelledError:
-            task = asyncio.current_task()
-            assert task is not None
-            assert task.uncancel() == 0
-        await asyncio.sleep(0)
-        return "stayed"
-
-    run, ended = activity(body())
-    await begin(run)
-    run.cancel()
-    assert run.cancelling() == 1
-    await settle()
-
-    assert ended == [("stayed", None)]
 
 
 @pytest.mark.parametrize("fails", [False, True])
