@@ -17,7 +17,6 @@ from graphflow.machines.wait_graph import (
     ActivityView,
     All,
     AnyOf,
-    Call,
     Condition,
     GroupView,
     Join,
@@ -27,7 +26,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
     joined,
 )
-from tests.cases import cases, count, limit
+from tests.machines.pictures import BACKGROUND, DEAD, LIVE, call, circle, group, picture, queue, run, waits_for_itself
 from tests.machines.tiny_graph import (
     Ask,
     Both,
@@ -48,53 +47,6 @@ CASES = count(few=150, full=1000)
 """Tiny graphs that are tried."""
 
 
-def run(
-    id_: str, wait: Condition = FREE, *, holds: str = "", serves: str = "", age: float = 0.0, process: str = ""
-) -> ActivityView:
-    return ActivityView(id_, f"timer {id_}", "/node", (holds,) if holds else (), wait, serves, age=age, process=process)
-
-
-def group(id_: str, limit: int | None = 1) -> GroupView:
-    return GroupView(id_, id_, "/node", limit)
-
-
-def queue(id_: str, group: str, *calls: str, process: str = "") -> QueueView:
-    return QueueView(id_, f"service {id_}", "/node", (group,), calls, len(calls), process=process)
-
-
-def call(id_: str) -> Call:
-    return Call(id_, f"/{id_}")
-
-
-def picture(*things: ActivityView | GroupView | QueueView, blocked: dict[str, str] | None = None) -> WaitGraph:
-    """A picture of these."""
-    return WaitGraph(
-        {t.id: t for t in things if isinstance(t, ActivityView)},
-        {t.id: t for t in things if isinstance(t, GroupView)},
-        {t.id: t for t in things if isinstance(t, QueueView)},
-        blocked or {},
-    )
-
-
-def rings(seen: WaitGraph) -> list[tuple[str, ...]]:
-    return [deadlock.ring for deadlock in explained(seen, deadlocked(seen))]
-
-
-def waits_for_itself(name: str) -> tuple[ActivityView | GroupView | QueueView, ...]:
-    """A run that calls a service of its own mutex group."""
-    own, asked = f"{name}_group", f"{name}_call"
-    return run(name, call(asked), holds=own), group(own), queue(f"{name}_service", own, asked)
-
-
-DEAD, LIVE = call("stuck_call"), call("answered_soon")
-"""Waits for a run that is dead, and for one that is not, in every picture with `BACKGROUND`."""
-BACKGROUND = (
-    *waits_for_itself("stuck"),
-    run("waits_on_stuck", DEAD, serves="dead"),
-    run("busy", serves="answered_soon"),
-)
-
-
 # Calls and slots
 
 
@@ -113,15 +65,6 @@ def test_a_call_of_another_group() -> None:
     """The same call under a group of its own can be answered."""
     assert not deadlocked(
         picture(run("tick", call("add"), holds="g"), group("g"), group("h"), queue("add", "h", "add"))
-    )
-
-
-def circle(length: int) -> WaitGraph:
-    """Timers of as many nodes, each of which calls a service in the group that the next one's timer holds."""
-    return picture(
-        *(run(f"tick{i}", call(f"call{i}"), holds=f"g{i}") for i in range(length)),
-        *(group(f"g{i}") for i in range(length)),
-        *(queue(f"service{i}", f"g{i}", f"call{(i - 1) % length}") for i in range(length)),
     )
 
 
@@ -185,7 +128,8 @@ def test_a_handler_behind_itself() -> None:
     seen = picture(run("add", call("again"), holds="own", serves="first"), own, queue("s", "own", "again"))
 
     assert deadlocked(seen) == {"add"}
-    assert rings(seen) == [("add",)]
+    (found,) = explained(seen, {"add"})
+    assert found.ring == ("add",)
 
 
 def test_a_handler_of_a_group_behind_itself() -> None:
@@ -200,17 +144,6 @@ def test_a_handler_of_a_group_behind_itself() -> None:
     assert not deadlocked(picture(asks, run("holder", call("answer"), holds="g"), server, *groups))
     both = run("one", call("answer"), holds="g"), run("two", call("answer"), holds="g")
     assert deadlocked(picture(asks, *both, server, *groups)) == {"asks", "one", "two"}
-
-
-def test_the_slot_that_is_missing() -> None:
-    """Where two slots are needed and one of them is free, the ring goes through the other."""
-    server, own = QueueView("s", "action s", "/node", ("g", "own"), ("c",), 1), GroupView("own", "", "/node", 1)
-    holder = ActivityView("holder", "action s", "/node", ("own",), call("answer"))
-    seen = picture(run("asks", call("c"), serves="answer", age=9.0), holder, server, group("g", 2), own)
-    seen = joined([seen, picture(run("other", call("answer"), holds="g"))])
-
-    (found,) = explained(seen, deadlocked(seen))
-    assert (found.ring, found.edges[0].group, found.victims) == (("asks", "holder"), "own", ("other",))
 
 
 def test_the_way_back_to_a_group() -> None:
@@ -254,25 +187,6 @@ def test_tasks_that_await_each_other() -> None:
     assert set(found.ring) == {"a", "b", "c"}
     assert found.victims == ("d",)
     assert not found.is_likely
-
-
-@pytest.mark.parametrize(
-    ("wait", "partial"),
-    [
-        (All((call("c"), LIVE)), True),
-        (All((call("c"), call("soon"))), True),
-        (All((call("c"), DEAD)), False),
-        (All((All((call("c"), LIVE)), DEAD)), True),
-    ],
-)
-def test_a_live_part_of_a_dead_wait(wait: Condition, partial: bool) -> None:
-    """A ring says when the failure of something live could still end one of its waits."""
-    me = run("me", wait, holds="g", age=1.0)
-    server = run("runs", holds="h"), group("h"), queue("t", "h", "soon")
-    seen = picture(*BACKGROUND, *server, me, group("g"), queue("s", "g", "c"))
-
-    (found,) = [d for d in explained(seen, deadlocked(seen)) if "me" in d.ring]
-    assert found.is_partial is partial
 
 
 def test_a_setter_that_cannot_run() -> None:
@@ -388,47 +302,7 @@ def test_a_request_for_a_blocked_loop(wait: Condition) -> None:
     assert deadlocked(picture(asks, *there)) == set()
 
 
-# Rings and victims
-
-
-def test_victims_are_no_members() -> None:
-    """Who only waits for a ring is behind it; who is alive is in neither."""
-    behind = run("behind", call("tick0_answer"), age=9.0), run("further", Join("behind"), age=8.0)
-    ticks = {**circle(2).activities, "tick0": replace(circle(2).activities["tick0"], serves="tick0_answer")}
-    seen = joined([replace(circle(2), activities=ticks), picture(*behind, run("busy"))])
-
-    (found,) = explained(seen, deadlocked(seen))
-    assert set(found.ring) == {"tick0", "tick1"}
-    assert found.victims == ("behind", "further")
-
-
-def test_the_shortest_ring() -> None:
-    """Of several ways back, the ring takes the one that needs nobody else."""
-    seen = picture(run("a", All((Join("b"), call("c"))), holds="g", age=9.0), run("b", Join("a")), group("g"))
-    seen = joined([seen, picture(queue("s", "g", "c"))])
-
-    (found,) = explained(seen, deadlocked(seen))
-    assert (found.ring, found.victims) == (("a",), ("b",))
-
-
-def test_a_way_out_that_another_ring_bars() -> None:
-    """Who would go on if another ring was mended waits behind that one, and is in no ring, whatever waits for him."""
-    me = run("me", AnyOf((call("c"), DEAD)), holds="g", age=9.0)
-    seen = picture(*BACKGROUND, me, group("g"), queue("s", "g", "c"))
-
-    (found,) = explained(seen, deadlocked(seen))
-    assert (found.ring, found.victims) == (("stuck",), ("me", "waits_on_stuck"))
-
-
-@pytest.mark.parametrize("ages", [(1.0, 9.0), (9.0, 1.0)])
-def test_a_ring_behind_another(ages: tuple[float, float]) -> None:
-    """What stays a ring when the one it waits for is mended is told too, whichever is older."""
-    behind = run("behind", All((call("c"), DEAD)), holds="g", age=ages[0])
-    ahead = run("stuck", call("stuck_call"), holds="stuck_group", age=ages[1])
-    seen = picture(*BACKGROUND[1:], ahead, behind, group("g"), queue("s", "g", "c"))
-
-    found = {d.ring: d.victims for d in explained(seen, deadlocked(seen))}
-    assert found == {("behind",): (), ("stuck",): ("waits_on_stuck",)}
+# Nobody is dead
 
 
 def test_waits_for_nothing() -> None:
@@ -436,78 +310,10 @@ def test_waits_for_nothing() -> None:
     assert not deadlocked(picture(run("a", AnyOf(())), run("b", SetBy("self.arrived", ()))))
 
 
-def test_inner_runs_are_no_victims() -> None:
-    """What graphflow itself runs may be dead, and lead others to a ring, but is not told among those behind it."""
-    inner = replace(run("get_result", Join("tick"), serves="c"), is_inner=True)
-    seen = picture(*waits_for_itself("tick"), inner, run("asks", call("c"), age=9.0))
-
-    assert deadlocked(seen) == {"tick", "get_result", "asks"}
-    (found,) = explained(seen, deadlocked(seen))
-    assert (found.ring, found.victims) == (("tick",), ("asks",))
-
-
-def test_two_rings() -> None:
-    """Rings that have nothing to do with each other are two deadlocks, each with its own victims."""
-    a, b = waits_for_itself("a"), waits_for_itself("b")
-    seen = picture(*a, *b, run("after_a", Join("a")), run("after_b", Join("b")))
-
-    found = {d.ring: d.victims for d in explained(seen, deadlocked(seen))}
-    assert found == {("a",): ("after_a",), ("b",): ("after_b",)}
-
-
-def test_pictures_as_one() -> None:
-    """Several processes joined are one picture of everything in them."""
-    here = picture(run("a"), group("g"), queue("s", "g"), blocked={"p": "a"})
-    there = picture(run("b"), group("h"), queue("t", "h"), blocked={"q": "b"})
-
-    whole = picture(run("a"), run("b"), group("g"), group("h"), queue("s", "g"), queue("t", "h"))
-    assert joined([here, there]) == replace(whole, blocked={"p": "a", "q": "b"})
-    assert joined([]) == WaitGraph()
-
-
 def test_nobody_is_dead() -> None:
     """There is nothing to explain in an empty picture, nor where everybody goes on."""
     assert deadlocked(WaitGraph()) == set()
     assert explained(picture(run("busy")), set()) == []
-
-
-# The rest of what is said of a ring
-
-
-@pytest.mark.parametrize("part", [call("live"), AnyOf((LIVE, call("dead")))])
-def test_a_ring_goes_through_what_is_dead(part: Condition) -> None:
-    """Of a wait for several, a ring takes a part that can never be met: the others are no reason."""
-    slot_left = group("h", 2), run("b", call("c1"), holds="h"), queue("s", "h", "live")
-    served = run("b2", call("c1"), serves="dead"), run("c", call("c2"), serves="reason"), queue("t", "g", "c1", "c2")
-    me = run("me", All((part, call("reason"))), holds="g", age=9.0)
-
-    seen = picture(*BACKGROUND, *slot_left, *served, me, group("g"))
-
-    (found,) = [d for d in explained(seen, deadlocked(seen)) if "me" in d.ring]
-    assert found.ring == ("me", "c")
-
-
-def test_a_ring_beside_a_guess() -> None:
-    """A ring is only likely if another slot would come free in case somebody else sets what its holder waits for."""
-    guess = run("b", SetBy("self.arrived", ("on_scan",)), holds="g")
-    queues = queue("s", "g", "c"), queue("on_scan", "g")
-    seen = picture(run("a", call("c"), holds="g", age=9.0), guess, group("g", 2), *queues)
-
-    (found,) = explained(seen, deadlocked(seen))
-    assert (found.ring, found.victims) == (("a",), ("b",))
-    assert found.is_likely
-
-
-def test_a_ring_beside_a_live_part() -> None:
-    """A ring is only partial if another slot would come free in case something live fails."""
-    other = run("b", All((call("d"), LIVE)), holds="g")
-    seen = picture(
-        *BACKGROUND, run("a", call("c"), holds="g", age=9.0), other, group("g", 2), queue("s", "g", "c", "d")
-    )
-
-    (found,) = [d for d in explained(seen, deadlocked(seen)) if "a" in d.ring]
-    assert (found.ring, found.victims) == (("a",), ("b",))
-    assert found.is_partial
 
 
 # Two pictures

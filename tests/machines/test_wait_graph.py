@@ -1,0 +1,40 @@
+"""What pictures of several processes have in common: the names of calls and goals, and one picture of all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from graphflow.machines.wait_graph import FREE, ActivityView, Free, WaitGraph, call_id, goal_id, joined
+from tests.machines.pictures import group, picture, queue, run
+
+
+def test_one_name_for_both_ends_of_a_call() -> None:
+    """A call is named by its client and number, whichever sign that has; no two calls have one name."""
+    gid, other = bytes(range(16)), bytes(range(1, 17))
+
+    assert call_id(gid, 7) == call_id(gid, -7) == "000102030405060708090a0b0c0d0e0f:7"
+    assert len({call_id(gid, 7), call_id(gid, 8), call_id(other, 7)}) == 3
+
+
+def test_goals_are_no_calls() -> None:
+    """A goal is named by its id, so that reports can tell it from a call."""
+    assert goal_id(b"\x01" * 16) == "goal:" + "01" * 16
+
+
+def test_a_view_by_default() -> None:
+    """What is only named holds nothing, waits for nothing that the picture shows, and blocks nobody."""
+    view = ActivityView("a", "timer tick", "/node")
+
+    assert (view.holds, view.wait, view.serves, view.left) == ((), FREE, "", None)
+    assert Free() == FREE
+    assert WaitGraph() == WaitGraph({}, {}, {}, {})
+
+
+def test_pictures_as_one() -> None:
+    """Several processes joined are one picture of everything in them."""
+    here = picture(run("a"), group("g"), queue("s", "g"), blocked={"p": "a"})
+    there = picture(run("b"), group("h"), queue("t", "h"), blocked={"q": "b"})
+
+    whole = picture(run("a"), run("b"), group("g"), group("h"), queue("s", "g"), queue("t", "h"))
+    assert joined([here, there]) == replace(whole, blocked={"p": "a", "q": "b"})
+    assert joined([]) == WaitGraph()
