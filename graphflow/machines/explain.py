@@ -37,14 +37,16 @@ def stall(
     Args:
         dropped: How many items each queue had dropped before.
     """
-    who = " and ".join(f"{title(a)} ({''.join(_place(a))})" for a in holders)
-    lines = [f"STALL: {who} {'has' if len(holders) == 1 else 'have'} held {_slot(group)} for more than {seconds:.1f} s"]
+    who = " and ".join(title(a) + "".join(f" ({place})" for place in _place(a)) for a in holders)
+    slots = f"have kept all {len(holders)} slots of group '{group.name}' of {group.node}"
+    kept = slots if len(holders) > 1 else f"has kept {_slot(group)}"
+    lines = [f"STALL: {who} {kept} for more than {seconds:.1f} s"]
     for queue in waiting:
         lost = queue.dropped - dropped.get(queue.id, 0)
         lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
     held = {_method(a.label) for a in holders}
     others = [queue for queue in waiting if _method(queue.label) not in held]
-    return "\n".join([*lines, "If that is too long:", *(_own_group(queue) for queue in others[:1])])
+    return "\n".join([*lines, "If that is too long:", _own_group(others[0])] if others else lines)
 
 
 def _headline(deadlock: Deadlock) -> str:
@@ -59,10 +61,11 @@ def _headline(deadlock: Deadlock) -> str:
 def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
         activity = graph.activities[name]
-        holding = _holding(activity, graph)
-        if edge.loop and edge.to == name:
-            holding = f"{holding.removesuffix(' and')}{',' if holding else ''} blocks the event loop and"
-        yield f"  {title(activity)}{holding} waits for {wanted(edge)}{where(activity)}"
+        group = group_of(activity, graph)
+        deeds = [f"holds group '{group}'"] if group else []
+        deeds += ["blocks the event loop"] if edge.loop and edge.to == name else []
+        doing = f" {', '.join(deeds)} and" if deeds else ""
+        yield f"  {title(activity)}{doing} waits for {wanted(edge)}{where(activity)}"
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
         yield f"    -> {_reason(edge, graph)}{back}"
 
@@ -70,11 +73,6 @@ def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
 def title(activity: ActivityView) -> str:
     """What an activity is called: `timer tick of /arm`."""
     return f"{activity.label} of {activity.node}"
-
-
-def _holding(activity: ActivityView, graph: WaitGraph) -> str:
-    name = group_of(activity, graph)
-    return f" holds group '{name}' and" if name else ""
 
 
 def group_of(activity: ActivityView, graph: WaitGraph) -> str:
