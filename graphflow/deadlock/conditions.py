@@ -108,16 +108,26 @@ class LoopConditions:
         code, values = frame.f_code, frame.f_locals
         bound = _bindings(function)
         given = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
-        own = [name for name in code.co_varnames if name not in code.co_cellvars]  # that no inner function can bind
+        own = [name for name in code.co_varnames if name not in code.co_cellvars]  # that no function inside can bind
+        condition = set(ast.walk(loop.test)) if isinstance(loop, ast.While) else set()
+        changing = {
+            name
+            for name in own
+            if isinstance(value := values.get(name, []), (*CONTAINERS, *arrays(), Message))
+            if not _is_only_read(name, value, function, condition)
+        }
         constants = {
             name
             for name in own
             if not any(target in inside for target, _ in bound.get(name, ())) and _is_plain(values.get(name, self))
+            if name not in changing
         }
-        # Names of enclosing functions may be bound by any of them.
-        # and the function's arguments, by its caller.
+        # Names of the functions around it may be bound by any of them,
+        # and what is given to the function, by whoever has given it.
         locals_: dict[str, list[ast.expr | None]] = {name: [None] for name in values}
-        locals_ |= {name: [value for _, value in bound[name]] for name in own if name in bound and name not in given}
+        readable = set(own) & set(bound) - set(given) - changing
+        locals_ |= {name: [value for _, value in bound[name]] for name in readable}
+        locals_ |= {name: [None] for name in changing}
         tasks = {
             name: _futures(values.get(name))
             for name in own
@@ -339,6 +349,34 @@ def _is_kept(name: str, function: FunctionNode, loop: set[ast.AST]) -> bool:
                     pass
                 case _ if not looks(node, parents):
                     return False
+    return True
+
+
+def _is_only_read(name: str, value: Any, function: FunctionNode, condition: set[ast.AST]) -> bool:
+    """Whether a function neither changes what a local name stands for, nor makes it known to somebody who could.
+
+    Args:
+        condition: What is read anyway, with all that it calls.
+    """
+    for node, parents in walk(function):
+        if not (isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load)):
+            continue
+        whole: ast.AST = node
+        around = list(parents)
+        while isinstance(around[-1], (ast.Attribute, ast.Subscript)) and around[-1].value is whole:
+            whole = around.pop()
+        is_called = isinstance(around[-1], ast.Call) and around[-1].func is whole
+        match whole:
+            case ast.Attribute(ctx=ast.Load(), attr=asked) if is_called:
+                is_read = asked in LOOKING
+            case ast.Attribute(ctx=ast.Load()):  # a field, or a method that is handed on
+                is_read = isinstance(value, Message) or looks(whole, around)
+            case ast.Subscript(ctx=ast.Load()):
+                is_read = not is_called
+            case _:
+                is_read = whole is node and (node in condition or looks(node, parents))
+        if not is_read:
+            return False
     return True
 
 

@@ -26,6 +26,9 @@ _LOOKS = (
 _LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozenset", "hash", "id", "int", "isinstance"}
 _LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
 _LOOKING |= {"super", "tuple", "type", "zip"}
+_AWAITING = {"as_completed", "create_task", "ensure_future", "gather", "isfuture", "shield", "sleep", "timeout"}
+_AWAITING |= {"timeout_at", "wait", "wait_for", "wrap_future"}
+"""Functions of asyncio that do to what they are given nothing but await it."""
 _SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
 _SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
 _SAME |= {"diagonal", "copyto"}
@@ -322,13 +325,17 @@ def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
         return above.test is node
     if isinstance(above, (ast.List, ast.Tuple, ast.Set)):  # asyncio.wait([self.x])
         call = parents[-2] if len(parents) > 1 else None
-        return isinstance(call, ast.Call) and ast.unparse(call.func).startswith("asyncio.")
+        return isinstance(call, ast.Call) and _awaits(ast.unparse(call.func))
     if isinstance(above, ast.Call):
         function = ast.unparse(above.func)
         if function.startswith("np."):
             return function.removeprefix("np.") not in _SAME
-        return function in _LOOKING or function.startswith(("self.log.", "asyncio.", "math."))
+        return function in _LOOKING or function.startswith(("self.log.", "math.")) or _awaits(function)
     return isinstance(above, _LOOKS)
+
+
+def _awaits(function: str) -> bool:
+    return function.startswith("asyncio.") and function.removeprefix("asyncio.") in _AWAITING
 
 
 def _only_looked_at(name: str, function: ast.AST) -> bool:

@@ -677,6 +677,70 @@ class EndsWithALocalList(Driver):
             await self.clock.sleep(0.1)
 
 
+class EndsWithAMethodOfALocalList(Driver):
+    async def go(self, _: String) -> None:
+        said: list[str] = []
+        self.clock.call_at(three_seconds_from_now(self.clock), partial(said.append, "end"))
+        while not self.there and not said:
+            await self.clock.sleep(0.1)
+
+
+class EndsWithAMethodOfItsList(Driver):
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[str] = []
+
+    async def go(self, _: String) -> None:
+        self.clock.call_at(three_seconds_from_now(self.clock), partial(self.said.append, "end"))
+        while not self.there and not self.said:
+            await self.clock.sleep(0.1)
+
+
+def bring(somewhere: list[list[str]], said: list[str]) -> None:
+    somewhere.append(said)
+
+
+class EndsWithALocalListGivenAway(Driver):
+    async def go(self, _: String) -> None:
+        said: list[str] = []
+        known: list[list[str]] = []
+        bring(known, said)
+        self.clock.call_at(three_seconds_from_now(self.clock), lambda: known[0].append("end"))
+        while not self.there and not said:
+            await self.clock.sleep(0.1)
+
+
+class EndsAfterTurnsInAList(Driver):
+    async def go(self, _: String) -> None:
+        turns: list[int] = []
+        while not self.there and len(turns) < 30:
+            turns.append(1)
+            await self.clock.sleep(0.1)
+
+
+class EndsAfterTurnsInAPartOfAList(Driver):
+    async def go(self, _: String) -> None:
+        turns = [0]
+        while not self.there and turns[0] < 30:
+            turns[0] += 1
+            await self.clock.sleep(0.1)
+
+
+class EndsAfterTurnsInAMessage(Driver):
+    async def go(self, message: String) -> None:
+        while not self.there and len(message.data) < 30:
+            message.data += "."
+            await self.clock.sleep(0.1)
+
+
+class EndsAfterTurnsInAnArray(Driver):
+    async def go(self, _: String) -> None:
+        turns = np.zeros(1)
+        while not self.there and turns[0] < 30:
+            turns[0] += 1
+            await self.clock.sleep(0.1)
+
+
 class ShieldsInATask(Robot):
     """The task waits for what it shields, and not for itself."""
 
@@ -1142,6 +1206,13 @@ def legal(program: type[Robot]) -> Any:
         legal(EndsByAFunction),
         legal(EndsWithATask),
         legal(EndsWithALocalList),
+        legal(EndsWithAMethodOfALocalList),
+        legal(EndsWithAMethodOfItsList),
+        legal(EndsWithALocalListGivenAway),
+        legal(EndsAfterTurnsInAList),
+        legal(EndsAfterTurnsInAPartOfAList),
+        legal(EndsAfterTurnsInAMessage),
+        legal(EndsAfterTurnsInAnArray),
         legal(ShieldsInATask),
         legal(EndsWithItsGenerator),
         legal(EndsWithAMessage),
