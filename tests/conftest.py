@@ -141,11 +141,18 @@ class Machine:
         Environment and working directory are the machine's for that time; they, the folders of interfaces and the
         handlers of signals are as they were afterwards. What it returns and checks is as of `run`.
         """
+        got, text = self.look_and_end(*words, cwd=cwd)
+        assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{text}"
+        return text
+
+    def look_and_end(self, *words: str, cwd: Path = PROJECT) -> tuple[int, str]:
+        """As `look`; returns the exit code and the words."""
         assert not self._at, "this process is not there"
         text = io.StringIO()
         handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
         with (
             patch.dict(os.environ, self.env, clear=True),
+            patch.object(sys, "argv", ["graphflow", *words]),
             patch.object(registry, "_roots", list(registry._roots)),
             chdir(cwd),
             redirect_stdout(text),
@@ -157,9 +164,8 @@ class Machine:
             finally:
                 for number, handler in handlers.items():
                     signal.signal(number, handler)
-        got = end.value.code
-        assert code is None or got == code, f"{words} ended with {got}, not {code}:\n{text.getvalue()}"
-        return text.getvalue()
+        assert isinstance(end.value.code, int)
+        return end.value.code, text.getvalue()
 
     def until(self, condition: Callable[[], bool], what: str, limit: float = LIMIT) -> None:
         """Wait until something outside holds."""

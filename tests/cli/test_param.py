@@ -1,7 +1,8 @@
-"""Values of parameters as people type them."""
+"""`graphflow param`: values as people type them, and the verbs on a node that runs."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,6 +10,25 @@ import pytest
 from graphflow.cli.param import read_value
 from graphflow.errors import UsageFault
 from graphflow.interface import TYPE_IDS
+from tests.conftest import PROGRAMS, Machine, Program
+
+ROBOT = str(PROGRAMS / "verbs" / "robot.py")
+DUMP = """\
+/robot:
+  ros__parameters:
+    count: 3
+    extra: 1
+    fixed: stays
+    flag: 'on'
+    gain: 2.0
+    limits:
+      speed: 1.0
+    raw: [1, 255]
+    start_type_description_service: true
+    title: '5'
+    use_sim_time: false
+    words: [a, '1']
+"""
 
 
 @pytest.mark.parametrize(
@@ -63,3 +83,100 @@ def test_what_is_no_yaml_is_wrong_usage(text: str) -> None:
     """Half a list is told as such, before anybody is asked."""
     with pytest.raises(UsageFault, match="character"):
         read_value(text, TYPE_IDS["list[int]"])
+
+
+def start(machine: Machine, folder: Path, *words: str) -> Program:
+    return machine.start_python(ROBOT, "--ros-args", *words, cwd=folder)
+
+
+def ready(program: Program) -> Program:
+    program.wait_for("ready")
+    return program
+
+
+@pytest.mark.real
+def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> None:
+    """Values and types come back, numbers in quotes included; what is read-only is no failure when it is the same."""
+    ready(start(machine, tmp_path))
+    dumped = machine.run("param", "dump", "/robot")
+    assert dumped == DUMP
+    (tmp_path / "p.yaml").write_text(dumped)
+    for name, value in (("title", "other"), ("gain", "7.5"), ("words", "[x]"), ("limits.speed", "4"), ("raw", "[7]")):
+        assert "successful" in machine.look("param", "set", "/robot", name, value)
+    assert machine.look("param", "dump", "/robot") != DUMP
+
+    text = machine.look("param", "load", "/robot", str(tmp_path / "p.yaml"))
+    assert "Set parameter title successful" in text
+    assert "Parameter fixed is read-only, and has this value" in text
+    assert machine.look("param", "dump", "/robot") == DUMP
+
+
+@pytest.mark.real
+def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -> None:
+    """The rest is set; the reason is told, and the exit code is 1."""
+    ready(start(machine, tmp_path))
+    file = tmp_path / "p.yaml"
+    file.write_text("robot: {ros__parameters: {gain: 2.3, count: 4, title: 5, nothing: 1}}\n")
+    text = machine.look("param", "load", "/robot", str(file), code=1)
+    assert "Set parameter gain failed: parameter 'gain' = 2.3 is not a valid step" in text
+    assert "Set parameter count successful" in text
+    assert "Set parameter title failed: parameter 'title' is of type string, 5 is not" in text
+    assert f"{file}:1:" in text
+    assert ": node /robot has no parameter 'nothing'" in text
+
+    file.write_text("other: {ros__parameters: {gain: 2.0}}\n")
+    text = machine.look("param", "load", "/robot", str(file), code=2)
+    assert "p.yaml has nothing for /robot; there is /other" in text
+    file.write_text("robot: [\n")
+    assert "p.yaml:1:9: not valid YAML" in machine.look("param", "load", "/robot", str(file), code=2)
+    assert "cannot be read: No such file" in machine.look("param", "load", "/robot", str(tmp_path / "no"), code=2)
+
+
+@pytest.mark.real
+def test_describe_and_delete(machine: Machine, tmp_path: Path) -> None:
+    """As ROS 2 prints them; only what was declared dynamically can go."""
+    ready(start(machine, tmp_path))
+    assert machine.look("param", "describe", "/robot", "gain", "count", "fixed") == (
+        "Parameter name: gain\n  Type: double\n  Description: How much. [m]\n  Constraints:\n"
+        "    Min value: 0.0\n    Max value: 10.0\n    Step: 0.5\n"
+        "Parameter name: count\n  Type: integer\n  Constraints:\n    Additional constraints: more than 0\n"
+        "Parameter name: fixed\n  Type: string\n  Constraints:\n    Read only: true\n"
+    )
+    assert "no parameter 'gian'; did you mean 'gain'?" in machine.look("param", "describe", "/robot", "gian", code=1)
+    assert machine.look("param", "delete", "/robot", "extra") == "Deleted parameter successfully\n"
+    assert "no parameter 'extra'" in machine.look("param", "get", "/robot", "extra", code=1)
+    text = machine.look("param", "delete", "/robot", "title", code=1)
+    assert "Deleting parameter failed: parameter 'title' belongs to the node" in text
+
+
+@pytest.mark.real
+def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> None:
+    """Below what the command line says; a wildcard's parameter that it does not have is left out and told."""
+    (tmp_path / "p.yaml").write_text(
+        "'/**': {ros__parameters: {unknown: 1}}\n/left/arm: {ros__parameters: {gain: 3.5, count: 9}}\n"
+    )
+    words = ("--params-file", "p.yaml", "-p", "count:=8", "-r", "__node:=arm", "-r", "__ns:=/left")
+    text = ready(start(machine, tmp_path, *words)).text
+    assert "p.yaml:1:36: /left/arm has no parameter 'unknown'; it is left out" in text
+    assert machine.look("param", "get", "/left/arm", "gain") == "Double value is: 3.5\n"
+    assert machine.look("param", "get", "/left/arm", "count") == "Integer value is: 8\n"
+
+
+@pytest.mark.real
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (
+            "robot: {ros__parameters: {gian: 1.0}}",
+            "no parameter 'gian' (from p.yaml:1:33); did you mean 'gain'",
+        ),
+        ("rboot: {ros__parameters: {gain: 1.0}}", "p.yaml:1:1: there is no node /rboot; did you mean '/robot'?"),
+        ("robot: {ros__parameters: {gain: 1.1}}", "parameter 'gain' = 1.1 is not a valid step"),
+    ],
+)
+def test_a_wrong_params_file_is_refused(machine: Machine, tmp_path: Path, text: str, problem: str) -> None:
+    """With its place and what was meant, before the node is on the network."""
+    (tmp_path / "p.yaml").write_text(text)
+    program = start(machine, tmp_path, "--params-file", "p.yaml")
+    assert program.wait() == 2
+    assert problem in program.text

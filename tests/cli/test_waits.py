@@ -57,6 +57,6 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
         ("doctor now", 2, "unexpected extra argument"),
     ],
 )
-def test_nothing_runs(lab: Lab, words: str, code: int, told: str) -> None:
+def test_nothing_runs(machine: Machine, words: str, code: int, told: str) -> None:
     """Exit code 3, or 2 when the words are wrong anyway."""
-    assert told in lab.machine.run(*words.split(), code=code)
+    assert told in machine.look(*words.split(), code=code)

@@ -54,10 +54,10 @@ class Lab:
         return up
 
     def pids(self) -> dict[str, int]:
-        return {row["node"]: row["pid"] for row in json.loads(self.machine.run("ps", "--json"))}
+        return {row["node"]: row["pid"] for row in json.loads(self.machine.look("ps", "--json"))}
 
     def call(self, service: str) -> None:
-        assert "success=True" in self.machine.run("service", "call", service, "std_srvs/srv/Trigger")
+        assert "success=True" in self.machine.look("service", "call", service, "std_srvs/srv/Trigger")
 
 
 def ring_of(names: str, cls: str = "Member") -> dict[str, str]:

@@ -172,7 +172,7 @@ def move(lab: Lab, case: Written) -> None:
     found = re.fullmatch(r"(/\w+): \{concurrency: \{(\w+): \[(\w+)\]\}\}", case.fix)
     assert found is not None
     node, group, handler = found.groups()
-    assert f"  {case.fix}\n" in lab.machine.run("groups", "move", node, handler, group)
+    assert f"  {case.fix}\n" in lab.machine.look("groups", "move", node, handler, group)
 
 
 def test_a_loop_that_goes_on_is_in_no_deadlock(lab: Lab) -> None:
@@ -182,7 +182,7 @@ def test_a_loop_that_goes_on_is_in_no_deadlock(lab: Lab) -> None:
     up.wait_for(f"      {case.fix}\n")
     move(lab, case)
     up.wait_for("has cleared", limit=2.0)
-    assert "nothing wrong" in lab.machine.run("doctor")
+    assert "nothing wrong" in lab.machine.look("doctor")
 
 
 def test_the_line_of_a_lock(lab: Lab) -> None:

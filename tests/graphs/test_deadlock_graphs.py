@@ -12,6 +12,7 @@ from graphflow.supervisor.classes import add_root
 from graphflow.supervisor.worker import make_node
 from graphflow.testing import Graph
 from tests.conftest import PROJECT, Machine
+from tests.graphs.lab import end_at_once
 
 FOLDER = PROJECT / "graphs" / "deadlock"
 
@@ -164,7 +165,7 @@ def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: s
     up.wait_for(pair.headline)
     for detail in pair.details:
         up.wait_for(detail)
-    assert up.end() == 0
+    end_at_once(up)
 
 
 @pytest.mark.real
@@ -208,18 +209,18 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     """`waits` and `doctor` show it; `groups move` ends it in the running graph and prints the lines for good."""
     up = machine.start("up", str(FOLDER / "arrival_broken.yaml"))
     up.wait_for("DEADLOCK: 2 callbacks")
-    shown = machine.run("waits")
-    assert "! timer control of /turtle1/follower, holds 'all': waiting for the response of /turtle1/notify_arr" in shown
+    shown = machine.look("waits")
+    assert "! timer control of /turtle1/follower, holds 'all': waits for the answer of /turtle1/notify_arrival" in shown
     assert "service set_goal of /turtle1/follower is queued for group 'all', held by timer control" in shown
-    assert "DEADLOCK: 2 callbacks wait for each other in a ring" in machine.run("doctor", code=1)
-    assert "all  (limit 1)\n    set_goal  service  1 runs, 1 waiting" in machine.run("groups", "/turtle1/follower")
+    assert "DEADLOCK: 2 callbacks wait for each other in a ring" in machine.look("doctor", code=1)
+    assert "all  (limit 1)\n    set_goal  service  1 runs, 1 waiting" in machine.look("groups", "/turtle1/follower")
 
-    machine.run("groups", "move", "/turtle1/follower", "set_goal", "goals")
-    told = machine.run("groups", "move", "/turtle1/follower", "enable", "goals")
+    machine.look("groups", "move", "/turtle1/follower", "set_goal", "goals")
+    told = machine.look("groups", "move", "/turtle1/follower", "enable", "goals")
     assert "  /turtle1/follower: {concurrency: {goals: [set_goal, enable]}}" in told
     up.wait_for("the deadlock of")
     up.wait_for("has cleared")
-    machine.until(lambda: machine.run("waits") == "nothing is waiting\n", "the waits are over")
-    assert "nothing wrong" in machine.run("doctor")
-    assert "did you mean 'enable'?" in machine.run("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
+    machine.until(lambda: machine.look("waits") == "nobody waits\n", "the waits are over")
+    assert "nothing wrong" in machine.look("doctor")
+    assert "did you mean 'enable'?" in machine.look("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
     assert up.end() == 0

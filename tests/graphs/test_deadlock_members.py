@@ -38,7 +38,7 @@ def test_a_member_that_is_cancelled(lab: Lab) -> None:
 
     lab.call("/a/give_up")
     wait_for_all(up, [*answered("ab"), "has cleared"])
-    assert lab.machine.run("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nobody waits\n"
     assert up.end() == 0
     assert len(reports(up.text)) == 1
 
@@ -69,8 +69,8 @@ def test_kill_minus_9_of_a_member(lab: Lab, is_reporter: bool) -> None:
     os.kill(lab.pids()[f"/{dead}"], signal.SIGKILL)
     wait_for_all(up, [f"[{before}]: ServerLost: the server of /{dead}/answer went away", *answered(last)])
     up.wait_for("has cleared")
-    assert lab.machine.run("waits") == "nobody waits\n"
-    assert "nothing wrong" in lab.machine.run("doctor")
+    assert lab.machine.look("waits") == "nobody waits\n"
+    assert "nothing wrong" in lab.machine.look("doctor")
     assert up.end() == 1
     assert len(reports(up.text)) == 1
     assert up.text.count("has cleared") == 1
@@ -84,10 +84,10 @@ def test_a_stopped_process_is_no_member(lab: Lab) -> None:
     os.kill(pid, signal.SIGSTOP)
     lab.open_gates("a", "b")
     up.wait_for("[a]: asks")
-    told = lab.machine.run("doctor", code=1)
+    told = lab.machine.look("doctor", code=1)
     assert told == f"NODE UNRESPONSIVE: /b (process {pid}) did not answer: it is stopped: kill -CONT {pid}\n"
     up.wait_for(f"NODE UNRESPONSIVE: /b (process {pid}) has not answered for 1.")
-    assert "  timer ask of /a, holds 'work': waits for the answer of /b/answer" in lab.machine.run("waits")
+    assert "  timer ask of /a, holds 'work': waits for the answer of /b/answer" in lab.machine.look("waits")
     assert reports(up.text) == []
 
     os.kill(pid, signal.SIGCONT)
@@ -109,7 +109,7 @@ def test_a_server_that_is_stopped_while_it_serves(lab: Lab) -> None:
     up.wait_for("[a]: CallTimeout: /slow/answer did not answer within 1.5 s")
 
     os.kill(pid, signal.SIGCONT)
-    assert lab.machine.run("doctor") == "2 nodes, nothing wrong\n"
+    assert lab.machine.look("doctor") == "2 nodes, nothing wrong\n"
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -136,7 +136,7 @@ def test_a_loop_that_is_held(lab: Lab) -> None:
 
     let_go(lab)
     wait_for_all(up, [*answered("a"), "the event loop goes on after"])
-    assert "/b: the event loop was late 1 times, by " in lab.machine.run("doctor")
+    assert "/b: the event loop was late 1 times, by " in lab.machine.look("doctor")
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -145,7 +145,7 @@ def test_the_doctor_sees_a_loop_that_is_held(lab: Lab) -> None:
     """What the log tells, `doctor` tells too."""
     up = hold(lab, "Sleepy")
     up.wait_for("[graphflow]: the event loop is blocked since 1.")
-    assert "/b: the event loop is blocked since " in lab.machine.run("doctor", code=1)
+    assert "/b: the event loop is blocked since " in lab.machine.look("doctor", code=1)
     let_go(lab)
 
 
@@ -153,7 +153,7 @@ def test_an_interpreter_that_is_held(lab: Lab) -> None:
     """A process of which no thread runs is in no deadlock; it is said to be silent, and shows where it is (row 22)."""
     up = hold(lab, "Greedy")
     pid = lab.pids()["/b"]
-    told = lab.machine.run("doctor", code=1)
+    told = lab.machine.look("doctor", code=1)
     assert f"NODE UNRESPONSIVE: /b (process {pid}) did not answer: " in told
     assert "DEADLOCK" not in told
     up.wait_for(f"NODE UNRESPONSIVE: /b (process {pid}) has not answered for 1.")
@@ -162,7 +162,7 @@ def test_an_interpreter_that_is_held(lab: Lab) -> None:
 
     let_go(lab)
     wait_for_all(up, [*answered("a"), "nothing of this process could run for "])
-    assert lab.machine.run("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nobody waits\n"
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -179,6 +179,6 @@ def test_a_ring_through_the_result_of_an_action(lab: Lab) -> None:
 
     lab.call("/a/give_up")
     wait_for_all(up, ["[a]: cancelled", "has cleared"])
-    assert lab.machine.run("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nobody waits\n"
     assert up.end() == 0
     assert len(reports(up.text)) == 1

@@ -40,7 +40,7 @@ def test_a_ring_of_processes(lab: Lab, names: str, policy: str) -> None:
     wait_for_ring(up, names)
     logger.info("%s: told after %.3f s", names, seconds_to_report(up.text))
 
-    told = lab.machine.run("groups", "move", "/a", "answer", "answer_group")
+    told = lab.machine.look("groups", "move", "/a", "answer", "answer_group")
     assert "  /a: {concurrency: {answer_group: [answer]}}" in told
     wait_for_all(up, [*answered(names), "has cleared"])
     assert up.end() == 0
@@ -107,10 +107,10 @@ def test_what_takes_long_lives(lab: Lab) -> None:
     wait_for_all(up, at_it("ab"))
     lab.open_gates("a", "b")
     wait_for_all(up, ["[slow]: serves", "[a]: asks", "[b]: asks"])
-    shown = lab.machine.run("waits")
+    shown = lab.machine.look("waits")
     assert "  timer ask of /a, holds 'work': waits for the answer of /slow/answer" in shown
     assert "!" not in shown
-    assert lab.machine.run("doctor") == "3 nodes, nothing wrong\n"
+    assert lab.machine.look("doctor") == "3 nodes, nothing wrong\n"
 
     lab.open_gates("slow")
     wait_for_all(up, answered("ab"))
@@ -125,8 +125,8 @@ def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     up.wait_for("timer ask of /a blocks the event loop and waits for the answer of service /b/answer   (ring.py:")
     up.wait_for(f"{at('stuck: Blocker')}ask, since ")
     up.wait_for(line := "/a: {concurrency: {blocking: {handlers: [ask], thread: true}}}")
-    assert "! timer ask of /a: waits for the answer of /b/answer" in lab.machine.run("waits")
-    told = lab.machine.run("groups", "move", "/a", "answer", "answers", "--timeout", "0.2", code=4)
+    assert "! timer ask of /a: waits for the answer of /b/answer" in lab.machine.look("waits")
+    told = lab.machine.look("groups", "move", "/a", "answer", "answers", "--timeout", "0.2", code=4)
     assert "its event loop may be blocked" in told
     end_at_once(up)
 
@@ -141,7 +141,7 @@ def test_a_call_that_blocks_the_loop_it_needs_is_one_report(lab: Lab) -> None:
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
     up.wait_for("DEADLOCK: ")
     up.wait_for("[graphflow]: the event loop is blocked since 1.")
-    assert "DEADLOCK: " in lab.machine.run("doctor", code=1)
+    assert "DEADLOCK: " in lab.machine.look("doctor", code=1)
     end_at_once(up)
     assert len(reports(up.text)) == 1
 
@@ -151,8 +151,8 @@ def close_and_open(lab: Lab, programs: list[Program]) -> None:
     for program, name in zip(programs, "ab", strict=True):
         wait_for_all(program, at_it(name))
     lab.open_gates("a", "b")
-    lab.machine.until(lambda: "DEADLOCK" in lab.machine.run("doctor", code=None), "it is found")
-    lab.machine.run("groups", "move", "/b", "answer", "answers")
+    lab.machine.until(lambda: "DEADLOCK" in lab.machine.look("doctor", code=None), "it is found")
+    lab.machine.look("groups", "move", "/b", "answer", "answers")
     for program, name in zip(programs, "ab", strict=True):
         wait_for_all(program, answered(name))
         assert program.end() == 0
@@ -184,6 +184,6 @@ def test_one_who_asks_two_is_one_report(lab: Lab) -> None:
     boss = max("abc", key=zids(up).__getitem__)
     lab.open_gates(boss)
     up.wait_for("DEADLOCK: 2 callbacks wait for each other in a ring")
-    assert "DEADLOCK: " in lab.machine.run("doctor", code=1)
+    assert "DEADLOCK: " in lab.machine.look("doctor", code=1)
     end_at_once(up)
     assert len(reports(up.text)) == 1

@@ -15,12 +15,12 @@ pytestmark = pytest.mark.real
 
 
 def pose(machine: Machine, turtle: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(machine.run("topic", "echo", f"/{turtle}/pose", "--once", "--json"))
+    found: dict[str, Any] = json.loads(machine.look("topic", "echo", f"/{turtle}/pose", "--once", "--json"))
     return found
 
 
 def picture(machine: Machine) -> ElementTree.Element:
-    answer = json.loads(machine.run("service", "call", "/turtlesim/snapshot", "std_srvs/srv/Trigger", "--json"))
+    answer = json.loads(machine.look("service", "call", "/turtlesim/snapshot", "std_srvs/srv/Trigger", "--json"))
     assert answer["success"]
     return ElementTree.fromstring(answer["message"])
 
@@ -30,14 +30,14 @@ def test_every_graph_file_checks_out(machine: Machine) -> None:
     files = sorted(p.name for p in (PROJECT / "graphs").glob("*.yaml"))
     assert {"draw_circle.yaml", "talker_listener.yaml", "turtlesim.yaml"} <= set(files)
     for file in files:
-        assert "no problems" in machine.run("check", f"graphs/{file}")
+        assert "no problems" in machine.look("check", f"graphs/{file}")
 
 
 def test_talker_listener(machine: Machine) -> None:
     """The argument reaches the parameter, and one hears the other."""
     up = machine.start("up", "graphs/talker_listener.yaml", "rate:=25.0")
     up.wait_for("I heard: [Hello World: 5]")
-    assert machine.run("param", "get", "/talker", "rate") == "Double value is: 25.0\n"
+    assert machine.look("param", "get", "/talker", "rate") == "Double value is: 25.0\n"
     assert up.end() == 0
 
 
@@ -49,31 +49,33 @@ def test_draw_circle(machine: Machine) -> None:
         at = pose(machine, "turtle1")
         radius = math.hypot(at["x"] - 5.544445, at["y"] - (5.544445 + 1.5))
         assert radius == pytest.approx(1.5, abs=0.05)
-    machine.run("down")
+    machine.look("down")
 
 
 def test_turtlesim(machine: Machine) -> None:
     """Leader and follower move; parameters and services of the simulator answer, and misspelt words are corrected."""
     machine.run("up", "-d", "graphs/turtlesim.yaml", "follower:=donatello")
-    assert "/donatello/chaser" in machine.run("node", "list")
+    assert "/donatello/chaser" in machine.look("node", "list")
     machine.until(lambda: pose(machine, "donatello")["linear_velocity"] > 0, "the follower drives")
     machine.until(lambda: pose(machine, "turtle1")["linear_velocity"] > 0, "the leader drives")
 
     assert picture(machine).find(".//*[@fill='#1e3c72']") is not None
-    assert machine.run("param", "set", "/turtlesim", "background_r", "200") == "Set parameter successful\n"
+    assert machine.look("param", "set", "/turtlesim", "background_r", "200") == "Set parameter successful\n"
     assert picture(machine).find(".//*[@fill='#c83c72']") is not None
-    refused = machine.run("param", "set", "/turtlesim", "background_r", "300", code=1)
+    refused = machine.look("param", "set", "/turtlesim", "background_r", "300", code=1)
     assert "out of range: 0 to 255" in refused
-    assert machine.run("param", "get", "/turtlesim", "background_r") == "Integer value is: 200\n"
-    assert "did you mean '/turtlesim'?" in machine.run("param", "get", "/turtelsim", "background_r", code=1)
-    assert "did you mean 'background_r'?" in machine.run("param", "get", "/turtlesim", "backgroundr", code=1)
+    assert machine.look("param", "get", "/turtlesim", "background_r") == "Integer value is: 200\n"
+    assert "did you mean '/turtlesim'?" in machine.look("param", "get", "/turtelsim", "background_r", code=1)
+    assert "did you mean 'background_r'?" in machine.look("param", "get", "/turtlesim", "backgroundr", code=1)
 
-    assert "/spawn is a turtlesim/srv/Spawn" in machine.run("service", "call", "/spawn", code=2)
-    assert "did you mean '/spawn'?" in machine.run("service", "call", "/spwan", code=1)
-    spawned = machine.run("service", "call", "/spawn", "turtlesim_msgs/srv/Spawn", "{x: 2, y: 2, theta: 0.2, name: ''}")
+    assert "/spawn is a turtlesim/srv/Spawn" in machine.look("service", "call", "/spawn", code=2)
+    assert "did you mean '/spawn'?" in machine.look("service", "call", "/spwan", code=1)
+    spawned = machine.look(
+        "service", "call", "/spawn", "turtlesim_msgs/srv/Spawn", "{x: 2, y: 2, theta: 0.2, name: ''}"
+    )
     assert "turtlesim/srv/Spawn; using that" in spawned
     assert "turtlesim.srv.Spawn_Response(name='turtle2')" in spawned
-    machine.run("down")
+    machine.look("down")
 
 
 def test_the_unquoted_command_of_the_slides(machine: Machine) -> None:
@@ -104,5 +106,5 @@ def test_ten_turtles(machine: Machine) -> None:
     """As many as the argument says."""
     machine.run("up", "-d", "graphs/ten_turtles.yaml", "count:=3")
     machine.until(lambda: pose(machine, "turtle4")["linear_velocity"] == 1.0, "the third drives")
-    assert "/turtle5/pose" not in machine.run("topic", "list")
-    machine.run("down")
+    assert "/turtle5/pose" not in machine.look("topic", "list")
+    machine.look("down")
