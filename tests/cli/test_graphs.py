@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.cli.graphs import _ago, _table
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
-
-pytestmark = pytest.mark.real
 
 
 @pytest.fixture
@@ -18,6 +17,7 @@ def project(tmp_path: Path) -> Path:
     return make_project(tmp_path / "lab")
 
 
+@pytest.mark.real
 def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Path) -> None:
     """`up -d` returns when the graph is up; `ps`, `logs` and `down` work from anywhere; `down` again says none runs."""
     text = machine.run("up", "-d", write(project, GOOD), cwd=project)
@@ -33,6 +33,7 @@ def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Pat
     assert "no graph is running" in machine.run("ps", code=3)
 
 
+@pytest.mark.real
 def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
     """`logs` shows the latest run; a misspelt node is told which one was meant."""
     machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
@@ -43,6 +44,7 @@ def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
     assert "did you mean 'talker'" in machine.look("logs", "talkr", code=2)
 
 
+@pytest.mark.real
 def test_logs_follow(machine: Machine) -> None:
     """`logs -f` goes on as more is written and ends with the graph."""
     machine.run("up", "-d", "graphs/talker_listener.yaml", "rate:=50.0")
@@ -52,6 +54,7 @@ def test_logs_follow(machine: Machine) -> None:
     assert follow.wait() == 0
 
 
+@pytest.mark.real
 def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
     """`--private` takes a port and a domain of its own, and says how other terminals get there."""
     text = machine.run("up", "-d", "--private", "graphs/talker_listener.yaml")
@@ -60,3 +63,92 @@ def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
     machine.env |= dict(word.split("=", 1) for word in line.split()[1:])
     assert machine.look("node", "list").split() == ["/listener", "/talker"]
     machine.look("down")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (-1.0, "0s"),
+        (0.9, "0s"),
+        (59.9, "59s"),
+        (60.0, "1m00s"),
+        (3599.0, "59m59s"),
+        (3600.0, "1h00m"),
+        (90000.0, "25h00m"),
+    ],
+)
+def test_how_long_a_node_has_been_so(seconds: float, text: str) -> None:
+    """In seconds, then minutes, then hours, and never less than none."""
+    assert _ago(seconds) == text
+
+
+def test_the_table_of_ps() -> None:
+    """Columns as wide as what stands in them; a node without a process has a dash, and a failed one its reason."""
+    row = {
+        "graph": "lab",
+        "node": "/a",
+        "state": "ready",
+        "detail": "",
+        "pid": 12,
+        "since": 0.0,
+        "class": "nodes.lab:Good",
+    }
+    head, first, second = _table([row, {**row, "node": "/longer", "state": "failed", "detail": "SIGKILL", "pid": None}])
+    assert head.split() == ["GRAPH", "NODE", "STATE", "PID", "FOR", "CLASS"]
+    assert first.split()[:4] == ["lab", "/a", "ready", "12"]
+    assert "  failed (SIGKILL)  -    " in second
+    assert head.index("CLASS") == first.index("nodes.lab") == second.index("nodes.lab")
+
+
+def test_nothing_that_runs_is_found(machine: Machine) -> None:
+    """Verbs of graphs end with 3 where none is, and say how to start one."""
+    assert machine.look("ps", code=3) == "error: no graph is running; start one with: graphflow up GRAPH.yaml\n"
+    for words in (["down"], ["down", "--all"], ["logs"], ["ps", "--graph", "x"]):
+        assert machine.look(*words, code=3).startswith("error: no graph is running")
+
+
+@pytest.mark.real
+def test_ps_of_a_graph(standing: Machine) -> None:
+    """Every node with its state and class; processes that nodes share are the same."""
+    lines = [line.split() for line in standing.look("ps").splitlines()]
+    assert [line[1] for line in lines[1:]] == [
+        "/talker",
+        "/listener",
+        "/fibonacci_server",
+        "/office/clerk",
+        "/office/auditor",
+    ]
+    assert {line[2] for line in lines[1:]} == {"ready"}
+    assert len({line[3] for line in lines[1:]}) == 2
+    assert standing.look("ps", "--graph", "standing") == standing.look("ps")
+
+
+def test_show_args(machine: Machine, tmp_path: Path) -> None:
+    """`up -s` tells a file's arguments and starts nothing; what is wrong with the file has its place."""
+    file = tmp_path / "g.yaml"
+    file.write_bytes(
+        b"\xef\xbb\xbfargs:\n  gain: {default: 5.0, unit: 1/s, doc: How sharply.}\n"
+        b"  name: {default: a}\n  mode:\nnodes: {}\n"
+    )
+    assert machine.look("up", "-s", str(file)).splitlines() == [
+        "Arguments (pass arguments as '<name>:=<value>'):",
+        "",
+        "    'gain':",
+        "        How sharply. [1/s]",
+        "        (default: 5.0)",
+        "",
+        "    'name':",
+        "        no description given",
+        "        (default: 'a')",
+        "",
+        "    'mode':",
+        "        no description given",
+        "",
+    ]
+    for data, problem in (
+        (b"nodes: {}", ""),
+        (b"a: {", f"error: {file}:1:5: not valid YAML"),
+        (b"\xe9", "is not UTF-8"),
+    ):
+        file.write_bytes(data)
+        assert (problem or "no arguments") in machine.look("up", "-s", str(file), code=2 if problem else 0)

@@ -103,13 +103,6 @@ def test_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixtu
     assert message in err
 
 
-@pytest.mark.parametrize("words", [["ps"], ["down"], ["down", "--all"], ["logs"], ["ps", "--graph", "x"]])
-def test_nothing_running(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """Without a running graph the verbs of graphs end with 3."""
-    assert ends(*words) == exits.NOT_RUNNING
-    assert capsys.readouterr().err.startswith("error: no graph is running")
-
-
 def test_no_verb_is_help_and_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
     """`graphflow` alone shows what there is, and is not a success."""
     assert ends() == exits.USAGE
@@ -168,37 +161,3 @@ def test_an_error_that_is_not_ours_is_not_hidden(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(cli, "get_command", lambda *_: click.Command("ps", callback=run))
     with pytest.raises(ZeroDivisionError):
         main.main(["ps"])
-
-
-def test_show_args(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`up -s` tells a file's arguments and starts nothing; what is wrong with the file has its place."""
-    file = tmp_path / "g.yaml"
-    file.write_bytes(
-        b"\xef\xbb\xbfargs:\n  gain: {default: 5.0, unit: 1/s, doc: How sharply.}\n"
-        b"  name: {default: a}\n  mode:\nnodes: {}\n"
-    )
-    assert ends("up", "-s", str(file)) == exits.OK
-    assert capsys.readouterr().out.splitlines() == [
-        "Arguments (pass arguments as '<name>:=<value>'):",
-        "",
-        "    'gain':",
-        "        How sharply. [1/s]",
-        "        (default: 5.0)",
-        "",
-        "    'name':",
-        "        no description given",
-        "        (default: 'a')",
-        "",
-        "    'mode':",
-        "        no description given",
-        "",
-    ]
-    for data, problem in (
-        (b"nodes: {}", ""),
-        (b"a: {", f"error: {file}:1:5: not valid YAML"),
-        (b"\xe9", "is not UTF-8"),
-    ):
-        file.write_bytes(data)
-        code = ends("up", "-s", str(file))
-        out, err = capsys.readouterr()
-        assert (code == exits.OK and "no arguments" in out) if not problem else (code == exits.USAGE and problem in err)

@@ -1,17 +1,145 @@
-"""What `up` shows; and log files, followed."""
+"""What `up` shows while a graph comes up, runs and goes down; and log files, followed."""
 
 from __future__ import annotations
 
+import io
 import signal
+import sys
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from graphflow.cli import exits
+from graphflow.cli.streaming import LogReader, _Stream
+from graphflow.supervisor.control import ControlClient
 from tests.conftest import Machine
 from tests.supervisor.running import nothing_is_left, rows, supervisor_of
 
-pytestmark = pytest.mark.real
+
+def append(file: Path, text: str) -> None:
+    with file.open("a") as log:
+        log.write(text)
 
 
+def test_a_reader_goes_on_where_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whole lines with the name of their node; half a line waits for its rest; a file may come later."""
+    a, b = tmp_path / "a.log", tmp_path / "long.log"
+    reader = LogReader([a, b], width=4)
+    append(a, "one\ntwo\nthr")
+    reader.show()
+    assert capsys.readouterr().out == "a    | one\na    | two\n"
+    append(a, "ee\n")
+    append(b, "four\n")
+    reader.show()
+    assert capsys.readouterr().out == "a    | three\nlong | four\n"
+    reader.show()
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(("last", "shown"), [(2, ["2", "3"]), (9, ["1", "2", "3"]), (0, [])])
+def test_only_the_last_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], last: int, shown: list[str]) -> None:
+    """As many as there are, at most; what comes then is shown whole."""
+    file = tmp_path / "a.log"
+    append(file, "1\n2\n3\n")
+    reader = LogReader([file], width=1)
+    reader.show(last=last)
+    assert capsys.readouterr().out == "".join(f"a | {n}\n" for n in shown)
+    append(file, "4\n5\n")
+    reader.show()
+    assert capsys.readouterr().out == "a | 4\na | 5\n"
+
+
+def test_what_is_no_utf8_is_shown_all_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A node may write anything."""
+    (tmp_path / "a.log").write_bytes(b"gr\xfc\xdfe\n")
+    LogReader([tmp_path / "a.log"], width=1).show()
+    assert capsys.readouterr().out == "a | gr\ufffd\ufffde\n"
+
+
+def test_colours_are_for_terminals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each node has its own there, unless NO_COLOR is set."""
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    for name in ("a", "b"):
+        append(tmp_path / f"{name}.log", "x\n")
+    files = [tmp_path / "a.log", tmp_path / "b.log"]
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setattr(sys, "stdout", terminal := Terminal())
+    LogReader(files, width=1).show()
+    assert terminal.getvalue() == "\x1b[36ma\x1b[0m | x\n\x1b[33mb\x1b[0m | x\n"
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setattr(sys, "stdout", terminal := Terminal())
+    LogReader(files, width=1).show()
+    assert terminal.getvalue() == "a | x\nb | x\n"
+
+
+def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
+    run = {"graph": "lab", "domain": 7, "logs": str(tmp_path), "socket": ""}
+    nodes = [{"node": "/a", "class": "nodes.lab:Good", "log": str(tmp_path / "a.log")}]
+    client: Any = ControlClient.__new__(ControlClient)
+    return _Stream(run, {"nodes.lab:Good": f"{tmp_path}/lab.py:3"}, nodes, client, detach, [])
+
+
+@pytest.mark.parametrize(
+    ("event", "told"),
+    [
+        ({"event": "step", "step": "spawn", "ok": True, "text": "turtle2"}, "step spawn done: turtle2\n"),
+        ({"event": "step", "step": "spawn", "ok": False, "text": "no"}, "step spawn FAILED: no\n"),
+        ({"event": "note", "text": "slow"}, "note: slow\n"),
+        ({"event": "error", "message": "gone"}, "error: gone\n"),
+        ({"event": "stopping", "reason": "Ctrl-C"}, "stopping (Ctrl-C); Ctrl-C again kills\n"),
+        ({"event": "stopping", "reason": "down"}, "stopping (down)\n"),
+        ({"event": "exited", "unexpected": False}, ""),
+        (
+            {"event": "exited", "unexpected": True, "nodes": ["/a", "/b"], "pid": 5, "how": "SIGKILL", "error": "",
+             "log": "a.log"},
+            "error: /a, /b has died, process 5, SIGKILL\n  its log: a.log\n",
+        ),
+        (
+            {"event": "exited", "unexpected": True, "nodes": ["/a"], "pid": 5, "how": "exit code 70", "error": "no way",
+             "log": "a.log"},
+            "error: /a has died, process 5, exit code 70: no way\n  its log: a.log\n",
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_told_of_an_event(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], event: dict[str, Any], told: str
+) -> None:
+    """A line on stderr, and the graph goes on."""
+    assert streaming(tmp_path)._show(event) is None
+    assert capsys.readouterr() == ("", told)
+
+
+def test_the_end_has_the_graphs_exit_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """And says that it is the end."""
+    assert streaming(tmp_path)._show({"event": "end", "exit_code": 1}) == 1
+    assert capsys.readouterr().err == "graph lab has ended\n"
+
+
+def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """What runs, where each class comes from, and what to type next, in whose domain; attached, it goes on."""
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
+    monkeypatch.chdir(tmp_path)
+    assert streaming(tmp_path)._show({"event": "up", "seconds": 0.25}) is None
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("graph lab is up: 1 node in domain 7, 0.25 s\n  /a  nodes.lab:Good  lab.py:3\n")
+    assert "  graphflow node info /a  " in err
+    assert f"Logs are in {tmp_path}\nStop with Ctrl-C.\n" in err
+    assert "export" not in err
+
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "8")
+    assert streaming(tmp_path, detach=True)._show({"event": "up", "seconds": 0.25}) == exits.OK
+    err = capsys.readouterr().err
+    assert "  export GRAPHFLOW_DOMAIN=7  " in err
+    assert "Stop with: graphflow down\n" in err
+
+
+@pytest.mark.real
 def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None:
     """The first command of the README: a greeting, log lines, Ctrl-C, exit code 0, nothing left."""
     up = machine.start("up", "graphs/talker_listener.yaml", "rate:=20.0")

@@ -60,3 +60,49 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
 def test_nothing_runs(machine: Machine, words: str, code: int, told: str) -> None:
     """Exit code 3, or 2 when the words are wrong anyway."""
     assert told in machine.look(*words.split(), code=code)
+
+
+STANDING_FAULT = "/office/minutes: the publisher of /office/clerk offers less than the subscription of /office/auditor"
+
+
+def test_a_graph_in_which_nobody_waits(standing: Machine) -> None:
+    """It is said, and for programs every list is empty."""
+    assert standing.look("waits") == "nobody waits\n"
+    found = json.loads(standing.look("waits", "--json"))
+    assert found == {"activities": [], "queued": [], "deadlocks": [], "stalls": [], "unresponsive": []}
+
+
+def test_the_groups_of_a_node(standing: Machine) -> None:
+    """Each with its limit and its handlers, and then those in no group; or the same for programs."""
+    lines = standing.look("groups", "/office/clerk").splitlines()
+    assert lines[:2] == ["/office/clerk", "  desk  (limit 1)"]
+    assert lines[2].startswith("    add  service  ")
+    assert lines[3] == "  in no group  (each queues behind itself only)"
+    assert "    add_in_secret  service  0 runs" in lines[4:]
+    found = json.loads(standing.look("groups", "/office/clerk", "--json"))
+    assert found["node"] == "/office/clerk"
+    assert [h["handler"] for g in found["groups"] if g["name"] == "desk" for h in g["handlers"]] == ["add"]
+
+
+def test_the_doctor_tells_of_endpoints_that_do_not_fit(standing: Machine) -> None:
+    """They are a fault, so that the exit code is 1."""
+    assert standing.look("doctor", code=1).startswith(STANDING_FAULT)
+    found = json.loads(standing.look("doctor", "--json", code=1))
+    assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
+    found.pop("late")
+    assert found == {"deadlocks": [], "stalls": [], "unresponsive": [], "blocked": [], "silent": []}
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        ("groups /office/clrk", 1, "there is no node /office/clrk; did you mean '/office/clerk'?"),
+        ("groups move /office/clrk add x", 1, "there is no node /office/clrk; did you mean '/office/clerk'?"),
+        ("groups move /office/clerk ad x", 2, "did you mean 'add'?"),
+        ("groups move /office/clerk add", 2, "Missing argument 'GROUP'"),
+    ],
+)
+def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
+    """The error names what is there, and nothing is moved."""
+    assert told in standing.look(*words.split(), code=code)
+    assert "  desk  (limit 1)\n    add  service  " in standing.look("groups", "/office/clerk")

@@ -1,0 +1,113 @@
+"""`graphflow plan` and `graphflow check`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli.exits import UsageFault
+from graphflow.cli.files import find_graph
+from tests.conftest import PROJECT, Machine
+
+GRAPH = "nodes:\n  /talker: {class: nodes.talker:Talker, params: {rate: 5.0}, remap: {chatter: said}}\n"
+
+
+def test_a_path_is_a_graph(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing is said of it."""
+    file = tmp_path / "g.yaml"
+    file.write_text(GRAPH)
+    assert find_graph(str(file)) == file
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("name", ["turtlesim", "turtlesim.yaml", "deadlock/crossing_broken"])
+def test_a_name_is_a_bundled_graph(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """From anywhere, with or without its ending; it is said whose it is."""
+    monkeypatch.chdir(tmp_path)
+    found = find_graph(name)
+    assert found == PROJECT / "graphs" / f"{name.removesuffix('.yaml')}.yaml"
+    assert capsys.readouterr().err == f"{name}: the one that comes with graphflow, {found}\n"
+
+
+def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of one's own that is called like one is meant."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "turtlesim").write_text(GRAPH)
+    assert find_graph("turtlesim") == Path("turtlesim")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("labb.yaml", "labb.yaml: there is no such file; did you mean 'lab.yaml'"),
+        ("graphs/ohter.yaml", "graphs/ohter.yaml: there is no such file; did you mean 'graphs/other.yaml'"),
+        ("graphs", "graphs: is a folder"),
+        ("turtlesm", "turtlesm: there is no such file; did you mean 'turtlesim'"),
+    ],
+)
+def test_neither(text: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The nearest one is told: beside it, in `graphs/`, or bundled."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "graphs").mkdir()
+    for name in ("lab.yaml", "graphs/other.yaml"):
+        (tmp_path / name).write_text(GRAPH)
+    with pytest.raises(UsageFault) as caught:
+        find_graph(text)
+    assert str(caught.value).startswith(told)
+
+
+@pytest.fixture
+def here(machine: Machine, tmp_path: Path) -> Machine:
+    """A machine with a graph file in `tmp_path`."""
+    (tmp_path / "g.yaml").write_text(GRAPH)
+    return machine
+
+
+def test_plan(here: Machine, tmp_path: Path) -> None:
+    """What would run, with the place of each setting; and as JSON."""
+    lines = here.look("plan", "g.yaml", cwd=tmp_path).splitlines()
+    assert lines[0].startswith("graph g  (g.yaml; classes from ")
+    assert [line for line in lines if line.startswith("/")] == ["/talker"]
+    assert "  param    rate = 5.0  # g.yaml:2:56" in lines
+    assert "  remap    chatter -> said  # g.yaml:2:70" in lines
+    found = json.loads(here.look("plan", "g.yaml", "--json", cwd=tmp_path))
+    assert [node["class_path"] for node in found["nodes"]] == ["nodes.talker:Talker"]
+
+
+def test_plan_of_a_wrong_file(here: Machine, tmp_path: Path) -> None:
+    """The mistake has its place, and the exit code is 2."""
+    (tmp_path / "g.yaml").write_text("nods: {}\n")
+    assert "g.yaml:1:1: " in here.look("plan", "g.yaml", cwd=tmp_path, code=2)
+
+
+@pytest.mark.real
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        (GRAPH, 0, ["g.yaml: 1 node, 0 steps, no problems"]),
+        (GRAPH.replace("rate", "rtae"), 2, ["g.yaml:2:56: ", "did you mean 'rate'", "1 problem"]),
+        (GRAPH.replace("rate", "rtae").replace("chatter", "chater"), 2, ["'rate'", "'chatter'", "2 problems"]),
+        ("nodes: {/a: {class: }}\n", 2, ["g.yaml:1:", "1 problem"]),
+    ],
+)
+def test_check(here: Machine, tmp_path: Path, text: str, code: int, told: list[str]) -> None:
+    """All mistakes at once, each with its place and the nearest right word; their number; the exit code."""
+    (tmp_path / "g.yaml").write_text(text)
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "talker.py").write_text((PROJECT / "nodes" / "talker.py").read_text())
+    found = here.look("check", "g.yaml", cwd=tmp_path, code=code)
+    for words in told:
+        assert words in found
+
+
+@pytest.mark.real
+def test_check_of_a_certain_deadlock(machine: Machine) -> None:
+    """There is no problem with the file, and the exit code is 1; its fixed twin has neither."""
+    text = machine.look("check", "deadlock/self_call_broken", code=1)
+    assert "self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add" in text
+    assert "1 node, 0 steps, no problems" in text
+    assert "CERTAIN" not in machine.look("check", "deadlock/self_call_fixed")
