@@ -63,8 +63,7 @@ def coroutines(task: Any) -> Iterator[Any]:
 
 def frame_of(coroutine: Any) -> FrameType | None:
     """Where a coroutine is suspended; None for one that is running or has ended."""
-    frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
-    return frame or getattr(coroutine, "ag_frame", None)
+    return getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
 
 
 def frames_of(task: Any) -> list[FrameType]:
