@@ -1,4 +1,4 @@
-"""A Plan held against the Interfaces of its classes: every name, type and value that cannot be right."""
+"""A Plan checked against the Interfaces of its classes: every name, type and value that cannot be right."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from graphflow.names import Kind, Resolver, did_you_mean, split
 
 ImportFault = Problem
 Interfaces = Mapping[str, Interface | ImportFault]
-"""By class path: what the class declares, or why it could not be imported."""
+"""What each class declares, or why it could not be imported, by class path."""
 
 
 def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
@@ -46,7 +46,7 @@ def _check_groups(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     for name, group in node.concurrency.items():
         for handler, place in group.handler_places.items():
             if handler in tasks:
-                yield Problem(place, f"{handler} is a task, which runs beside everything and is in no group")
+                yield Problem(place, f"{handler} is a task, which runs alongside everything and is in no group")
             elif handler not in handlers and interface.dynamic_names is not True:
                 near = did_you_mean(handler, handlers)
                 yield Problem(place, f"{_class(interface)} has no handler {handler!r}{near}")
@@ -84,7 +84,7 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
 
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Parameters written for many nodes at once, which not one node of the graph has."""
+    """Parameters written for many nodes at once that no node of the graph has."""
     known = set(COMMON_PARAMETERS)
     for interface in interfaces.values():
         if isinstance(interface, Problem) or interface.dynamic_names is True:
@@ -110,7 +110,7 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
             yield Problem(
                 rule.place,
                 f"{_class(interface)} has no topic or service {rule.match!r}{help_}"
-                + ("" if help_ else " (one that is made at run time belongs into the class's dynamic_names)"),
+                + ("" if help_ else " (one that is made at run time belongs in the class's dynamic_names)"),
             )
 
 
@@ -121,7 +121,7 @@ def resolver(node: PlannedNode) -> Resolver:
 
 
 def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """One name, two types: such endpoints never hear each other, and here it is known before anything runs."""
+    """One name, two types: such endpoints never hear each other, which is known here before anything runs."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for node in plan.nodes:
         interface = interfaces[node.class_path]
@@ -157,7 +157,7 @@ def _services(interface: Interface) -> list[EndpointInfo]:
 
 
 def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | None:
-    """The service type a step calls, as far as the file or the classes tell."""
+    """The service type a step calls, as far as the file or the classes say."""
     return step.type or offered_services(plan, interfaces).get(step.call)
 
 
@@ -173,7 +173,7 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
         yield Problem(
             step.call_place,
             f"no node of this graph offers the service {step.call}{did_you_mean(step.call, offered)}"
-            " (for one from outside add type: package/srv/Name)",
+            " (for one outside the graph add type: package/srv/Name)",
         )
         return
     try:

@@ -1,4 +1,4 @@
-"""Endpoints, Zenoh's addresses of machines, as people write them."""
+"""Endpoints, Zenoh's addresses of machines, as users write them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ def endpoint(text: str) -> str:
     """Check the form of `tcp/HOST:PORT` or `tls/HOST:PORT`.
 
     Raises:
-        ValueError: It has another.
+        ValueError: `text` has another form.
     """
     protocol, _, rest = text.partition("/")
     host, _, port = rest.rpartition(":")
     if protocol not in PROTOCOLS or not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise ValueError(f"{text!r} is no endpoint; write tcp/HOST:7447 or tls/HOST:7447")
+        raise ValueError(f"{text!r} is not an endpoint; write tcp/HOST:7447 or tls/HOST:7447")
     return text

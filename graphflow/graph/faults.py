@@ -1,4 +1,4 @@
-"""What is wrong in a graph file by its model, in words: unknown and missing keys, wrong types, what was meant."""
+"""What the model finds wrong in a graph file, in words: unknown and missing keys, wrong types, what was meant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MODELS: dict[str, type[BaseModel]] = {"args": Arg, "nodes": NodeSpec, "steps": 
 
 
 class Problems(list[Problem]):
-    """The mistakes found so far; a place that is known to be wrong is complained of once."""
+    """The mistakes found so far; a place that is known to be wrong is reported once."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -29,7 +29,7 @@ class Problems(list[Problem]):
             self.append(Problem(place, message))
 
     def add_unknown(self, place: Place, message: str) -> None:
-        """Add a problem that leaves the value unknown: more complaints about it would only confuse."""
+        """Add a problem that leaves the value unknown: further reports about it would only confuse."""
         self.add(place, message)
         self._unknown.add(place)
 
@@ -74,7 +74,7 @@ def _written_path(src: Source, fault: Any) -> source.Path:
 
 
 def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
-    """Whether a missing key is there after all, with a typo that is reported anyway."""
+    """Whether a missing key is in fact there, with a typo that is reported anyway."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
     return any(nearest(word, _known_keys((*above, word))) == key for word in unknown)
 
@@ -117,7 +117,7 @@ def _wrong_type(path: source.Path, wanted: list[str], value: Any) -> str:
     text = " or ".join(dict.fromkeys(wanted))
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
     if len(path) == 2 and ":" in str(path[1]):
-        return f"the name {path[1]!r} has a colon in it; write a space after the colon behind a key"
+        return f"the name {path[1]!r} has a colon in it; write a space after the colon that ends a key"
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
 
 
@@ -141,6 +141,6 @@ _EXAMPLES: dict[source.Path, str] = {
 
 
 def example(*path: str | int) -> str:
-    """What might stand at a path, to be put behind a complaint; empty if there is no example."""
+    """An example of what may stand at a path, to end a report with; empty if there is none."""
     shape = tuple("" if i in (1, 3) else part for i, part in enumerate(path))
     return f", for example {_EXAMPLES[shape]}" if shape in _EXAMPLES else ""

@@ -4,8 +4,8 @@
     override:
       /b: {concurrency: {answers: [f]}}
 
-The including file has its own `args`, `nodes`, `steps` and settings beside those of the file that it includes. Under
-`override` stand nodes of the included file with the keys that are to differ: `params`, `remap` and `env` entry by
+The including file has its own `args`, `nodes`, `steps` and settings in addition to those of the file it includes. Under
+`override` are nodes of the included file with the keys that should differ: `params`, `remap` and `env` entry by
 entry, any other key as a whole. Every value keeps the place where it was written.
 """
 
@@ -30,7 +30,7 @@ Complain = Callable[[Place, str], None]
 
 
 def merged(src: Source, path: Path, complain: Complain) -> tuple[Source, dict[str, Path]]:
-    """A file with what it includes.
+    """A file merged with what it includes.
 
     Args:
         complain: Called with each mistake.
@@ -53,7 +53,7 @@ def _merged(src: Source, path: Path, complain: Complain, seen: tuple[Path, ...])
         return src, folders
     place = src.place(("include",))
     if not isinstance(name, str) or not isinstance(src.data.get("override") or {}, dict):
-        return src, folders  # told when the keys' types are checked
+        return src, folders  # reported when the keys' types are checked
     below = path.parent / name
     if below.resolve() in seen:
         complain(place, f"{name} includes itself")
@@ -63,7 +63,7 @@ def _merged(src: Source, path: Path, complain: Complain, seen: tuple[Path, ...])
         raise GraphFileError([Problem(place, f"there is no file {shown(below)}{near}")])
     included = source.read_file(below, shown(below))
     if not isinstance(included.data, dict):
-        raise GraphFileError([Problem(place, f"{name} is no graph file: it holds no mapping")])
+        raise GraphFileError([Problem(place, f"{name} is not a graph file: it holds no mapping")])
     base, its_folders = _merged(included, below, complain, (*seen, below.resolve()))
     return _Merge(base, src, complain).done(), its_folders | folders
 
@@ -82,7 +82,7 @@ class _Merge:
             if key in _SECTIONS and isinstance(value, dict) and isinstance(self._data.get(key), dict):
                 for entry in value:
                     if key == "nodes" and entry in self._data["nodes"]:
-                        text = f"{entry} is in the included file already; change it under override:"
+                        text = f"{entry} is already in the included file; change it under override:"
                         self._complain(self._over.key_place((key, entry)), text)
                     self._take((key, entry), (key, entry))
             elif key not in ("include", "override"):

@@ -24,20 +24,20 @@ _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
 def _class_path(text: str) -> str:
     if not _CLASS.match(text):
-        raise ValueError(f"{text!r} is no class; write package.module:Class, for example nodes.talker:Talker")
+        raise ValueError(f"{text!r} is not a class; write package.module:Class, for example nodes.talker:Talker")
     return text
 
 
 def _service_type(text: str) -> str:
     if not re.match(r"[a-z]\w*(/srv)?/[A-Z]\w*\Z", text):
-        raise ValueError(f"{text!r} is no service type; write package/srv/Name")
+        raise ValueError(f"{text!r} is not a service type; write package/srv/Name")
     return text
 
 
 def _graph_name(text: str) -> str:
     # The name becomes a folder.
     if not re.match(r"\w[\w.-]*\Z", text):
-        raise ValueError(f"{text!r} is no name for a graph; use letters, digits, _, - and .")
+        raise ValueError(f"{text!r} is not a name for a graph; use letters, digits, _, - and .")
     return text
 
 
@@ -76,7 +76,7 @@ class _Model(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _drop_empty(cls, data: Any) -> Any:
-        """A key with nothing behind it, its lines commented out perhaps, is as good as absent."""
+        """A key with no value, perhaps because its lines are commented out, counts as absent."""
         if data is None:
             return {}
         if not isinstance(data, dict):
@@ -95,7 +95,7 @@ class Arg(_Model):
 
 
 class GroupSpec(_Model):
-    """One concurrency group of a node; written as a list of handlers when that is all there is to say."""
+    """One concurrency group of a node; written as a list of handlers when nothing else needs saying."""
 
     handlers: StrictStr | list[StrictStr] = []
     limit: Annotated[Any, AfterValidator(_limit)] = None

@@ -5,7 +5,7 @@
     allow: [/turtle1/**]
 
 Both sides of a link show a certificate that `ca` has signed; nothing else gets in. What is not allowed stays here,
-and graphflow's own talk always does.
+and graphflow's own traffic always does.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ from graphflow.names import did_you_mean
 
 def _encrypted(text: str) -> str:
     if not endpoint(text).startswith("tls/"):
-        raise ValueError(f"{text}: whoever reaches this port could drive the robot; write tls/ and give certificates")
+        raise ValueError(
+            f"{text}: anyone who reaches this port could drive the robot; write tls/ and give certificates"
+        )
     return text
 
 
 def _pattern(text: str) -> str:
     if not text.startswith("/") or "$" in text or "//" in text:
-        raise ValueError(f"{text!r} is no pattern of names; write /turtle1/cmd_vel, /turtle1/** or /*/pose")
+        raise ValueError(f"{text!r} is not a name pattern; write /turtle1/cmd_vel, /turtle1/** or /*/pose")
     return text
 
 
@@ -74,7 +76,7 @@ def read_profile(path: Path) -> NetProfile:
         if not file.is_file():
             problems.append(Problem(src.place(("tls", key)), f"there is no file {file}"))
     if profile.listen is None and not profile.connect:
-        problems.append(Problem(src.place(()), "neither `listen` nor `connect`: nothing would be reached"))
+        problems.append(Problem(src.place(()), "neither `listen` nor `connect`: nothing could be reached"))
     if problems:
         raise GraphFileError(problems)
     return profile.model_copy(update={"tls": Certificates(**files)})

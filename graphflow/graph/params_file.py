@@ -1,14 +1,14 @@
-"""ROS 2's parameter files: which parameters they have for which node, and how one is written.
+"""ROS 2's parameter files: which parameters they hold for which node, and how to write one.
 
     /turtle1/follower:            the node's full name, or /** for all nodes, /* for those of one level
       ros__parameters:
         gain: 2.0
         limits: {speed: 1.0}      the same as limits.speed
 
-A key without its leading slash means the same, and namespaces may be nested mappings. Where several sections fit a
+A key without its leading slash means the same, and namespaces may be nested mappings. Where several sections match a
 node, the later one counts.
 
-Source: rcl_yaml_param_parser. Unlike there, a section that fits no node is a mistake, not silence.
+Source: rcl_yaml_param_parser. Unlike there, a section that matches no node is reported as a mistake.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PARAMETERS = "ros__parameters"
 
 
 class Section(NamedTuple):
-    """What a file has for the nodes that a pattern fits."""
+    """What a file has for the nodes that a pattern matches."""
 
     pattern: str
     """A node's full name, perhaps with `*` for one part of it and `**` for any number."""
@@ -38,21 +38,21 @@ class Section(NamedTuple):
 
     @property
     def is_exact(self) -> bool:
-        """Whether it is for one node by name."""
+        """Whether the section is for one node by name."""
         return "*" not in self.pattern
 
     def fits(self, node: str) -> bool:
-        """Whether it is for the node of this full name."""
+        """Whether the section is for the node with this full name."""
         parts = [{"**": ".*", "*": "[^/]+"}.get(p, re.escape(p)) for p in self.pattern[1:].split("/")]
         return re.fullmatch("/" + "/".join(parts).replace(".*/", "(?:.*/)?"), node) is not None
 
 
 def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems: list[Problem]) -> dict[str, Setting]:
-    """Parameters with nested mappings flattened by dots.
+    """Parameters with nested mappings flattened to dotted names.
 
     Args:
         path: Where `params` is in `src`.
-        problems: Takes in what is wrong.
+        problems: Collects what is wrong.
     """
     found: dict[str, Setting] = {}
 
@@ -62,11 +62,11 @@ def flatten(src: Source, params: Mapping[str, Any], path: source.Path, problems:
             if isinstance(value, dict):
                 walk(f"{name}.", value, (*at, key))
             elif value is None:
-                text = f"parameter {name!r} has no value; an empty text is ''"
+                text = f"parameter {name!r} has no value; an empty string is ''"
                 problems.append(Problem(src.key_place((*at, key)), text))
             elif name in found:
                 first = found[name].place.line
-                problems.append(Problem(place, f"parameter {name!r} is given twice, first in line {first}; remove one"))
+                problems.append(Problem(place, f"parameter {name!r} is given twice, first on line {first}; remove one"))
             else:
                 found[name] = Setting(value, place)
 
@@ -81,7 +81,7 @@ def read(path: Path, name: str) -> list[Section]:
         name: The file as messages show it.
 
     Raises:
-        GraphFileError: It cannot be read, or is no parameter file; every mistake with its place.
+        GraphFileError: The file cannot be read, or is not a parameter file; every mistake with its place.
     """
     src = source.read_file(path, name)
     problems: list[Problem] = []
@@ -122,7 +122,7 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
 
 
 def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
-    """What the sections have for the node of this full name."""
+    """What the sections have for the node with this full name."""
     found: dict[str, Setting] = {}
     for section in sections:
         if section.fits(node):
@@ -131,7 +131,7 @@ def params_for(sections: Sequence[Section], node: str) -> dict[str, Setting]:
 
 
 def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:
-    """The sections that fit none of the nodes, as problems that name the nearest."""
+    """The sections that match none of the nodes, as problems that name the nearest."""
     return [
         Problem(s.place, f"there is no node {s.pattern}{did_you_mean(s.pattern, nodes)}")
         for s in sections
@@ -139,13 +139,13 @@ def strays(sections: Sequence[Section], nodes: Sequence[str]) -> list[Problem]:
     ]
 
 
-# Words that ROS 2's parser, or YAML 1.1, would not take for text.
+# Words that ROS 2's parser or YAML 1.1 would not read as text.
 _NOT_TEXT = re.compile(r"(y|yes|n|no|on|off|true|false|null|nan|inf|infinity)\Z", re.IGNORECASE)
 _PLAIN = re.compile(r"[A-Za-z_/][\w./-]*( [\w./-]+)*\Z")
 
 
 def write(node: str, values: Mapping[str, Any]) -> str:
-    """A node's parameters as a file that reads back, here and in ROS 2, as the same values of the same types."""
+    """A node's parameters as a file that both this reader and ROS 2's read back as the same values and types."""
     tree: dict[str, Any] = {}
     for name in sorted(values):
         *above, last = name.split(".")

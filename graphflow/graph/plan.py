@@ -18,7 +18,7 @@ class Setting:
     value: Any
     place: Place
     is_optional: bool = False
-    """Whether nodes without such a parameter leave it out: it was written for many nodes at once."""
+    """Whether nodes without such a parameter ignore it, since it was written for many nodes at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class PlannedGroup:
-    """A group of a node, and where each handler was put into it."""
+    """A group of a node, and where each handler was put in it."""
 
     change: GroupChange
     place: Place
@@ -65,12 +65,12 @@ class PlannedNode:
     params: dict[str, Setting] = field(default_factory=dict)
     remaps: tuple[Rule, ...] = ()
     process: str = ""
-    """Nodes with the same word share a process; empty: a process of its own."""
+    """Nodes with the same word share a process; empty for a process of its own."""
     env: dict[str, str] = field(default_factory=dict)
     after: tuple[str, ...] = ()
     """Full names of nodes, or names of steps, that come first."""
     concurrency: dict[str, PlannedGroup] = field(default_factory=dict)
-    """What differs from the groups that the class declares, by group name."""
+    """What differs from the groups the class declares, by group name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,10 +105,10 @@ class Plan:
     domain: int | None = None
     deadlock: DeadlockPolicy = "raise"
     call_timeout: float | None = CALL_TIMEOUT
-    """Seconds that calls wait which do not say how long; None for ever."""
+    """Seconds that calls without a timeout of their own wait; None for ever."""
 
     def processes(self) -> dict[str, list[PlannedNode]]:
-        """Nodes by the process they share, in the order of the file; a process of one is called as its node."""
+        """Nodes by the process they share, in the order of the file; a process of one node has the node's name."""
         found: dict[str, list[PlannedNode]] = {}
         for node in self.nodes:
             found.setdefault(node.process or node.name, []).append(node)

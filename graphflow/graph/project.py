@@ -15,7 +15,7 @@ def project_root(path: Path) -> Path:
     """The folder that a graph file's classes are imported from.
 
     The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the file's own folder. The
-    graphs inside an installed graphflow have the nodes beside them as their project.
+    graphs inside an installed graphflow have the nodes next to them as their project.
     """
     start = path.resolve()
     if start.is_relative_to(INSTALLED_DEMOS):
@@ -27,7 +27,7 @@ def project_root(path: Path) -> Path:
 
 
 def add_interfaces(root: Path) -> None:
-    """Let the messages, services and actions in a project's `interfaces/` be found."""
+    """Make the messages, services and actions in a project's `interfaces/` available."""
     folder = root / "interfaces"
     if folder.is_dir():
         registry.add_root(folder)

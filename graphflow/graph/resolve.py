@@ -36,7 +36,7 @@ def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = 
 
 
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
-    """Resolve what `source.read` found. Arguments and errors as `load`."""
+    """Resolve what `source.read` found. Arguments and errors as for `load`."""
     problems = Problems()
     if not isinstance(src.data, dict):
         what = "the file is empty; " if src.data is None else ""
@@ -91,7 +91,7 @@ def _arguments(src: Source, given: Sequence[str], problems: Problems) -> dict[st
             values[name] = spec["default"]
         elif name not in values:
             values[name] = ""
-            # What is wrong with the declaration itself is told when it is validated.
+            # What is wrong with the declaration itself is reported when it is validated.
             if spec is None or (isinstance(spec, dict) and spec.keys() <= set(keys_of(Arg))):
                 problems.add(place, f"argument {name!r} has no default: give it as {name}:=VALUE")
         choices = spec.get("choices") if isinstance(spec, dict) else None
@@ -113,7 +113,7 @@ def _given(text: str, spec: Any) -> Any:
 
 
 def _substituted(src: Source, substitutions: Mapping[str, Substitutions], problems: Problems) -> Source:
-    """The same source with every substitution made, in keys too; places follow the values."""
+    """The same source with every substitution made, in keys too; places move with the values."""
     places, keys = {}, {}
 
     def one(value: Any, place: Place) -> Any:
@@ -132,9 +132,7 @@ def _substituted(src: Source, substitutions: Mapping[str, Substitutions], proble
             for key, item in value.items():
                 name = str(one(key, src.key_place((*old, key))))
                 if name in result:
-                    problems.add(
-                        src.key_place((*old, key)), f"the key {key!r} becomes {name!r}, which stands here already"
-                    )
+                    problems.add(src.key_place((*old, key)), f"the key {key!r} becomes {name!r}, which is already here")
                 result[name] = walk(item, (*old, key), (*new, name))
             return result
         if isinstance(value, list):
@@ -155,7 +153,7 @@ class _ParamsFiles:
     """The parameter files of a graph; each is read once.
 
     Args:
-        folders: Where relative paths begin, by the file that they are written in.
+        folders: The folder that relative paths start from, by the file they are written in.
     """
 
     def __init__(self, src: Source, folders: Mapping[str, Path], problems: Problems) -> None:
@@ -163,7 +161,7 @@ class _ParamsFiles:
         self._files: dict[Path, list[Section]] = {}
 
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
-        """What a node's files have for it, the later ones before the earlier."""
+        """What a node's files have for it, later files first."""
         found: dict[str, Setting] = {}
         names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
         for i, name in enumerate(names):
@@ -205,7 +203,7 @@ def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: Problem
         if name is None:
             continue
         if name in taken:
-            problems.add(place, f"there are two nodes {name}; the other is in line {taken[name].line}")
+            problems.add(place, f"there are two nodes {name}; the other is on line {taken[name].line}")
         taken[name] = place
         base: source.Path = ("nodes", key)
         nodes[key] = PlannedNode(
@@ -247,7 +245,7 @@ def _concurrency(
 
 
 def _node_name(src: Source, key: str, spec: NodeSpec, problems: Problems) -> str | None:
-    """The full name of a node; None when it has none."""
+    """The full name of a node; None when it has no legal one."""
     place = src.key_place(("nodes", key))
     try:
         namespace = check_namespace(spec.namespace)
@@ -257,7 +255,7 @@ def _node_name(src: Source, key: str, spec: NodeSpec, problems: Problems) -> str
     if key.startswith("/") and spec.namespace:
         problems.add(
             src.place(("nodes", key, "namespace")),
-            f"{key} is a full name, so its namespace would not count; call the node {split(key)[1]}, or remove this",
+            f"{key} is a full name, so a namespace would have no effect; name the node {split(key)[1]}, or remove this",
         )
     try:
         return check_full_name(join(namespace, key), "node name")
@@ -287,7 +285,7 @@ def _remaps(
         try:
             if match.startswith("__"):
                 raise InvalidName(
-                    f"{match!r} is no name to remap; a node's name is its key, its namespace stands under namespace:"
+                    f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
                 )
             expand(match, namespace, name)
             expand(replacement, namespace, name)
@@ -352,7 +350,7 @@ def _order(
 
     for step in steps:
         if step.name in nodes or step.name in (n.name for n in nodes.values()):
-            problems.add(step.place, f"a node is called {step.name!r} already; give the step another name")
+            problems.add(step.place, f"a node is already called {step.name!r}; give the step another name")
     ordered_nodes = [replace(n, after=resolved(n.after, ("nodes", key))) for key, n in nodes.items()]
     ordered_steps = [replace(s, after=resolved(s.after, ("steps", s.name))) for s in steps]
     items: list[PlannedNode | PlannedStep] = [*ordered_nodes, *ordered_steps]
@@ -365,7 +363,7 @@ def _order(
 
 
 def _process_cycle(items: list[PlannedNode | PlannedStep], places: dict[str, Place]) -> list[str]:
-    """A ring among processes: each is started as a whole, so all its nodes wait for what one of them waits for."""
+    """A cycle among processes: each is started as a whole, so all its nodes wait for what any of them waits for."""
     whole = {i.name: f"process {i.process}" for i in items if isinstance(i, PlannedNode) and i.process}
     edges: dict[str, set[str]] = {}
     for item in items:
@@ -376,7 +374,7 @@ def _process_cycle(items: list[PlannedNode | PlannedStep], places: dict[str, Pla
 
 
 def find_cycle(edges: Mapping[str, Iterable[str]]) -> list[str]:
-    """Names that wait for one another in a ring, each after the next; empty when there is no ring."""
+    """Names that wait for one another in a cycle, each after the next; empty when there is no cycle."""
     done: set[str] = set()
     for start in edges:
         path: list[str] = []

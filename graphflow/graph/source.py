@@ -37,7 +37,7 @@ _SPECIAL: dict[str, Any] = {
 
 
 class Source(NamedTuple):
-    """A file's values, and where each was written."""
+    """A file's values and where each was written."""
 
     data: Any
     places: dict[Path, Place]
@@ -61,10 +61,10 @@ class Source(NamedTuple):
 
 
 def scalar(text: str) -> Any:
-    """An unquoted YAML scalar as Python value, by YAML 1.2's core schema.
+    """An unquoted YAML scalar as a Python value, by YAML 1.2's core schema.
 
     Raises:
-        ValueError: A number too long to be one.
+        ValueError: A number with too many digits.
     """
     if text in _SPECIAL:
         return _SPECIAL[text]
@@ -87,7 +87,7 @@ def read_file(path: pathlib.Path, name: str) -> Source:
         name: The file as messages show it.
 
     Raises:
-        GraphFileError: As `read`; also when there is no such file, or it is no text.
+        GraphFileError: As for `read`; also when there is no such file, or it is not text.
     """
     try:
         data = path.read_bytes()
@@ -97,7 +97,7 @@ def read_file(path: pathlib.Path, name: str) -> Source:
         return read(data.decode("utf-8-sig"), name)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise _error(Place(name, line), "is not UTF-8 text; save the file with the encoding UTF-8") from None
+        raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
 def read(text: str, file: str) -> Source:
@@ -107,7 +107,7 @@ def read(text: str, file: str) -> Source:
         file: The name to give in messages.
 
     Raises:
-        GraphFileError: It is not YAML, or uses what is refused here; the first such place.
+        GraphFileError: `text` is not YAML, or uses what is refused here; the first such place.
     """
     if len(text.encode(errors="replace")) > MAX_BYTES:
         raise _error(Place(file), f"the file is larger than {MAX_BYTES:,} bytes")
@@ -115,13 +115,13 @@ def read(text: str, file: str) -> Source:
     if unprintable:
         before = text[: unprintable.start()]
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
-        raise _error(place, f"the character U+{ord(unprintable[0]):04X} may not stand in a YAML file; delete it")
+        raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
         return _build(text, file)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
         lines = text.splitlines()
-        if mark and mark.line >= len(lines):  # the end of the text: point behind its last character
+        if mark and mark.line >= len(lines):  # the end of the text: point after its last character
             place = Place(file, len(lines), len(lines[-1]) + 1) if lines else Place(file, 1, 1)
         else:
             place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
@@ -131,7 +131,7 @@ def read(text: str, file: str) -> Source:
 
 
 def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
-    """What to do about the parser's complaint, for the mistakes people make."""
+    """What to do about the parser's complaint, for common mistakes."""
     mark: Any = error.problem_mark
     start: Any = error.context_mark
     problem, context = str(error.problem), str(error.context)
@@ -140,15 +140,15 @@ def _hint(text: str, error: yaml.MarkedYAMLError) -> str:
     if "\t" in line[: mark.column + 1 if mark else 0]:
         return " (indent with spaces, not tabs)"
     if "${" in line:
-        return " (a substitution is written with round brackets, as in $(var x))"
+        return " (a substitution is written with parentheses, as in $(var x))"
     if "mapping values are not allowed" in problem:
-        return " (quote a text that has ': ' in it; below a key indent with more spaces)"
+        return " (quote a text that has ': ' in it; indent more below a key)"
     if "cannot start any token" in problem and line:
         return f" (quote a text that begins with {line[mark.column]})"
     where = f"line {start.line + 1}, column {start.column + 1}" if start else ""
     bracket = lines[start.line][start.column : start.column + 1] if start and start.line < len(lines) else ""
     if bracket in ("{", "["):
-        return f" (the {bracket} in {where} is not closed, or a text behind it needs quotes)"
+        return f" (the {bracket} in {where} is not closed, or a text after it needs quotes)"
     if "quoted scalar" in context and "unexpected end" in problem:
         return f" (the quote in {where} is not closed)"
     if "expected key" in problem:
@@ -212,7 +212,7 @@ def _build(text: str, file: str) -> Source:
                 container, above = stack[-1]
                 if key in container:
                     first = keys[(*above, key)]
-                    raise _error(place, f"the key {key!r} stands here twice, first in line {first.line}; remove one")
+                    raise _error(place, f"the key {key!r} is here twice, first on line {first.line}; remove one")
                 keys[(*above, key)] = place
                 pending[-1] = key
                 continue
@@ -236,24 +236,24 @@ def _key(event: Any, place: Place) -> str:
     if not isinstance(event, yaml.ScalarEvent):
         raise _error(place, "a key must be a word, not a list or mapping")
     if not event.style and not isinstance(_scalar_value(event, place), str):
-        raise _error(place, f"the key {event.value} is no text; write it in quotes: '{event.value}'")
+        raise _error(place, f"the key {event.value} is not text; write it in quotes: '{event.value}'")
     return str(event.value)
 
 
 def _scalar_value(event: Any, place: Place) -> Any:
-    if event.style or event.tag is not None:  # of the tags only ! and !!str come so far, and both say that it is text
+    if event.style or event.tag is not None:  # only the tags ! and !!str get this far, and both mean text
         return event.value
     try:
         return scalar(event.value)
     except ValueError:
-        raise _error(place, f"{event.value[:20]}... has too many digits for a number; put a text in quotes") from None
+        raise _error(place, f"{event.value[:20]}... has too many digits for a number; put text in quotes") from None
 
 
 def parse_value(text: str) -> Any:
     """The value of a YAML text from the command line: `200`, `true`, `{x: 1.0}`.
 
     Raises:
-        GraphflowError: It is not YAML; the text says where.
+        GraphflowError: `text` is not YAML; the message says where.
     """
     try:
         return read(text, "value").data

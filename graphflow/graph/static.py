@@ -1,15 +1,15 @@
-"""Deadlocks that the source tells of before anything runs: who awaits whose service while it holds what.
+"""Deadlocks that the source shows before anything runs: what awaits which service while it holds what.
 
 Followed are calls of declared clients, `await self.adder.call(...)`, and goals of declared action clients, in handlers
 and in the methods that they call. Two ways into a deadlock are looked for:
 
-1. One chain of calls comes back to a group whose slots it holds itself. That is CERTAIN if every call on the way is
+1. One chain of calls returns to a group whose slots it holds itself. That is CERTAIN if every call on the way is
    made whatever happens, else it holds IF THIS BRANCH RUNS.
-2. Chains that run at the same time wait for each other's groups: a ring of groups of which each is held while the next
+2. Chains that run at the same time wait for each other's groups: a ring of groups, each held while the next
    is waited for. That is POSSIBLE; it takes the right moment.
 
-What cannot be followed (a client that is made at run time, a name that nobody offers) is listed, never left out in
-silence.
+What cannot be followed (a client that is made at run time, a name that no node offers) is listed, never silently
+dropped.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, I
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
-"""Calls in a chain that are followed."""
+"""Longest chain of calls that is followed."""
 _BRANCHES = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.Try, ast.IfExp, ast.Match, ast.BoolOp, ast.ExceptHandler)
 
 
@@ -67,7 +67,7 @@ class _Call:
     place: Place
     is_certain: bool
     is_released: bool
-    """Whether the handler has let go of its slot."""
+    """Whether the handler has released its slot."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class _Actor:
 
 
 def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
-    """What the source of a plan's classes tells; each way into a deadlock once."""
+    """What the source of a plan's classes shows; each way into a deadlock once."""
     world = _World()
     for node in plan.nodes:
         interface = interfaces[node.class_path]
@@ -98,12 +98,12 @@ def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
 
 
 def warnings(ways: list[Finding], file: str) -> list[str]:
-    """What is said of them when the graph is started: what is certain, and that there is more."""
+    """What is reported when the graph is started: what is certain, and that there is more."""
     certain = [str(way) for way in ways if way.grade == "CERTAIN"]
     more = sum(way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS") for way in ways)
     if not more:
         return certain
-    what = "1 deadlock that may happen is" if more == 1 else f"{more} deadlocks that may happen are"
+    what = "1 possible deadlock is" if more == 1 else f"{more} possible deadlocks are"
     return [*certain, f"{what} explained by: graphflow check {file}"]
 
 
@@ -133,7 +133,7 @@ class _World:
                     self._offer(names.resolve(endpoint.name, "service"), actor)
 
     def _offer(self, name: str, actor: _Actor) -> None:
-        """Note a server; of several nobody knows which will answer."""
+        """Note a server; of several, which will answer is not known."""
         self._servers[name] = actor if self._servers.get(name, actor) == actor else None
 
     def unresolved(self) -> list[Finding]:
@@ -146,7 +146,7 @@ class _World:
         return [*self._unresolved, *missing]
 
     def chains(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
-        """Chains of calls that come back to a group which they fill themselves."""
+        """Chains of calls that return to a group that they fill themselves."""
         seen: set[tuple[_Slot, Place]] = set()
         for actor in self._calls:
             for finding, slot, last in self._follow(actor, [], Counter([actor.slot])):
@@ -167,7 +167,7 @@ class _World:
                 grade: Grade = "CERTAIN" if all(c.is_certain for c in way) else "IF THIS BRANCH RUNS"
                 text = (
                     f"{actor} awaits {call.name}, whose handler {server.handler} needs {slot}, "
-                    f"and that is taken by the chain of calls itself: {self._told(way)}"
+                    f"which the chain of calls itself holds: {self._told(way)}"
                 )
                 yield Finding(grade, call.place, f"{text}. {_remedy(server, actor)}"), slot, call.place
             else:
@@ -180,7 +180,7 @@ class _World:
         return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in way)
 
     def rings(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
-        """Groups of which each is held while the next is waited for."""
+        """Groups that are each held while the next is waited for."""
         edges: dict[_Slot, dict[_Slot, tuple[_Actor, _Call, _Actor]]] = {}
         for actor, calls in self._calls.items():
             for call in calls:
@@ -228,13 +228,13 @@ def _remedy(server: _Actor, actor: _Actor) -> str:
         deeper = f"{{concurrency: {{{server.slot.name}: {{limit: N}}}}}}"
         return f"Allow as many runs as the recursion is deep: {server.node}: {deeper}"
     if server.slot.is_own:
-        return f"Let several runs of {server.handler} be under way: give it a group with limit: none"
+        return f"Let several runs of {server.handler} overlap: give it a group with limit: none"
     own = f"{server.handler}_group"
     return f"Give {server.handler} a group of its own: {server.node}: {{concurrency: {{{own}: [{server.handler}]}}}}"
 
 
 def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slot:
-    """Whose slot a handler's runs take: as the graph file says, else as the class does."""
+    """The group whose slot a handler's runs take: as the graph file says, else as the class does."""
     name = handler.group
     for group, planned in node.concurrency.items():
         if handler.name in planned.change.handlers:
@@ -249,7 +249,7 @@ def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slo
 
 
 class _Source:
-    """The methods of a class, read and not run."""
+    """The methods of a class, read but not run."""
 
     def __init__(self, interface: Interface) -> None:
         files = dict.fromkeys([interface.place.file, *(h.place.file for h in interface.handlers)])
@@ -298,11 +298,11 @@ class _Source:
 
 
 def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
-    """A function's nodes, and whether they are reached whenever it runs; not what stands in functions inside it."""
+    """A function's nodes, and whether they are reached whenever it runs; without the functions inside it."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             continue
-        # A task that is made and not awaited is no wait of the handler's.
+        # The handler does not wait for a task that it makes and does not await.
         if isinstance(child, ast.Call) and _word(child.func) in ("create_task", "ensure_future", "spawn"):
             continue
         reached = always and not isinstance(child, _BRANCHES)
@@ -317,7 +317,7 @@ def _first_way_out(function: ast.AST) -> int | None:
 
 
 def _released(function: ast.AST) -> set[ast.AST]:
-    """What stands inside of `async with self.group.released()`."""
+    """What is inside `async with self.group.released()`."""
     blocks = [
         node
         for node in ast.walk(function)

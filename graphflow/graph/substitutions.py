@@ -1,6 +1,6 @@
-"""ROS's substitutions in texts: `$(var x)`, `$(env X default)`, `$(dirname)`, `$(find-pkg-share p)`, nested at will.
+"""ROS's substitutions in texts: `$(var x)`, `$(env X default)`, `$(dirname)`, `$(find-pkg-share p)`, nested freely.
 
-`"$(var x)"` as a whole keeps the type of x; inside a longer text it becomes text.
+A value that is only `"$(var x)"` keeps the type of x; inside a longer text it becomes text.
 
 Source: launch frontends, "Substitutions".
 """
@@ -37,13 +37,13 @@ class Substitutions:
         self._folder = folder
         self._env = os.environ if env is None else env
         self.used: set[str] = set()
-        """Arguments that were asked for."""
+        """Arguments that were used."""
 
     def apply(self, value: Any) -> Any:
         """The value with every substitution in it made; a text that is one substitution takes its type.
 
         Raises:
-            SubstitutionError: One cannot be made.
+            SubstitutionError: A substitution cannot be made.
         """
         if not isinstance(value, str) or "$(" not in value:
             return value
@@ -110,11 +110,11 @@ class Substitutions:
             raise SubstitutionError("write $(find-pkg-share PACKAGE)")
         try:
             spec = util.find_spec(words[0]) if words[0].isidentifier() else None
-        except ValueError:  # a module that was not imported in the usual way, such as __main__
+        except ValueError:  # a module that was not imported the usual way, such as __main__
             spec = None
         folders = list(spec.submodule_search_locations or []) if spec else []
         if not folders:
-            raise SubstitutionError(f"$(find-pkg-share {words[0]}): there is no installed package of that name")
+            raise SubstitutionError(f"$(find-pkg-share {words[0]}): no package of that name is installed")
         return str(Path(folders[0]))
 
 

@@ -104,7 +104,7 @@ def test_what_fits_is_no_problem(line: str) -> None:
         ("remap: {gaol: /x}", "4:13: Chaser has no topic or service 'gaol'; did you mean 'goal'?"),
         ("remap: {/goal: /x}", "4:13: Chaser has no topic or service '/goal'; did you mean 'goal'?"),
         ("concurrency: {m: [contrl]}", "4:23: Chaser has no handler 'contrl'; did you mean 'control'?"),
-        ("concurrency: {m: [watch]}", "4:23: watch is a task, which runs beside everything and is in no group"),
+        ("concurrency: {m: [watch]}", "4:23: watch is a task, which runs alongside everything and is in no group"),
         (
             "concurrency: {m: {handlers: [control], thread: true}}",
             "4:19: thread: true is for `def` handlers, and control of 'm' run on the loop",
@@ -199,14 +199,14 @@ def test_steps_that_can_be(step: str) -> None:
             "{call: /htch}",
             [
                 "5:13: no node of this graph offers the service /htch; did you mean '/hatch'?"
-                " (for one from outside add type: package/srv/Name)"
+                " (for one outside the graph add type: package/srv/Name)"
             ],
         ),
         (
             "{call: /spawn}",
             [
                 "5:13: no node of this graph offers the service /spawn; there is /c/stop, /hatch"
-                " (for one from outside add type: package/srv/Name)"
+                " (for one outside the graph add type: package/srv/Name)"
             ],
         ),
         (

@@ -97,7 +97,7 @@ nodes:
             r"over.yaml:2:16: /a: expected a mapping of what differs, got 3",
         ),
         ("include: sub/base.yaml\noverride: {/a: {parms: {}}}\n", r"over.yaml:2:17: unknown key 'parms'; did you mean"),
-        ("include: sub/base.yaml\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:2:9: /a is in the included file already"),
+        ("include: sub/base.yaml\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:2:9: /a is already in the included file"),
         ("include: [sub/base.yaml]\nnodes: {}\n", r"include: expected text"),
         ("override: {}\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:1:1: override: goes with include:"),
         (

@@ -51,7 +51,7 @@ def test_class_paths(path: str) -> None:
 def test_wrong_class_paths(path: str) -> None:
     """Anything else shows how to write one."""
     with pytest.raises(
-        ValidationError, match=r"is no class; write package\.module:Class, for example nodes\.talker:Talker"
+        ValidationError, match=r"is not a class; write package\.module:Class, for example nodes\.talker:Talker"
     ):
         NodeSpec.model_validate({"class": path})
 
@@ -65,7 +65,7 @@ def test_service_types(name: str) -> None:
 @pytest.mark.parametrize("name", ["Spawn", "turtlesim/msg/Pose", "turtlesim.srv.Spawn", "a/srv/B\n", "A/srv/B", "a/b/"])
 def test_wrong_service_types(name: str) -> None:
     """Anything else shows how to write one."""
-    with pytest.raises(ValidationError, match="is no service type; write package/srv/Name"):
+    with pytest.raises(ValidationError, match="is not a service type; write package/srv/Name"):
         StepSpec.model_validate({"call": "/x", "type": name})
 
 
@@ -78,7 +78,7 @@ def test_graph_names(name: str) -> None:
 @pytest.mark.parametrize("name", ["", "../../etc", "a/b", "/a", ".hidden", "..", "a b", "a\n"])
 def test_graph_names_stay_in_their_folder(name: str) -> None:
     """No name leads out of the folder of running graphs."""
-    with pytest.raises(ValidationError, match=r"is no name for a graph; use letters, digits, _, - and \."):
+    with pytest.raises(ValidationError, match=r"is not a name for a graph; use letters, digits, _, - and \."):
         GraphFile.model_validate({"name": name, "nodes": {}})
 
 

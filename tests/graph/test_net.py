@@ -44,11 +44,11 @@ def test_every_mistake_is_told_with_its_place(folder: Path) -> None:
         "listen: tcp/0.0.0.0:7448\nalow: []\ntls: {ca: ca.pem, certificate: own.pem, kee: own.key}\nallow: [turtle1]\n"
     )
     assert sorted(problems(folder, text)) == [
-        "1:9: tcp/0.0.0.0:7448: whoever reaches this port could drive the robot; write tls/ and give certificates",
+        "1:9: tcp/0.0.0.0:7448: anyone who reaches this port could drive the robot; write tls/ and give certificates",
         "2:1: unknown key 'alow'; did you mean 'allow'?",
         "3:41: unknown key 'kee'; did you mean 'key'?",
         "3:6: the key 'key' is missing",
-        "4:9: 'turtle1' is no pattern of names; write /turtle1/cmd_vel, /turtle1/** or /*/pose",
+        "4:9: 'turtle1' is not a name pattern; write /turtle1/cmd_vel, /turtle1/** or /*/pose",
     ]
 
 
@@ -56,7 +56,7 @@ def test_every_mistake_is_told_with_its_place(folder: Path) -> None:
     ("text", "told"),
     [
         ("listen: tls/0.0.0.0:7448\n", "1:1: the key 'tls' is missing"),
-        (TLS, "1:1: neither `listen` nor `connect`: nothing would be reached"),
+        (TLS, "1:1: neither `listen` nor `connect`: nothing could be reached"),
         ("listen: tls/0.0.0.0:7448\n" + TLS.replace("own.key", "her.key"), "2:46: there is no file "),
         ("listen: 7\n" + TLS, "1:9: 7: input should be a valid string"),
         ("connect: [tls/robot:7448]\nallow: []\n" + TLS, "2:8: []: list should have at least 1 item"),

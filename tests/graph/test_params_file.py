@@ -94,10 +94,10 @@ def test_the_later_section_counts(tmp_path: Path) -> None:
         ("a: 1", "p.yaml:1:1: 'a': put parameters below NODE and ros__parameters"),
         ("a:\n  rate: 1", "p.yaml:2:3: 'rate': put parameters below NODE and ros__parameters"),
         ("a: {ros__parameters: 3}", "p.yaml:1:5: ros__parameters is a mapping, for example {rate: 2.0}"),
-        ("a: {ros__parameters: {x: }}", "p.yaml:1:23: parameter 'x' has no value; an empty text is ''"),
+        ("a: {ros__parameters: {x: }}", "p.yaml:1:23: parameter 'x' has no value; an empty string is ''"),
         (
             "a:\n  ros__parameters:\n    x.y: 1\n    x: {y: 2}",
-            "p.yaml:4:12: parameter 'x.y' is given twice, first in line 3; remove one",
+            "p.yaml:4:12: parameter 'x.y' is given twice, first on line 3; remove one",
         ),
         ("a: [", "p.yaml:1:5: not valid YAML"),
     ],

@@ -202,17 +202,17 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ("nodes:\n  a: {clas: x:Y}\n", "2:7: unknown key 'clas'; did you mean 'class'?"),
         ("nodes:\n  a: {class:x:Y}\n", "2:7: unknown key 'class:x:Y'; write a space after 'class:'"),
         ("nodes:\n  a:{class: x:Y}\n", "2:13: the name 'a:{class' has a colon in it; write a space after the colon"),
-        ("nodes:\n  a: {class: x.Y}\n", "2:14: 'x.Y' is no class; write package.module:Class, for example"),
+        ("nodes:\n  a: {class: x.Y}\n", "2:14: 'x.Y' is not a class; write package.module:Class, for example"),
         ("nodes:\n  a: {class: 3}\n", "2:14: nodes.a.class: expected text, got 3"),
         ("nodes:\n  a: {class: x:Y, parms: {}}\n", "2:19: unknown key 'parms'; did you mean 'params'?"),
         (
             "nodes:\n  a: {class: x:Y, params: [b]}\n",
             "2:27: nodes.a.params: expected a mapping, got ['b'], for example",
         ),
-        ("nodes:\n  a: {class: x:Y, params: {b: }}\n", "2:28: parameter 'b' has no value; an empty text is ''"),
+        ("nodes:\n  a: {class: x:Y, params: {b: }}\n", "2:28: parameter 'b' has no value; an empty string is ''"),
         (
             "nodes:\n  a:\n    class: x:Y\n    params:\n      b: {c: 1}\n      b.c: 2\n",
-            "6:12: parameter 'b.c' is given twice, first in line 5; remove one",
+            "6:12: parameter 'b.c' is given twice, first on line 5; remove one",
         ),
         (
             "nodes:\n  a: {class: x:Y, remap: ['b:=c']}\n",
@@ -226,7 +226,7 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ("nodes:\n  a: {class: x:Y, remap: {b: 3}}\n", "2:30: nodes.a.remap.b: expected text, got 3"),
         (
             "nodes:\n  a: {class: x:Y, remap: {__ns: /n}}\n",
-            "2:27: '__ns' is no name to remap; a node's name is its key, its namespace stands under namespace:",
+            "2:27: '__ns' cannot be remapped; a node's name is its key, its namespace goes under namespace:",
         ),
         ("nodes:\n  a: {class: x:Y, process: 3}\n", "2:28: nodes.a.process: expected text, got 3"),
         ("nodes:\n  a: {class: x:Y, env: {B: true}}\n", "2:28: nodes.a.env.B: expected text or a number, got true"),
@@ -247,26 +247,26 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         ("nodes:\n  a: {class: x:Y, namespace: 1n}\n", "2:30: '/1n' is not a namespace: '1n' may have only letters"),
         (
             "nodes:\n  /a: {class: x:Y, namespace: n}\n",
-            "2:31: /a is a full name, so its namespace would not count; call the node a, or remove this",
+            "2:31: /a is a full name, so a namespace would have no effect; name the node a, or remove this",
         ),
         (
             "nodes:\n  /n/a: {class: x:Y}\n  a: {class: x:Y, namespace: n}\n",
-            "3:3: there are two nodes /n/a; the other is in line 2",
+            "3:3: there are two nodes /n/a; the other is on line 2",
         ),
         (
             "nodes:\n  a: {class: x:Y}\n  /a: {class: x:Y}\n",
-            "3:3: there are two nodes /a; the other is in line 2",
+            "3:3: there are two nodes /a; the other is on line 2",
         ),
         (
             "nodes:\n  ada: {class: x:Y}\n  $(env USER): {class: x:Y}\n",
-            "3:3: the key '$(env USER)' becomes 'ada', which stands here already",
+            "3:3: the key '$(env USER)' becomes 'ada', which is already here",
         ),
         ("nodes:\n  $(env NOBODY): {class: x:Y}\n", "2:3: the environment variable NOBODY is not set; give a default"),
         (
             "nodes:\n  a:\n    class: x:Y\n    params: {b: [1, $(var c)]}\n",
             "4:21: there is no argument 'c'; declare it",
         ),
-        (HEAD + "name: a/b\n", "3:7: 'a/b' is no name for a graph; use letters, digits, _, - and ."),
+        (HEAD + "name: a/b\n", "3:7: 'a/b' is not a name for a graph; use letters, digits, _, - and ."),
         (HEAD + "domain: -1\n", "3:9: domain: expected 0 or more, got -1"),
         (HEAD + "domain: $(env USER)\n", "3:9: domain: expected a whole number, got 'ada'"),
         (HEAD + "args: [b]\n", "3:7: args: expected a mapping, got ['b'], for example args: {rate: {default: 1.0}}"),
@@ -278,13 +278,13 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         (HEAD + "steps: {s: /spawn}\n", "3:12: steps.s: expected a mapping, got '/spawn', for example {call: /spawn}"),
         (HEAD + "steps: [{call: /x}]\n", "3:8: steps: expected a mapping, got [{'call': '/x'}], for example steps: "),
         (HEAD + "steps: {s: {call: b c}}\n", "3:19: 'b c' is not a topic or service name: 'b c' may have only letters"),
-        (HEAD + "steps: {s: {call: /b, type: Spawn}}\n", "3:29: 'Spawn' is no service type; write package/srv/Name"),
+        (HEAD + "steps: {s: {call: /b, type: Spawn}}\n", "3:29: 'Spawn' is not a service type; write package/srv/Name"),
         (HEAD + "steps: {s: {call: /b, request: [1]}}\n", "3:32: steps.s.request: expected a mapping, got [1], for"),
         (HEAD + "steps: {s: {call: /b, timeout: 0}}\n", "3:32: steps.s.timeout: expected more than 0, got 0"),
         (HEAD + "steps: {s: {call: /b, timeout: soon}}\n", "3:32: steps.s.timeout: expected a number, got 'soon'"),
         (HEAD + "steps: {s: {call: /b, after: b}}\n", "3:30: after: there is no node or step 'b'; there is /a, s"),
-        (HEAD + "steps: {a: {call: /b}}\n", "3:9: a node is called 'a' already; give the step another name"),
-        (HEAD + "steps: {/a: {call: /b}}\n", "3:9: a node is called '/a' already; give the step another name"),
+        (HEAD + "steps: {a: {call: /b}}\n", "3:9: a node is already called 'a'; give the step another name"),
+        (HEAD + "steps: {/a: {call: /b}}\n", "3:9: a node is already called '/a'; give the step another name"),
     ],
 )
 def test_one_mistake_is_one_problem(text: str, problem: str) -> None:
@@ -335,7 +335,7 @@ steps:
         "3:3: argument 'b' is 1, but must be one of 2",
         "5:7: unknown key 'clas'; did you mean 'class'?",
         "5:30: there is no argument 'c'; there is b",
-        "7:12: 'x.Y' is no class; write package.module:Class, for example nodes.talker:Talker",
+        "7:12: 'x.Y' is not a class; write package.module:Class, for example nodes.talker:Talker",
         "8:12: nodes.b.remap: expected a mapping, got 3, for example remap: {goal: /turtle1/pose}",
         "10:13: steps.s.call: expected text, got 3",
         "10:25: steps.s.timeout: expected more than 0, got -1",
@@ -362,7 +362,7 @@ steps:
         "4:30: '/5' is not a namespace: '5' may have only letters, digits and _, and may not begin with a digit",
         "5:3: there are two nodes /c; the other is in line 3",
         "7:13: 'x y' is not a topic or service name: 'x y' may have only letters, digits and _, and may not begin with "
-        "digit",
+        "a digit",
         "8:28: after: there is no node or step 'ss'; did you mean 's'?",
     ]
 

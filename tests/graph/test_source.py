@@ -154,20 +154,20 @@ NESTED = 5000
         ("[" * NESTED + "]" * NESTED, f"1:{MAX_DEPTH + 1}: nested more than {MAX_DEPTH} deep"),
         ("a: " + "{a: " * NESTED + "}" * NESTED, f"1:{4 * MAX_DEPTH}: nested more than {MAX_DEPTH} deep"),
         ("\n".join("- 1" for _ in range(MAX_VALUES)), f"{MAX_VALUES}:3: the file has more than 50,000 values"),
-        ("a: 1\nb: 2\na: 3", "3:1: the key 'a' stands here twice, first in line 1; remove one"),
-        ("x: {a: 1, 'a': 2}", "1:11: the key 'a' stands here twice, first in line 1; remove one"),
-        ("1: a", "1:1: the key 1 is no text; write it in quotes: '1'"),
-        ("x:\n  true: a", "2:3: the key true is no text; write it in quotes: 'true'"),
-        ("~: a", "1:1: the key ~ is no text; write it in quotes: '~'"),
-        ("1.5: a", "1:1: the key 1.5 is no text; write it in quotes: '1.5'"),
+        ("a: 1\nb: 2\na: 3", "3:1: the key 'a' is here twice, first on line 1; remove one"),
+        ("x: {a: 1, 'a': 2}", "1:11: the key 'a' is here twice, first on line 1; remove one"),
+        ("1: a", "1:1: the key 1 is not text; write it in quotes: '1'"),
+        ("x:\n  true: a", "2:3: the key true is not text; write it in quotes: 'true'"),
+        ("~: a", "1:1: the key ~ is not text; write it in quotes: '~'"),
+        ("1.5: a", "1:1: the key 1.5 is not text; write it in quotes: '1.5'"),
         ("? [a]\n: 1", "1:3: a key must be a word, not a list or mapping"),
         ("{a: 1}: 1", "1:1: a key must be a word, not a list or mapping"),
-        (f"a: {'9' * 5000}", f"1:4: {'9' * 20}... has too many digits for a number; put a text in quotes"),
-        (f"{'9' * 5000}: a", f"1:1: {'9' * 20}... has too many digits for a number; put a text in quotes"),
+        (f"a: {'9' * 5000}", f"1:4: {'9' * 20}... has too many digits for a number; put text in quotes"),
+        (f"{'9' * 5000}: a", f"1:1: {'9' * 20}... has too many digits for a number; put text in quotes"),
         ("a: 1\n---\nb: 2", "2:1: one document per file: remove the line '---'"),
-        ("a: 1\nb: x\0y", "2:5: the character U+0000 may not stand in a YAML file; delete it"),
-        ("\x1b[0m", "1:1: the character U+001B may not stand in a YAML file; delete it"),
-        ("a: \ud800", "1:4: the character U+D800 may not stand in a YAML file; delete it"),
+        ("a: 1\nb: x\0y", "2:5: the character U+0000 is not allowed in a YAML file; delete it"),
+        ("\x1b[0m", "1:1: the character U+001B is not allowed in a YAML file; delete it"),
+        ("a: \ud800", "1:4: the character U+D800 is not allowed in a YAML file; delete it"),
     ],
     ids=lambda text: repr(text[:30]),
 )
@@ -181,14 +181,14 @@ def test_what_is_unsafe_or_ambiguous_is_refused(text: str, problem: str) -> None
     [
         ("nodes:\n\t/a: 1", "2:1", "(indent with spaces, not tabs)"),
         ("a:\n  b: 1\n\tc: 2", "3:1", "(indent with spaces, not tabs)"),
-        ("a: {b: 1", "1:9", "(the { in line 1, column 4 is not closed, or a text behind it needs quotes)"),
-        ("a: [b, c\nd: 1", "2:2", "(the [ in line 1, column 4 is not closed, or a text behind it needs quotes)"),
-        ("x: 1\na: {b: c: d}", "2:9", "(the { in line 2, column 4 is not closed, or a text behind it needs quotes)"),
+        ("a: {b: 1", "1:9", "(the { in line 1, column 4 is not closed, or a text after it needs quotes)"),
+        ("a: [b, c\nd: 1", "2:2", "(the [ in line 1, column 4 is not closed, or a text after it needs quotes)"),
+        ("x: 1\na: {b: c: d}", "2:9", "(the { in line 2, column 4 is not closed, or a text after it needs quotes)"),
         ('a: "b', "1:6", "(the quote in line 1, column 4 is not closed)"),
-        ("a: b: c", "1:5", "(quote a text that has ': ' in it; below a key indent with more spaces)"),
+        ("a: b: c", "1:5", "(quote a text that has ': ' in it; indent more below a key)"),
         ("a: @b", "1:4", "(quote a text that begins with @)"),
         ("a: 50\nb: %", "2:4", "(quote a text that begins with %)"),
-        ("a: {b: ${var x}}", "1:9", "(a substitution is written with round brackets, as in $(var x))"),
+        ("a: {b: ${var x}}", "1:9", "(a substitution is written with parentheses, as in $(var x))"),
         ("a:\n    b: 1\n  c: 2", "3:3", "(indent the keys of one mapping with the same number of spaces)"),
     ],
 )
@@ -233,7 +233,7 @@ def test_files_are_utf8_text(tmp_path: Path) -> None:
         file.write_bytes(data)
         with pytest.raises(GraphFileError) as caught:
             read_file(file, "f.yaml")
-        assert str(caught.value) == f"f.yaml:{line}: is not UTF-8 text; save the file with the encoding UTF-8"
+        assert str(caught.value) == f"f.yaml:{line}: is not UTF-8 text; save the file as UTF-8"
     with pytest.raises(GraphFileError, match=r"none\.yaml: cannot be read: No such file"):
         read_file(tmp_path / "none.yaml", "none.yaml")
     with pytest.raises(GraphFileError, match="cannot be read: Is a directory"):

@@ -183,7 +183,7 @@ def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> N
     ("name", "note"),
     [
         ("self_call", "self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add"),
-        ("crossing", "note: 1 deadlock that may happen is explained by: graphflow check "),
+        ("crossing", "note: 1 possible deadlock is explained by: graphflow check "),
     ],
 )
 def test_what_the_source_tells_is_told_at_the_start(machine: Machine, name: str, note: str) -> None:
