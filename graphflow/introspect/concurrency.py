@@ -1,4 +1,4 @@
-"""Who holds what and who waits, in all processes of a domain, as `graphflow waits`, `groups` and `doctor` show it."""
+"""What holds what and what waits, in all processes of a domain, as `graphflow waits`, `groups`, `doctor` show it."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class ConcurrencyReport:
 
     graph: WaitGraph
     reports: list[str]
-    """Deadlocks there are now, explained."""
+    """Current deadlocks, explained."""
     nodes: dict[str, list[dict[str, Any]]]
     """Groups by node."""
     unreadable: int = 0
     processes: set[str] = field(default_factory=set)
-    """Sessions of those that have answered."""
+    """Sessions that have answered."""
     stalls: list[str] = field(default_factory=list)
-    """Groups that are kept for long while others wait, explained."""
+    """Groups that are held for long while others wait, explained."""
     blocked: list[tuple[str, float]] = field(default_factory=list)
     """Nodes whose event loop is blocked now, and for how many seconds at least."""
     late: list[tuple[str, int, float]] = field(default_factory=list)
@@ -47,7 +47,7 @@ class ConcurrencyReport:
 
 
 def read(replies: list[bytes]) -> ConcurrencyReport:
-    """Put the answers together; one that cannot be read is counted."""
+    """Combine the answers; one that cannot be read is counted."""
     pictures, found = [], ConcurrencyReport(WaitGraph(), [], {})
     for reply in replies:
         try:
@@ -69,7 +69,7 @@ def read(replies: list[bytes]) -> ConcurrencyReport:
 
 
 def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
-    """Processes with nodes that have not answered, and why that may be."""
+    """Processes with nodes that have not answered, with a possible reason."""
     found = []
     for zid, process in view.processes().items():
         nodes = sorted({e.node_name for e in view.cache if e.zid == zid} & set(view.cache.nodes(hidden=False)))
@@ -79,7 +79,7 @@ def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
 
 
 def stuck(waits: ConcurrencyReport) -> set[str]:
-    """Activities that seem to be in a deadlock. One picture only: who is asked to decide takes a second one."""
+    """Activities that seem deadlocked, by one snapshot only; a decision takes a second one."""
     dead = deadlocked(waits.graph)
     return {i for d in explained(waits.graph, dead) for i in (*d.ring, *d.victims)}
 
@@ -122,7 +122,7 @@ def queued(waits: ConcurrencyReport) -> list[dict[str, Any]]:
 
 
 def words(condition: Condition, graph: WaitGraph) -> str:
-    """A condition for people."""
+    """A condition in words."""
     match condition:
         case Call(id=call, name=name):
             server = next((a for a in graph.activities.values() if a.serves == call), None)

@@ -1,4 +1,4 @@
-"""The parameters of a node, read and set from outside through its services."""
+"""A node's parameters, read and set from outside through its services."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class RemoteParameters:
         node: Its full name.
         timeout: Seconds that each call may take.
 
-    All methods raise CallError when the node does not answer, or has no parameter services.
+    All methods raise CallError when the node does not answer or has no parameter services.
     """
 
     def __init__(self, view: View, node: str, timeout: float) -> None:
@@ -44,14 +44,14 @@ class RemoteParameters:
         found = list(self._call("get_parameters", "GetParameters", names=list(names)).values)
         if len(found) == len(names):
             return found
-        # A ROS 2 node answers with nothing at all when one name is unknown to it: ask one by one.
+        # A ROS 2 node returns nothing at all when it does not know one of the names: ask one by one.
         from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
         answers = [self._call("get_parameters", "GetParameters", names=[name]).values for name in names]
         return [answer[0] if len(answer) else ParameterValue() for answer in answers]
 
     def describe(self, names: Sequence[str]) -> dict[str, ParameterDescriptor]:
-        """The declarations of those that there are, by name."""
+        """The declarations of those that exist, by name."""
         if not names:
             return {}
         found = self._call("describe_parameters", "DescribeParameters", names=list(names)).descriptors
@@ -69,7 +69,7 @@ class RemoteParameters:
         """The declaration of one parameter.
 
         Raises:
-            ParameterError: There is none; the text names the nearest.
+            ParameterError: It does not exist; the text names the nearest.
         """
         described = self.describe([name])
         if name not in described:
@@ -77,5 +77,5 @@ class RemoteParameters:
         return described[name]
 
     def unknown(self, name: str) -> ParameterError:
-        """The error of asking for a parameter that is not there."""
+        """The error for a parameter that does not exist."""
         return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")

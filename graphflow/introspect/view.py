@@ -25,7 +25,7 @@ from graphflow.wire.liveliness import Kind, watch_key
 from graphflow.wire.process import ProcessToken
 
 GID = bytes(16)
-"""Commands are no entity of the graph, so they have no GID of their own."""
+"""Commands are not entities of the graph, so they have no GID of their own."""
 
 
 class View:
@@ -51,14 +51,14 @@ class View:
         self._client.close()
 
     def refresh(self) -> None:
-        """Look again."""
+        """Read the graph again."""
         self.cache = GraphCache(self._client.tokens(watch_key(self.domain)))
 
     def node(self, name: str) -> str:
         """The full name of the node that `name` means: full, or without the leading slash.
 
         Raises:
-            CallError: There is none; the text names the nearest.
+            CallError: There is no such node; the text names the nearest.
         """
         wanted = name if name.startswith("/") else f"/{name}"
         nodes = self.cache.nodes()
@@ -74,19 +74,19 @@ class View:
         """The type of a service that is offered.
 
         Raises:
-            ServiceUnavailable: Nobody offers it; the text names the nearest.
+            ServiceUnavailable: No node offers it; the text names the nearest.
         """
         servers = self.cache.endpoints(Kind.SERVICE, name)
         if servers:
             return servers[0].type
         offered = {e.name for e in self.cache.endpoints(Kind.SERVICE)}
-        raise ServiceUnavailable(f"nobody offers the service {name}{did_you_mean(name, offered)}")
+        raise ServiceUnavailable(f"no node offers the service {name}{did_you_mean(name, offered)}")
 
     def wait_for_service(self, name: str, timeout: float) -> None:
-        """Wait until somebody offers the service.
+        """Wait until a node offers the service.
 
         Raises:
-            ServiceUnavailable: Nobody did within `timeout` seconds.
+            ServiceUnavailable: No node did within `timeout` seconds.
         """
         deadline = time.monotonic() + timeout
         while not self.cache.endpoints(Kind.SERVICE, name):
@@ -105,7 +105,7 @@ class View:
             timeout: Seconds.
 
         Raises:
-            CallError: As `ServiceClient.call`.
+            CallError: As for `ServiceClient.call`.
         """
         from graphflow.msgs import registry
 
@@ -124,15 +124,15 @@ class View:
         return registry.codec(service.response.name).decode(reply.payload)
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
-        """What all processes of graphflow say on a key of its own."""
+        """What all graphflow processes answer on one of graphflow's keys."""
         return self._client.reports(key, timeout)
 
     def ask(self, key: str, request: bytes, timeout: float) -> Answer:
-        """Ask one process of graphflow on a key of its own.
+        """Ask one graphflow process on one of graphflow's keys.
 
         Raises:
-            TimeoutError: It did not answer in time.
-            ServerLost: It is gone.
+            TimeoutError: The process did not answer in time.
+            ServerLost: The process has gone.
         """
         answer = self._client.call(key, request, attachment.pack(1, 0, GID), timeout)
         if answer is None:
@@ -140,15 +140,15 @@ class View:
         return answer
 
     def owner(self, name: str) -> str:
-        """Whose the node `name` is: the process it lives in, as far as its tokens tell."""
+        """The owner of the node `name`: the process it lives in, as far as its tokens say."""
         zids = {e.zid for e in self.cache.owners(name)}
         for zid, token in self.processes().items():
             if zid in zids:
                 return f"{token}: {token.command}" if token.command else str(token)
-        return f"session {', '.join(sorted(zids))}, not of graphflow"
+        return f"session {', '.join(sorted(zids))}, not a graphflow process"
 
     def processes(self) -> dict[str, ProcessToken]:
-        """Processes of graphflow in the domain, by session."""
+        """The graphflow processes in the domain, by session."""
         tokens = map(process.parse, self._client.tokens(process.watch_key(self.domain)))
         return {token.zid: token for token in tokens if token is not None}
 
@@ -157,7 +157,7 @@ class View:
             if server.type != type_name:
                 return f"{name} is a {server.type}, not a {type_name}"
             if server.hash != hash_:
-                return f"{name}: the server's {type_name} has another definition than the one here"
+                return f"{name}: the server's {type_name} has a different definition from the one here"
         return f"{name}: the server went away before it answered"
 
 
@@ -168,12 +168,12 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
         hint: How to give a node another name.
 
     Raises:
-        SupervisorError: Some have; the text says whose they are.
+        SupervisorError: Some names are taken; the text says by which processes.
     """
     try:
         view = View(domain)
     except SupervisorError as error:
-        if error.exit_code == 3:  # nobody is there, so nothing is taken
+        if error.exit_code == 3:  # nothing is running, so nothing is taken
             return
         raise
     with view:
@@ -181,6 +181,6 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
         if taken:
             owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken)
             raise SupervisorError(
-                f"already in domain {domain}: {owners}. Stop what runs there, {hint}, or take another domain with "
+                f"already in domain {domain}: {owners}. Stop what runs there, {hint}, or choose another domain with "
                 "--domain N"
             )

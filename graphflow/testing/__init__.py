@@ -23,7 +23,7 @@ __all__ = ["Graph", "ManualClock", "Tap"]
 
 
 def __getattr__(name: str) -> object:
-    # When first used: pytest loads the plugin beside this in every run, and most runs have no graphs in them.
+    # Imported when first used: pytest loads the plugin next to this in every run, and most runs have no graphs in them.
     if name == "ManualClock":
         from graphflow.testing.clock import ManualClock
 

@@ -1,4 +1,4 @@
-"""A clock that a test turns by hand."""
+"""A clock that a test moves by hand."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ManualClock(Clock):
             when_ns, _, alarm = heapq.heappop(self._alarms)
             if alarm.callback is not None:
                 self._elapsed_ns = max(self._elapsed_ns, when_ns)
-                # By the loop and not from here: a handler is not to run inside the test's own task.
+                # By the loop and not from here: a handler must not run inside the test's own task.
                 asyncio.get_running_loop().call_soon(alarm.callback)
                 await settle()
         self._elapsed_ns = until
@@ -73,7 +73,7 @@ async def settle() -> None:
     try:
         for _ in range(_TURNS):
             await asyncio.sleep(0)
-            # Whoever else settles is always in the queue, and is not what this waits for.
+            # Other calls of `settle` are always in the queue, and are not what this one waits for.
             if len(ready) < _settling[loop]:
                 return
     finally:

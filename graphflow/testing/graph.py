@@ -22,7 +22,7 @@ M = TypeVar("M", bound=Message)
 
 
 class Tap(Generic[M]):
-    """What has been said on a topic since the tap was opened; a sequence of messages."""
+    """What has been published on a topic since the tap was opened; a sequence of messages."""
 
     def __init__(self) -> None:
         self.messages: list[M] = []
@@ -53,7 +53,7 @@ class Graph:
         self.network = Network()
         self.nodes: list[Node] = []
         self.deadlock: DeadlockPolicy = "raise"
-        """For nodes started from now on."""
+        """Used by nodes started from now on."""
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
         self._tester: Node | None = None
@@ -74,13 +74,13 @@ class Graph:
         await settle()
 
     def tap(self, type_: type[M], topic: str, qos: Qos | int = 1000) -> Tap[M]:
-        """Collect everything said on `topic` from now on."""
+        """Collect everything published on `topic` from now on."""
         tap: Tap[M] = Tap()
         self._test_node().create_subscription(type_, topic, tap.messages.append, qos)
         return tap
 
     def publisher(self, type_: type[M], topic: str, qos: Qos | int = 10) -> TopicPublisher[M]:
-        """A publisher for the test to speak with."""
+        """A publisher for the test to use."""
         return self._test_node().create_publisher(type_, topic, qos)
 
     async def call(
@@ -89,7 +89,7 @@ class Graph:
         """Call a service; the clock is not needed for it.
 
         Raises:
-            CallError: as `ServiceClient.call`.
+            CallError: As for `ServiceClient.call`.
         """
         client = self._test_node().create_client(type_, name)
         await settle()
@@ -105,11 +105,11 @@ class Graph:
         return self._test_node().create_action_client(type_, name)
 
     async def settle(self) -> None:
-        """Let everything happen that can happen without time passing."""
+        """Let everything happen that can without time passing."""
         await settle()
 
     async def close(self) -> None:
-        """Stop all nodes; raises the error of a node that failed and whose failure the test did not take."""
+        """Stop all nodes; raises the error of a failed node if the test did not catch it."""
         for node in reversed(self.nodes):
             await core_of(node).stop()
         for context in self._contexts:
@@ -123,7 +123,7 @@ class Graph:
             context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
             self._contexts.append(context)
             self._tester = Node(f"_test_{next(self._names)}")
-            # To start is a coroutine for the sake of what it may wait for; a bare node waits for nothing.
+            # Starting is a coroutine only for what it may wait for; a bare node waits for nothing.
             _run_now(core_of(self._tester).start(context))
             self.nodes.append(self._tester)
         return self._tester

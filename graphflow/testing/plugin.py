@@ -23,7 +23,7 @@ LIMIT = 60.0
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have a project's own `nodes` found before those that come with an editable graphflow."""
+    """Put a project's own `nodes` before those that come with an editable graphflow."""
     root = str(config.rootpath)
     if (config.rootpath / "nodes").is_dir() and root not in sys.path:
         sys.path.insert(0, root)

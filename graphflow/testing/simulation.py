@@ -1,4 +1,4 @@
-"""A whole graph in one process under virtual time, with a network that delays and loses as a seed says.
+"""A whole graph in one process under virtual time, with a network that delays and loses messages as a seed says.
 
     async def story(world: World) -> None:
         await world.start(Talker(), listener := Listener())
@@ -32,7 +32,7 @@ START_NS = 1_700_000_000_000_000_000
 
 
 _MOMENT = 1e-9
-"""Seconds between two things on one link: what is due at the very same time comes in any order."""
+"""Seconds between two things on one link: things due at the very same time arrive in any order."""
 
 
 class Standstill(RuntimeError):
@@ -40,7 +40,7 @@ class Standstill(RuntimeError):
 
 
 class _Selector(selectors.SelectSelector):
-    """Waits for nothing: the time that it was to wait has passed."""
+    """Waits for nothing: the time that it should wait has passed."""
 
     now = 0.0
 
@@ -82,9 +82,9 @@ class Seeded:
     """A carrier whose delays and losses come from a seed.
 
     Args:
-        delay: Seconds that something takes on its way, from, to.
+        delay: Seconds that something is on its way, from, to.
         loss: The share of publications that never arrive.
-        reorders: Whether what is on one link may overtake.
+        reorders: Whether things on one link may overtake each other.
     """
 
     def __init__(self, random: Random, delay: tuple[float, float], loss: float, *, reorders: bool = False) -> None:
@@ -122,7 +122,7 @@ class World:
             await core_of(node).start(context)
 
     async def kill(self, node: Node) -> None:
-        """End a node as `kill -9` does: from one moment to the next nothing more of it reaches anybody."""
+        """End a node as `kill -9` does: from now on nothing from it reaches any other."""
         session, context = self._sessions.pop(node)
         session.die()
         await core_of(node).stop()
@@ -146,8 +146,8 @@ def simulate(
     """Run a story to its end; returns what it returns.
 
     Args:
-        seed: Of every delay, loss and choice: `world.random` is made of it too.
-        delay, loss, reorders: Of the network, as `Seeded`.
+        seed: Seeds every delay, loss and choice, and `world.random` too.
+        delay, loss, reorders: The network's, as for `Seeded`.
 
     Raises:
         Standstill: Nothing will ever happen again.
