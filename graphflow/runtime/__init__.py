@@ -1,1 +1,1 @@
-"""What a node lives in: its endpoints, its clock, its parameters, and the scheduler that runs its handlers."""
+"""What nodes are made of: endpoints, clock, parameters, and the handlers' runs."""

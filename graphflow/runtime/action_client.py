@@ -1,4 +1,4 @@
-"""Actions at work, on the client's side: goals that are sent, followed, and cancelled when their block is left."""
+"""The client's side of actions: goals that are sent, followed, and cancelled when their block is left."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ from graphflow.times import to_ns
 CANCEL_TIMEOUT = 2.0
 """Seconds that leaving a goal's block waits for the goal's end."""
 LOST_GRACE = 1.0
-"""Seconds in which a server that was lost may be found to live on, and feedback may come after the result."""
+"""Seconds in which a lost server may prove to be alive, and feedback may come after the result."""
 RESULT_PATIENCE, RESULT_LONGEST = 10.0, 600.0
-"""Seconds until a result is asked for again: at first, and at most."""
+"""Seconds until a result is requested again: at first, and at most."""
 FEEDBACK_KEPT = 100
-"""Feedback messages that wait for a slow reader; the oldest go."""
+"""Feedback messages kept for a slow reader; the oldest go first."""
 
 
 class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
@@ -53,19 +53,19 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
         self.request = request
         self.goal_id = os.urandom(16)
         self.status = GoalStatus.UNKNOWN
-        """As far as it is known here; `LOST` when the server has gone."""
+        """The goal's status as known here; `LOST` when the server has gone."""
         self.latest: Feedback | None = None
         """The last feedback."""
         self.is_asked_again = False
         self.dropped = 0
-        """Feedback messages that nobody read in time."""
+        """Feedback messages that were not read in time."""
         loop = client.host.context.loop
         self.ended: Future[Result] = loop.create_future()
         self._client = client
         self._readers: list[tuple[deque[Feedback], list[Future[None]]]] = []
         """For each iteration of the feedback: what it has not read, and what it waits for."""
         self._unread: deque[Feedback] = deque(maxlen=FEEDBACK_KEPT)
-        """What came while nobody iterated."""
+        """Feedback that came before any iteration."""
         self.action = client.name
         self.began_ns = client.host.context.clock.monotonic_ns()
 
@@ -74,7 +74,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
 
     @property
     def done(self) -> bool:
-        """Whether it has ended."""
+        """Whether the goal has ended."""
         return self.status.is_terminal
 
     async def feedback(self) -> AsyncIterator[Feedback]:
@@ -100,13 +100,13 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
         """Wait for the result of a goal that succeeds.
 
         Args:
-            timeout: Seconds; None for as long as it takes.
+            timeout: Seconds; None to wait as long as it takes.
 
         Raises:
-            GoalAborted, GoalCanceled: It ended so; the error's `result` is what the server sent with it.
+            GoalAborted, GoalCanceled: The goal ended so; the error's `result` is what the server sent with it.
             GoalLost: The server has gone.
-            DeadlockError: It cannot end, because the server waits for the caller, and the graph's policy is `break`.
-            TimeoutError: It has not ended in time, and goes on.
+            DeadlockError: The goal cannot end: the server waits for the caller, and the graph's policy is `break`.
+            TimeoutError: The goal has not ended in time, and goes on.
         """
         if timeout is not None:
             async with self._client.host.clock.timeout(timeout):
@@ -115,7 +115,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
             return await ended
 
     async def cancel(self, *, timeout: float | None = CALL_TIMEOUT) -> bool:
-        """Ask the server to cancel it; whether it agrees. The goal ends a little later, or not as cancelled at all.
+        """Ask the server to cancel the goal; returns whether it agrees. The goal ends later, perhaps another way.
 
         Raises:
             CallError: The server did not answer.
@@ -123,7 +123,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
         return await self._client.cancel(self, timeout=timeout)
 
     def heard(self, feedback: Feedback) -> None:
-        """Feedback has come. Done by the client."""
+        """Feedback has come. Called by the client."""
         self.latest = feedback
         for queue in [queue for queue, _ in self._readers] or [self._unread]:
             self.dropped += len(queue) == FEEDBACK_KEPT
@@ -131,7 +131,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
         self._wake()
 
     def end(self, status: GoalStatus, result: Any, error: GoalError | None) -> None:
-        """It has ended. Done by the client."""
+        """The goal has ended. Called by the client."""
         if self.done:
             return
         self.status = status
@@ -140,7 +140,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
                 self.ended.set_result(result)
             else:
                 self.ended.set_exception(error)
-                self.ended.exception()  # whoever does not ask for the result is not told of it either
+                self.ended.exception()  # a caller that does not ask for the result does not get its error either
         self._wake()
 
     def _wake(self) -> None:
@@ -151,7 +151,7 @@ class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
 
 
 class GoalClient(Part, Generic[Goal, Result, Feedback]):
-    """A client of an action, at work."""
+    """A client of an action, as it runs."""
 
     def __init__(self, host: Host, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
         self.host, self.type, self.name = host, type_, name
@@ -183,7 +183,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             endpoint.open()
 
     def close(self) -> None:
-        """Withdraw it. Goals go on at their server; nobody here learns of their end."""
+        """Withdraw the client. Goals go on at their server; their end is not reported here."""
         for task in self._followers:
             task.cancel()
         for goal in list(self._goals.values()):
@@ -193,7 +193,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         self.host.forget(self)
 
     def server_is_ready(self) -> bool:
-        """Whether an action server of this name and type is in the graph, all five parts of it."""
+        """Whether an action server of this name and type is in the graph, with all five of its parts."""
         services = (self._send, self._cancel, self._get)
         return all(s.service_is_ready() for s in services) and bool(self._feedback.matched and self._status.matched)
 
@@ -201,10 +201,10 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         """Wait until there is a server.
 
         Args:
-            timeout: Seconds; None for as long as it takes.
+            timeout: Seconds; None to wait as long as it takes.
 
         Raises:
-            ServiceUnavailable: None came in time.
+            ServiceUnavailable: No server came in time.
         """
         if self.server_is_ready():
             return
@@ -223,7 +223,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         if offered:
             return f"action {self.name} is a {offered[0]}, not a {self.type.NAME}"
         near = did_you_mean(self.name, [name for name in actions if name != self.name])
-        return f"nobody offers the action {self.name} [{self.type.NAME}]{near}"
+        return f"no node offers the action {self.name} [{self.type.NAME}]{near}"
 
     @asynccontextmanager
     async def send(
@@ -241,7 +241,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             detach: Let the goal go on when the block is left.
 
         Raises:
-            GoalRejected: The server does not take it.
+            GoalRejected: The server does not accept the goal.
             CallError: The server did not answer, or there is none.
             EncodeError: The goal does not fit its type.
         """
@@ -255,11 +255,11 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
     async def send_goal(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
     ) -> ClientGoalHandle[Goal, Result, Feedback]:
-        """Send a goal that goes on whatever becomes of the caller. Arguments and errors as `send`."""
+        """Send a goal that goes on whatever becomes of the caller. Arguments and errors as for `send`."""
         if goal.__class__ is not self._goal_class:
             raise EncodeError(f"{self.name} takes {self._goal_class.__qualname__}, not {goal!r}")
         sent = ClientGoalHandle(self, goal)
-        self._goals[sent.goal_id] = sent  # before it is sent: what is told of it may come before the answer
+        self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         try:
             if not self.server_is_ready():
@@ -270,7 +270,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             del self._goals[sent.goal_id]
             if self._cancel.is_open:
                 withdrawing = self._in_background(self._withdraw(sent))
-                if isinstance(error, CancelledError):  # whoever is cancelled may end the node next
+                if isinstance(error, CancelledError):  # a cancelled caller may end the node next
                     await _seen_through(withdrawing)
             raise
         except BaseException:
@@ -278,7 +278,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             raise
         if not answer.accepted:
             del self._goals[sent.goal_id]
-            raise GoalRejected(f"{self.name} has rejected the goal")
+            raise GoalRejected(f"{self.name} rejected the goal")
         if sent.status is GoalStatus.UNKNOWN:
             sent.status = GoalStatus.ACCEPTED
         self._in_background(self._follow(sent))
@@ -287,17 +287,17 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
     async def cancel(
         self, goal: ClientGoalHandle[Goal, Result, Feedback], *, timeout: float | None = CALL_TIMEOUT
     ) -> bool:
-        """As `ClientGoalHandle.cancel`."""
+        """The same as `ClientGoalHandle.cancel`."""
         answer = await self._cancel.call(self._cancel_request(goal), timeout=timeout)
         granted = [bytes(info.goal_id.uuid) for info in answer.goals_canceling]
-        # rclpy's servers answer NONE with an empty list when they refuse.
+        # rclpy's servers answer ERROR_NONE with an empty list when they refuse.
         return answer.return_code == CancelCode.NONE and goal.goal_id in granted
 
     def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
         return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
 
     async def _leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        """Cancel a goal whose block is left, and wait a little for its end, also if the leaving itself is cancelled."""
+        """Cancel a goal whose block is left, and wait a little for its end, even if leaving is cancelled."""
         await _seen_through(self._in_background(self._cancel_and_wait(goal)))
 
     async def _cancel_and_wait(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
@@ -307,16 +307,16 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
                 if answer.return_code == CancelCode.REJECTED:
                     self.host.log.warning("%s: the server refuses to cancel %r, which goes on", self.name, goal)
                     return
-                with suppress(GoalError):  # its end is all that is waited for
+                with suppress(GoalError):  # only its end is waited for
                     await asyncio.shield(goal.ended)
         except TimeoutError:
             self.host.log.warning("%s: %r has not ended %g s after it was cancelled", self.name, goal, CANCEL_TIMEOUT)
         except (CallError, ClosedError) as error:
-            if not goal.status.is_terminal:  # its end was told, and its server has gone since
+            if not goal.status.is_terminal:  # its end was reported, and its server has gone since
                 self.host.log.warning("%s: %r could not be cancelled: %s", self.name, goal, error)
 
     async def _withdraw(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        with suppress(CallError, ClosedError):  # nobody waits for what becomes of it
+        with suppress(CallError, ClosedError):  # its outcome is not waited for
             await self._cancel.call(self._cancel_request(goal), timeout=CANCEL_TIMEOUT)
 
     async def _follow(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
@@ -331,14 +331,14 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             if isinstance(error, (ServerLost, ServiceUnavailable, ClosedError)):
                 lost = f"{self.name}: the server has gone, and with it the goal, {known}"
             else:
-                lost = f"{self.name}: the goal's result cannot be had, {known}: {error}"
+                lost = f"{self.name}: the goal's result is not available, {known}: {error}"
             goal.end(GoalStatus.LOST, None, GoalLost(lost))
         finally:
             clock = context.clock
             clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
 
     async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> tuple[Any, str]:
-        """The answer that tells a goal's end, however long that takes, and the reason that comes with it."""
+        """The response that reports a goal's end, however long that takes, and the reason that comes with it."""
         request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
         patience = RESULT_PATIENCE
         while True:
@@ -346,10 +346,10 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
                 return await self._get.call_noted(request, timeout=patience)
             except ServerBusy:
                 await self.host.context.clock.sleep(RESULT_PATIENCE)
-            except CallTimeout:  # it takes long, or the network has lost the request or the answer
+            except CallTimeout:  # it takes long, or the network has lost the request or the response
                 patience = min(2 * patience, RESULT_LONGEST)
             except ServerLost:
-                # The connection may have been lost and not the server, which then still knows the goal.
+                # Only the connection may have been lost; then the server still knows the goal.
                 await self._get.wait_ready(LOST_GRACE)
 
     def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
@@ -362,12 +362,12 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         if goal.done:
             return
         if status is GoalStatus.ABORTED:
-            error = GoalAborted(f"{self.name} has aborted the goal{f': {reason}' if reason else ''}", result)
+            error = GoalAborted(f"{self.name} aborted the goal{f': {reason}' if reason else ''}", result)
             if reason:
                 self.host.log.warning("%s: %r was aborted: %s", self.name, goal, reason)
         elif status is GoalStatus.CANCELED:
             error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
-        elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name knows nothing of it
+        elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name does not know it
             status, error = GoalStatus.LOST, GoalLost(f"{self.name} does not know the goal: its server was replaced")
         goal.end(status, result, error)
 
@@ -382,17 +382,17 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             if goal is None or goal.done:
                 continue
             if not GoalStatus(entry.status).is_terminal:
-                goal.status = max(goal.status, GoalStatus(entry.status))  # what was told before may come after
+                goal.status = max(goal.status, GoalStatus(entry.status))  # an earlier report may come later
             elif not goal.is_asked_again and self.host.is_running:
-                # The end comes with the result, which may have been lost.
+                # The end arrives with the result, which may have been lost.
                 goal.is_asked_again = True
                 self._in_background(self._ask_again(goal))
 
     async def _ask_again(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
-        """Ask for the result of a goal that has ended, if it does not come by itself."""
+        """Request the result of a goal that has ended, if it does not come by itself."""
         await self.host.clock.sleep(LOST_GRACE)
         if not goal.done:
-            with suppress(CallError, ClosedError):  # whoever follows the goal asks on
+            with suppress(CallError, ClosedError):  # the task that follows the goal keeps asking
                 request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
                 answer, reason = await self._get.call_noted(request)
                 self._end(goal, GoalStatus(answer.status), answer.result, reason)
@@ -405,7 +405,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
 
 
 async def _seen_through(task: asyncio.Task[None]) -> None:
-    """Wait for a task to its end, also if the waiting is cancelled meanwhile."""
+    """Wait for a task to end, even if the waiting is cancelled meanwhile."""
     cancelled: CancelledError | None = None
     while not task.done():
         try:

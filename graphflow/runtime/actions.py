@@ -1,13 +1,13 @@
-"""Actions at work, on the server's side: goals that are accepted, run under a group, cancelled and remembered.
+"""The server's side of actions: goals that are accepted, run under a group, cancelled and remembered.
 
 On the network an action is five ordinary entities: the services send_goal, cancel_goal and get_result and the topics
 feedback and status. The services are the control lane: they never wait for a group of the user's, so that a goal can
 be cancelled, and asked for, whatever its group is doing. Only the goal's body takes a slot.
 
-What becomes of a goal is decided by the table in `machines.goal`; `ActionServer` tells it what happens, and does what
+What becomes of a goal is decided by the table in `machines.goal`; `ActionServer` feeds it events and does what
 it says.
 
-Source: wire as of rcl_action.
+Source: rcl_action, for the wire.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
 
 RESULT_KEPT = 900.0
-"""Seconds that a result can be asked for, from the goal's end on."""
+"""Seconds that a result can be requested after the goal's end."""
 STATUS_KEPT = 10.0
-"""Seconds that the list of states tells how a goal has ended, as in ROS 2."""
+"""Seconds that an ended goal stays in the status list, as in ROS 2."""
 RESULTS_KEPT = 1_000
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
@@ -54,15 +54,15 @@ class ServedGoal(ServerGoalHandle[Goal, Result, Feedback]):
         self.partial: Result = server.result_class()
         self.record = record
         self.result: Result | None = None
-        """With which it ended."""
+        """The result with which the goal ended."""
         self.reason = ""
-        """Why it was aborted."""
+        """Why the goal was aborted."""
         self.waiters: list[Future[None]] = []
-        """Who waits for its end."""
+        """What waits for the goal's end."""
         self.decided = asyncio.Event()
-        """Set when it is known whether it is accepted."""
+        """Set when it is decided whether the goal is accepted."""
         self.entry: Any = None
-        """What the list of states says of it."""
+        """The goal's entry in the status list."""
         self._server, self._id = server, goal_id
 
     def __repr__(self) -> str:
@@ -86,7 +86,7 @@ class ServedGoal(ServerGoalHandle[Goal, Result, Feedback]):
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended, however long ago."""
+        """Whether the goal has ended, however long ago."""
         return self.record.phase.is_over
 
     def feedback(self, feedback: Feedback) -> None:
@@ -94,7 +94,7 @@ class ServedGoal(ServerGoalHandle[Goal, Result, Feedback]):
 
 
 class ActionServer(Part, Generic[Goal, Result, Feedback]):
-    """An action at work.
+    """A running action server.
 
     Args:
         callback: The handler: takes the `ServerGoalHandle`, returns the result.
@@ -121,7 +121,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._results = registry.codec(f"{type_.NAME}_Result")
         self.book = GoalBook(self.rules, to_ns(RESULT_KEPT), to_ns(STATUS_KEPT), RESULTS_KEPT)
         self.goals: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
-        """Those that were accepted, by id."""
+        """Accepted goals, by id."""
         self.runner: Runner | None = None
         self.is_degraded = False
         """Whether a body has outstayed its cancellation."""
@@ -129,9 +129,9 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._accept, self._cancellable = accept, cancellable
         self._waiting: deque[Any] = deque()
         self._deciding: dict[bytes, ServedGoal[Goal, Result, Feedback]] = {}
-        """Those whose acceptance is being decided, by id."""
+        """Goals whose acceptance is being decided, by id."""
         self._clock: Clock
-        """Also when the node has stopped, and a body has not."""
+        """Used even when the node has stopped and a body has not."""
         self._entry_class: type[Any] = registry.interface_class("action_msgs/msg/GoalStatus")
         self._feedback_message: type[Any] = registry.interface_class(f"{type_.NAME}_FeedbackMessage")
         self._feedback_class: type[Any] = registry.interface_class(f"{type_.NAME}_Feedback")
@@ -142,7 +142,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._cancel_response = cancel.Response
         self._status: TopicPublisher[Any] = self._topic("status", "action_msgs/msg/GoalStatusArray", ACTION_STATUS)
         self._feedback: TopicPublisher[Any] = self._topic("feedback", f"{type_.NAME}_FeedbackMessage", Qos())
-        # The last to be seen is the first to be used: whoever can send a goal can do everything else.
+        # The last to be seen is the first to be used: a client that can send a goal can do everything else.
         self._send_service = _GoalService(self, send, "send_goal", self._send_goal)
         self._services = (
             _GoalService(self, get, "get_result", self._get_result),
@@ -181,13 +181,13 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._tell_status()
 
     def begin_to_stop(self) -> Runner | None:
-        """Goals that wait for their turn will not have it."""
+        """Goals that wait for their turn will not get it."""
         for goal in [*self._deciding.values(), *self.goals.values()]:
             self._step(goal, GoalEvent.STOPPING)
         return self.runner
 
     def close(self) -> None:
-        """Withdraw it; goals under way are cancelled."""
+        """Withdraw the server; goals under way are cancelled."""
         self.begin_to_stop()
         if self.runner is not None:
             self.runner.cancel()
@@ -199,7 +199,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
 
     async def _send_goal(self, request: Any, client: bytes) -> Any:
         goal_id = bytes(request.goal_id.uuid)
-        if goal_id in self._deciding:  # asked twice, by a client that has not heard the answer
+        if goal_id in self._deciding:  # asked twice, by a client that has not received the response
             await self._deciding[goal_id].decided.wait()
         elif goal_id not in self.book.goals and self._may_take():
             await self._decide(goal_id, request.goal, client)
@@ -224,7 +224,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
             goal.decided.set()
         if not goal.is_over:
             self._forget_old()
-            # Its answer goes out first.
+            # Its response goes out first.
             self.host.context.loop.call_soon(self._step, goal, GoalEvent.ANSWERED)
 
     async def _is_wanted(self, goal: Goal) -> bool:
@@ -275,7 +275,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         return self._get_response(status=int(goal.status), result=goal.result)
 
     def why_aborted(self, request: Any) -> str:
-        """The reason why a goal was aborted whose result is asked for; empty if it was not."""
+        """Why the goal whose result is requested was aborted; empty if it was not."""
         goal = self.goals.get(bytes(request.goal_id.uuid))
         return "" if goal is None else goal.reason
 
@@ -288,10 +288,10 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
     # what becomes of a goal
 
     def _step(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any = None) -> None:
-        """Something has happened to a goal: do what follows.
+        """Do what follows from an event of a goal.
 
         Args:
-            result: With which it ends, if it ends; what it has so far otherwise.
+            result: What the goal ends with, if it ends; otherwise what it has so far.
         """
         if goal.is_over:
             return
@@ -343,7 +343,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._clock.call_at(self._clock.monotonic_ns() + to_ns(seconds), callback)
 
     def _look_for_client(self, goal: ServedGoal[Goal, Result, Feedback]) -> None:
-        """Its client went some time ago: if it has not come back, that counts."""
+        """A goal's client went some time ago: if it has not come back, it counts as lost."""
         clients = self._send_service.matched.values()
         if self._send_service.is_open and not any(e.gid == goal.record.client for e in clients):
             if goal.status.is_cancelable:
@@ -358,7 +358,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         self._step(goal, GoalEvent.DROPPED)
 
     def _finished(self, goal: ServedGoal[Goal, Result, Feedback], result: Any, error: BaseException | None) -> None:
-        if goal.is_over:  # it outstayed its cancellation
+        if goal.is_over:  # it had outstayed its cancellation
             return
         if error is None:
             if result is None and not self.result_class.SCHEMA.fields:
@@ -391,7 +391,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         return None
 
     def _fit_result(self, goal: ServedGoal[Goal, Result, Feedback], event: GoalEvent, result: Any) -> Any:
-        """The result that a goal ends with: an empty one, where what it has so far cannot be sent."""
+        """The result that a goal ends with: an empty one where what it has so far cannot be sent."""
         if event is GoalEvent.RETURNED or (wrong := self._why_unfit(result)) is None:
             return result
         self.host.report_error(f"{self._label}, its partial result", wrong)
@@ -404,10 +404,10 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
     # what clients hear
 
     def send_feedback(self, goal_id: bytes, feedback: Any) -> None:
-        """Tell the clients how a goal goes.
+        """Tell the clients how a goal is progressing.
 
         Raises:
-            TypeError: It is no feedback of this action.
+            TypeError: The message is not a feedback of this action.
         """
         if feedback.__class__ is not self._feedback_class:
             raise TypeError(f"{self.name} sends {self._feedback_class.__qualname__}, not {feedback!r}")
@@ -416,7 +416,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
     def _tell_status(
         self, about: ServedGoal[Goal, Result, Feedback] | None = None, status: GoalStatus | None = None
     ) -> None:
-        """Publish the states of the goals, with the one of `about` that it has or goes through."""
+        """Publish the goals' states, with the state that `about` has or passes through."""
         if not self._status.is_open:
             return
         message = self._status.type()
@@ -428,7 +428,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
 
 
 class _GoalService(ServiceServer[Any, Any]):
-    """One of an action's services; its callback is also told who asks."""
+    """One of an action's services; its callback also gets the client that asks."""
 
     def __init__(self, server: ActionServer[Any, Any, Any], type_: Any, part: str, callback: Any) -> None:
         name = f"{server.name}/_action/{part}"
@@ -442,7 +442,7 @@ class _GoalService(ServiceServer[Any, Any]):
         return self._callback(self._requests.decode(request.payload), asked.gid)  # type: ignore[call-arg]
 
     def _note(self, request: Any) -> bytes:
-        """For graphflow's own clients, which understand it: why a goal was aborted whose result they ask for."""
+        """A note that graphflow's own clients understand: why the goal whose result they request was aborted."""
         if not (isinstance(request, DirectRequest) and self.name.endswith("/get_result")):
             return b""
         return self._server.why_aborted(self._requests.decode(request.payload)).encode()[:NOTE_LIMIT]

@@ -1,4 +1,4 @@
-"""ROS 2's arguments of a node: `--ros-args -r from:=to -p name:=value --`.
+"""A node's ROS 2 arguments: `--ros-args -r from:=to -p name:=value --`.
 
 Source: rcl arguments; `ros2 run ... --help` and the "Passing ROS arguments" guide.
 """
@@ -56,7 +56,7 @@ class RosArgs:
 
 
 def parse_ros_args(words: Sequence[str]) -> RosArgs:
-    """Read a node's arguments. A bare `from:=to` is taken for a remap, which ROS 2 would ignore in silence.
+    """Read a node's arguments. A bare `from:=to`, which ROS 2 would silently ignore, is taken as a remap.
 
     Raises:
         GraphflowError: A rule or an option is wrong.
@@ -77,7 +77,7 @@ def parse_ros_args(words: Sequence[str]) -> RosArgs:
         elif ":=" in word and not word.startswith("-"):
             _remap(result, word)
         elif in_ros:
-            raise GraphflowError(f"{word!r} is no ROS argument{did_you_mean(word, _OPTIONS)}")
+            raise GraphflowError(f"{word!r} is not a ROS argument{did_you_mean(word, _OPTIONS)}")
         else:
             result.rest.append(word)
     return result

@@ -1,4 +1,4 @@
-"""A class's declarations at work on one node: endpoints made, handlers attached, parameters followed."""
+"""A class's declarations applied to one node: endpoints made, handlers attached, parameters followed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from graphflow.runtime.timer import Timer
 
 
 class Creator(Protocol):
-    """The methods of a node that make what is declared."""
+    """The methods of a node that create what is declared."""
 
     @property
     def create_publisher(self) -> Callable[..., Any]: ...
@@ -91,7 +91,7 @@ class Binding:
         raise TypeError(f"{item!r} cannot be made")
 
     def _method(self, fn: Any) -> Any:
-        """A function of the class body, as a method of the node; a child class may have another of the name."""
+        """A function of the class body, as a method of the node; a child class may have overridden it."""
         return getattr(self._node, fn.__name__) if inspect.isfunction(fn) else fn
 
     def _bind_handler(self, method: Callable[..., Any], handler: Handler) -> None:
@@ -125,7 +125,7 @@ class Binding:
             raise ParameterError(f"parameter {given}: {error}") from None
 
     def _check(self, values: Mapping[str, Any]) -> None:
-        """Refuse values that a timer or a check of the class cannot take."""
+        """Refuse values that a timer or a check of the class does not accept."""
         for rate, _ in self._timers:
             if values.keys() & rate.parameters():
                 self._period_ns(rate, values)
@@ -154,7 +154,7 @@ class Binding:
 
 
 class _Follower:
-    """Calls a method with the changes of a parameter, one after the other."""
+    """Calls a method with the changes of a parameter, one at a time."""
 
     def __init__(self, host: Host, method: Callable[[Any, Any], Any]) -> None:
         self._host, self._method = host, method
@@ -165,7 +165,7 @@ class _Follower:
     def follow(self, change: ParameterChange) -> None:
         self._changes.append(change)
         if inspect.iscoroutinefunction(self._method):
-            # Its first step must not run inside whoever set the parameter, which may be a handler itself.
+            # Its first step must not run inside the code that set the parameter, which may itself be a handler.
             self._host.context.loop.call_soon(self.runner.wake)
         else:
             self.runner.wake()

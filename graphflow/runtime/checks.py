@@ -1,4 +1,4 @@
-"""What declarations are held to when they are made; each error names the place and what to write instead.
+"""Checks that declarations must pass when they are made; each error names the place and what to write instead.
 
 Every check raises DeclarationError.
 """
@@ -17,17 +17,17 @@ from graphflow.names import expand
 from graphflow.qos import Qos
 
 DEPTH = 10
-"""The depth of a queue for which none is given."""
+"""The depth of a queue when none is given."""
 
 
 def here(depth: int = 2) -> Place:
-    """Where the function that asks was called."""
+    """Where the calling function was called."""
     frame = sys._getframe(depth)
     return Place(frame.f_code.co_filename, frame.f_lineno)
 
 
 def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
-    """See that `type_` is a class of messages, services or actions."""
+    """Check that `type_` is a message, service or action class."""
     if not (isinstance(type_, type) and issubclass(type_, kind)):
         hint = ""
         if kind is base.Service and isinstance(type_, type) and issubclass(type_, Message):
@@ -39,9 +39,9 @@ def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
 
 
 def check_name(name: Any, what: str, place: Place) -> None:
-    """See that a name is legal."""
+    """Check that a name is legal."""
     if not isinstance(name, str):
-        raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is no name")
+        raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is not a name")
     try:
         expand(name, "/", "node")
     except InvalidName as error:
@@ -49,7 +49,7 @@ def check_name(name: Any, what: str, place: Place) -> None:
 
 
 def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
-    """The profile that is asked for, as one of `qos` and `depth`."""
+    """The requested profile, given as either `qos` or `depth`."""
     if depth is not None and qos != DEPTH:
         raise DeclarationError(f"{place}: give a Qos or a depth, not both: Qos(depth={depth!r}, ...) is both in one")
     asked = qos if depth is None else depth
@@ -62,7 +62,7 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
 
 
 def check_on_event(on_event: Any, what: str, place: Place) -> None:
-    """See that `on_event` is a method."""
+    """Check that `on_event` is a method."""
     if on_event is not None and not inspect.isfunction(on_event):
         raise DeclarationError(
             f"{place}: {what}: on_event= takes a method defined above it, `def noticed(self, event): ...`, "
@@ -71,12 +71,12 @@ def check_on_event(on_event: Any, what: str, place: Place) -> None:
 
 
 def check_group(group: Any, kind: type, what: str, place: Place) -> None:
-    """See that a group is a declared one."""
+    """Check that a group is a declared one."""
     if group is not None and not isinstance(group, kind):
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
 
 
 def check_on_error(on_error: Any, place: Place) -> None:
-    """See that there is such a rule for errors."""
+    """Check that there is such a rule for errors."""
     if on_error not in get_args(OnError):
-        raise DeclarationError(f"{place}: on_error is one of {', '.join(get_args(OnError))}, not {on_error!r}")
+        raise DeclarationError(f"{place}: on_error must be one of {', '.join(get_args(OnError))}, not {on_error!r}")

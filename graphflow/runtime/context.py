@@ -1,4 +1,4 @@
-"""What all nodes of a process share: the session, the clock, the picture of the graph, the ids."""
+"""What all nodes of a process share: the session, the clock, the graph cache, the ids."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ T = TypeVar("T")
 logger = logging.getLogger("graphflow")
 
 LINK_GRACE = 3.0
-"""Seconds that other machines get to answer before what was asked for goes on without them."""
+"""Seconds that other machines have to answer before this one goes on without them."""
 
 
 class Context:
     """One process's part in a domain. Made by `open` or, over any session, by the constructor.
 
     Args:
-        deadlock: What is done about deadlocks in which this process has a part.
-        call_timeout: Seconds that calls wait which do not say how long; None for ever.
+        deadlock: What is done about deadlocks that involve this process.
+        call_timeout: Seconds that calls without a timeout of their own wait; None for ever.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Context:
         """Calls to and from other graphflow processes."""
         self.call_timeout = call_timeout
         self.nodes: list[Subject] = []
-        """Those that run here."""
+        """The nodes that run here."""
         self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
         self.search = Search(self, deadlock)
@@ -94,8 +94,8 @@ class Context:
 
         Args:
             domain: See `domain_id`.
-            mode: Of the Zenoh session: `peer` or `client`.
-            checked: The rendezvous was looked at a moment ago by a process this one trusts.
+            mode: The Zenoh session's mode: `peer` or `client`.
+            checked: The rendezvous was checked a moment ago by a process this one trusts.
             link: Link this machine to others too, if the environment says so.
             deadlock, call_timeout: As for `Context`.
 
@@ -111,7 +111,7 @@ class Context:
         takeover = Takeover(None if checked else establish())
         try:
             session = ZenohSession(loop, mode)
-        except BaseException:  # a cancellation too: nothing stays open
+        except BaseException:  # cancellation included: nothing stays open
             await takeover.close()
             raise
         context = cls(session, domain=domain, deadlock=deadlock, call_timeout=call_timeout)
@@ -123,7 +123,7 @@ class Context:
             try:
                 context.open_link()
                 await context.wait_linked()
-            except BaseException:  # a cancellation too: nothing stays open
+            except BaseException:  # cancellation included: nothing stays open
                 await context.close()
                 raise
         return context
@@ -132,7 +132,7 @@ class Context:
         """Link this machine to others, if the environment says so.
 
         Raises:
-            TransportError, GraphFileError: What it says makes no sense.
+            TransportError, GraphFileError: The environment says something invalid.
         """
         from graphflow.transport.config import reaches_out
 
@@ -142,12 +142,12 @@ class Context:
             self._link = Link(self.session.bell, self.domain)
 
     async def wait_linked(self) -> None:
-        """Wait until the other machines have answered, or say that they have not, and go on."""
+        """Wait until the other machines have answered; if they do not, log that and go on."""
         if self._link is not None:
             await self._link.wait_ready(LINK_GRACE)
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
         return self.switchboard.arrived()
 
     def next_id(self) -> int:
@@ -158,7 +158,7 @@ class Context:
         """Run `fn(*args)` in a thread of its own, which cannot be cancelled.
 
         Args:
-            stays: Whether to wait for its end also when the waiting is cancelled, and be cancelled then.
+            stays: Whether to wait for its end even when the waiting is cancelled, and raise the cancellation then.
 
         The interpreter does not wait for such a thread when it ends, as it would for those of a pool.
         """
@@ -181,12 +181,12 @@ class Context:
             return await future
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Have `listener` called for every node or endpoint that comes or goes; returns what ends that."""
+        """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
     def on_name(self, name: str, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
-        """Have `listener` called for every endpoint called `name` that comes or goes; returns what ends that."""
+        """Call `listener` for every endpoint called `name` that comes or goes; returns a function that stops this."""
         listeners = self._by_name.setdefault(name, [])
         listeners.append(listener)
 
@@ -209,7 +209,7 @@ class Context:
             try:
                 if condition():
                     future.set_result(None)
-            except Exception as error:  # whoever waits is to have it, not whoever else looks at the graph
+            except Exception as error:  # for the waiting caller, not for others that look at the graph
                 future.set_exception(error)
 
         stop = self.on_change(look)
@@ -226,14 +226,14 @@ class Context:
                 listener(change)
 
     def _advise(self, entity: Entity) -> None:
-        """Say once that somebody on the network speaks another wire profile."""
+        """Log once that a node on the network uses another wire profile."""
         text = advice(entity, self.profile)
         if text:
             self._advised = True
             logger.warning("%s has %s: %s", entity.node_name, entity.name, text)
 
     async def close(self) -> None:
-        """Leave the network. Nodes are to be stopped before."""
+        """Leave the network. Nodes must have been stopped before."""
         self.search.close()
         self._inspection.close()
         if self._link is not None:
@@ -244,7 +244,7 @@ class Context:
 
 
 async def _seen_through(future: asyncio.Future[Any]) -> None:
-    """Wait for a thread to its end, also if the waiting is cancelled meanwhile; then raise the cancellation."""
+    """Wait for a thread to end, even if the waiting is cancelled meanwhile; then raise the cancellation."""
     cancelled: asyncio.CancelledError | None = None
     while not future.done():
         try:

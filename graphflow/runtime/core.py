@@ -1,4 +1,4 @@
-"""The workings of one node, behind `Node`: its parts, its life, what runs its handlers, and what becomes of errors."""
+"""The workings of one node, behind `Node`: its parts, its life, its handlers' runners, and what becomes of errors."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ from graphflow.wire.liveliness import Entity, Kind
 P = TypeVar("P", bound=Part)
 
 SLOW_START = 5.0
-"""Seconds that `on_start` may take until it is said where it waits."""
+"""Seconds that `on_start` may take before it is reported where it waits."""
 STOP_LIMIT = 2.0
-"""Seconds that cancelled handlers and tasks get for their cleanup."""
+"""Seconds that cancelled handlers and tasks have for their cleanup."""
 
 
 class Instance(declared.NodeClass, Creator, Protocol):
-    """What the core needs of the user's object."""
+    """What the core needs from the user's object."""
 
     error_budget: ClassVar[ErrorBudget | None]
 
@@ -63,7 +63,7 @@ class NodeCore:
 
     Args:
         overrides: Parameter values from outside, by name, each with where it was written.
-        concurrency: What a graph file says of its groups.
+        concurrency: What a graph file says about its groups.
     """
 
     def __init__(
@@ -81,14 +81,14 @@ class NodeCore:
         self.parameters = Parameters(overrides)
         self.groups = Groups(declared.groups(cls), cls.default_group, concurrency)
         self.tasks: set[asyncio.Task[Any]] = set()
-        """What `spawn` has started and has not ended."""
+        """Tasks that `spawn` has started and that have not ended."""
         self.runners: list[Runner] = []
         self.failure: BaseException | None = None
         """The error that ended the node."""
         self.failure_taken = False
-        """Whether somebody has waited for it."""
+        """Whether the end of the node was waited for."""
         self.entered = AsyncExitStack()
-        """What is left after `on_shutdown`."""
+        """Context managers that are left after `on_shutdown`."""
         self._made: dict[str, Any] = {}
         """What `Node.__init__` has set on the instance."""
         self._context: Context | None = None
@@ -149,7 +149,7 @@ class NodeCore:
 
     @property
     def endpoints(self) -> list[Endpoint]:
-        """Everything it has on the network; of actions, the services and topics that they are made of."""
+        """Everything the node has on the network; for actions, the services and topics that they consist of."""
         return [endpoint for part in self._parts for endpoint in part.endpoints]
 
     def serves(self, service: str) -> bool:
@@ -184,14 +184,14 @@ class NodeCore:
         self._binding.bind()
 
     def _serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
-        """One of the services that every node has; they are there before `on_start` runs."""
+        """Make one of the services that every node has; they exist before `on_start` runs."""
         type_: Any = registry.interface_class(type_name)
         self._own_services.add(f"~/{name}")
         resolved = self.names.resolve(f"~/{name}", "service")
         self.add(ServiceServer(self, type_, resolved, qos, callback, name, is_inner=True))
 
     def add(self, part: P, *, late: bool = False) -> P:
-        """Take in a part, and open it if the time has come: `late` ones wait for `on_start`."""
+        """Add a part, and open it if the time has come: `late` ones wait for `on_start`."""
         self._parts.append(part)
         if late and self._late is not None:
             self._late.append(part)
@@ -239,10 +239,10 @@ class NodeCore:
         return made
 
     def ensure_made(self) -> None:
-        """See that the node was made as it should be.
+        """Check that the node was made correctly.
 
         Raises:
-            DeclarationError: Its `__init__` has set what every node has.
+            DeclarationError: Its `__init__` has overwritten an attribute that every node has.
             ParameterError: A value was given for a parameter that it does not have.
         """
         for attribute, value in self._made.items():
@@ -261,10 +261,10 @@ class NodeCore:
         Raises:
             GraphflowError: An override names no parameter, `concurrency` no handler, or something cannot be opened;
             nothing is left open.
-            ClosedError: The node is running already, or has been stopped.
+            ClosedError: The node is already running, or has been stopped.
         """
         if self._ended is not None:
-            state = "is running already" if self.is_running else "has been stopped; make a new one"
+            state = "is already running" if self.is_running else "has been stopped; make a new one"
             raise ClosedError(f"node {self.full_name} {state}")
         self.ensure_made()
         self._context = context
@@ -275,7 +275,7 @@ class NodeCore:
             races.watch(self.instance, self.full_name, self.log, frozenset(self._made))
         try:
             await self._open(context)
-        except BaseException:  # a cancellation too: nothing stays open
+        except BaseException:  # cancellation included: nothing stays open
             await self.stop()
             raise
         self.warn_unused_remaps()
@@ -305,14 +305,14 @@ class NodeCore:
 
     def _say_slow_start(self, task: Any) -> None:
         self.log.warning(
-            "on_start has not returned for %.0f s %s; this node's handlers begin when it has: what waits for them, or "
+            "on_start has not returned for %.0f s %s; this node's handlers start when it has: what waits for them, or "
             "for nodes that wait for this one, belongs in a @task",
             SLOW_START,
             place_of(task),
         )
 
     def warn_unused_remaps(self) -> None:
-        """Say which remap rules have matched nothing; a class that makes names at run time may use them later."""
+        """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later."""
         known = {r.given for r in self.names.derivations.values()} - self._own_services
         for rule in self.names.unused():
             if may_make(self.instance.dynamic_names, self.names.full(rule.match)):
@@ -324,12 +324,12 @@ class NodeCore:
             self.log.warning("the remap %s matches no name of this node%s", rule, hint)
 
     def shutdown(self) -> None:
-        """End the node from within: whatever runs it will stop it."""
+        """End the node from within: the code that runs it will stop it."""
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
 
     async def wait_ended(self) -> None:
-        """Wait until the node ends itself by `shutdown`, or fails; raises the error it failed with."""
+        """Wait until the node ends itself by `shutdown` or fails; raises the error it failed with."""
         assert self._ended is not None
         try:
             await asyncio.shield(self._ended)
@@ -340,7 +340,7 @@ class NodeCore:
         """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything.
 
         Args:
-            withdraw: False when the context is closed right after, which withdraws all at once and cannot be held up
+            withdraw: False when the context is closed right after, which withdraws all at once and cannot be delayed
                 by peers that are going away too.
         """
         context = self._context
@@ -352,7 +352,7 @@ class NodeCore:
                 await self._limited("on_shutdown", self.instance.on_shutdown)
             await self._limited("leaving what was entered", self.entered.aclose)
         finally:
-            # Also when this wait is cancelled: nothing stays open.
+            # Even when this wait is cancelled: nothing stays open.
             if self._rosout is not None:
                 self._rosout.detach()
             if withdraw:
@@ -362,12 +362,12 @@ class NodeCore:
                     self._token.close()
             if self._ended is not None and not self._ended.done():
                 self._ended.cancel()
-            if self in context.nodes:  # two may stop a node
+            if self in context.nodes:  # two callers may stop a node
                 context.nodes.remove(self)
             self._context = None
 
     async def _end_handlers(self) -> None:
-        """Cancel what runs, and give it time to clean up."""
+        """Cancel what runs and give it time to clean up."""
         ending: dict[asyncio.Future[Any], str] = {}
         for runner in [*(part.begin_to_stop() for part in self._parts), *self._binding.runners()]:
             if runner is not None:
@@ -382,19 +382,19 @@ class NodeCore:
                 self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
 
     async def _limited(self, what: str, work: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        """A part of stopping: it may fail or take too long, and the rest is done all the same."""
+        """Do one part of stopping: if it fails or takes too long, the rest is done all the same."""
         try:
             async with asyncio.timeout(STOP_LIMIT):
                 await work()
         except TimeoutError:
-            self.log.warning("%s has taken more than %.0f s and was cancelled", what, STOP_LIMIT)
+            self.log.warning("%s took more than %.0f s and was cancelled", what, STOP_LIMIT)
         except Exception as error:
             self.report_error(what, error)
 
     # tasks and errors
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
-        """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
+        """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
         self.tasks.add(task)
         task.add_done_callback(self._task_done)
@@ -409,9 +409,9 @@ class NodeCore:
             self._fail(error)
 
     def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
-        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # of a coroutine, or of a thread
+        if isinstance(error, (CancelledError, concurrent.futures.CancelledError)):  # from a coroutine, or from a thread
             return
-        if on_error is None or not self.is_running:  # it has not waited for this run
+        if on_error is None or not self.is_running:  # stopping did not wait for this run
             self.report_error(label, error)
         else:
             self._failures.failed(label, error, on_error)
@@ -430,7 +430,7 @@ class NodeCore:
         if self._ended is not None and not self._ended.done():
             self.failure = error
             self._ended.set_exception(error)
-            self._ended.exception()  # it is logged: asyncio need not complain when nobody waits for it
+            self._ended.exception()  # it is logged: asyncio need not complain when nothing waits for it
 
     # parameters and time
 
@@ -443,7 +443,7 @@ class NodeCore:
             self._parameter_events.tell(changes)
 
     def _follow_sim_time(self) -> None:
-        """Go by /clock, or by the context's clock, as the parameter `use_sim_time` says."""
+        """Follow /clock, or the context's clock, as the parameter `use_sim_time` says."""
         former, wanted = self._sim_clock, self.parameters.get("use_sim_time")
         if wanted and former is None:
             from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage

@@ -1,7 +1,7 @@
-"""What a node class says that it holds: publishers, clients, parameters, groups. What it does is in `handlers`.
+"""What a node class declares that it holds: publishers, clients, parameters, groups. What it does is in `handlers`.
 
 A declaration is checked when the class is made and turned into data (`graphflow.interface`); nothing runs. When a
-node is made each declaration becomes a call of the `create_*` method that a node could also have called itself.
+node is made, each declaration becomes a call of the `create_*` method that the node could also have called itself.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class _Core(Protocol):
 
     @property
     def held(self) -> Mapping[str, Any]:
-        """By attribute."""
+        """What the node holds, by attribute."""
 
     @property
     def parameters(self) -> Parameters: ...
@@ -54,23 +54,23 @@ class Bound(Protocol):
 
 
 class Group:
-    """A concurrency group: how many of its handlers' runs there may be at one time. On a node, its `HandlerGroup`.
+    """A concurrency group: how many of its handlers' runs there may be at a time. On a node, a `HandlerGroup`.
 
     Args:
-        limit: 1 excludes one another (ROS 2's MutuallyExclusive), None sets no limit (Reentrant).
+        limit: 1 for mutual exclusion (ROS 2's MutuallyExclusive), None for no limit (Reentrant).
         when_full: What becomes of work that finds the group full: see `WhenFull`.
-        thread: Run its `def` handlers in threads, where one that blocks holds its slot and not the loop.
-        name: If it is not that of the attribute.
+        thread: Run its `def` handlers in threads, where a blocking one holds its slot but not the loop.
+        name: Its name, if not that of the attribute.
     """
 
     def __init__(
         self, limit: int | None = 1, when_full: WhenFull = "wait", *, thread: bool = False, name: str = ""
     ) -> None:
         if limit is not None and (not isinstance(limit, int) or isinstance(limit, bool) or limit < 1):
-            raise DeclarationError(f"{here()}: a group's limit is 1 or more, or None for no limit, not {limit!r}")
+            raise DeclarationError(f"{here()}: a group's limit must be 1 or more, or None for no limit, not {limit!r}")
         if when_full not in get_args(WhenFull):
             words = ", ".join(get_args(WhenFull))
-            raise DeclarationError(f"{here()}: when_full is one of {words}, not {when_full!r}")
+            raise DeclarationError(f"{here()}: when_full must be one of {words}, not {when_full!r}")
         if limit is None and when_full != "wait":
             raise DeclarationError(
                 f"{here()}: a group without a limit is never full; when_full={when_full!r} needs one"
@@ -139,7 +139,7 @@ class Publisher(Held, Generic[M]):
 
 
 class Subscription(Held, Generic[M]):
-    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as `Publisher`.
+    """A topic the node listens to by iterating: `async for message in self.chatter`. Arguments as for `Publisher`.
 
     Args:
         ignore_local: Leave out what this process publishes itself.
@@ -175,8 +175,8 @@ class Client(Held, Generic[Request, Response]):
 
     Args:
         introspection: What is published of each call on `name`/_service_event.
-        group: Answers wait for a slot of it, as in ROS 2, where that is a way into a deadlock; without one they need
-            none.
+        group: Responses wait for a slot of it, as in ROS 2, where that is a way into a deadlock; without a group they
+            need none.
     """
 
     def __init__(
@@ -222,13 +222,13 @@ class Param(Held, Generic[V]):
     """A parameter. On a node it reads as its value; `ros2 param` and `graphflow param` see and set it.
 
     Args:
-        default: Its value when nobody sets it; decides the type. A bool, int, float, str, bytes, or list of one.
-        unit: For readers, as in `Hz` or `m/s`.
+        default: Its value until it is set; decides the type. A bool, int, float, str, bytes, or a list of one of them.
+        unit: For readers, such as `Hz` or `m/s`.
         doc: One sentence.
         ge, le, gt, lt: Limits: at least, at most, more than, less than.
-        read_only: Settable only from outside and at the start.
+        read_only: Whether it can be set only from outside and at the start.
         step: Distance between allowed values, counted from `ge`, or from 0.
-        name: If it is not that of the attribute.
+        name: Its name, if not that of the attribute.
     """
 
     def __init__(
@@ -254,9 +254,9 @@ class Param(Held, Generic[V]):
             )
             self.parameter.fit(default)
             if (self.parameter.range_text() or step) and self.parameter.type not in _NUMBERS:
-                raise ParameterError(f"limits are for numbers, and {default!r} is none")
+                raise ParameterError(f"limits are for numbers, and {default!r} is not a number")
             if step < 0 or (step % 1 and self.parameter.type in ("int", "list[int]")):
-                raise ParameterError(f"a step of {step} cannot be")
+                raise ParameterError(f"a step cannot be {step}")
         except GraphflowError as error:
             text = str(error).replace("parameter 'unnamed'", "the default")
             raise DeclarationError(f"{self.place}: {text}") from None
@@ -280,16 +280,16 @@ class Param(Held, Generic[V]):
         return replace(self.parameter, dynamic=dynamic)
 
     def check(self, fn: F) -> F:
-        """Have the method called with each new value before it is set; a ValueError that it raises refuses the value.
+        """Call the method with each new value before it is set; a ValueError that it raises refuses the value.
 
         rclpy's add_on_set_parameters_callback.
         """
         if inspect.iscoroutinefunction(fn):
-            raise DeclarationError(f"{here()}: {fn.__name__}: a check decides at once; make it a `def`")
+            raise DeclarationError(f"{here()}: {fn.__name__}: a check must decide at once; make it a `def`")
         return _mark_hook(fn, "check", self, ("self", "value"), here())
 
     def on_change(self, fn: F) -> F:
-        """Have the method, `def` or `async def`, called with the old and the new value after each change.
+        """Call the method, `def` or `async def`, with the old and the new value after each change.
 
         rclpy's add_post_set_parameters_callback.
         """

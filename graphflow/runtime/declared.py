@@ -1,4 +1,4 @@
-"""What a node class and its parents declare, taken together: merged, checked, and as data."""
+"""What a node class and its parents declare together: merged, checked, and as data."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from graphflow.runtime.handlers import MARK, Handler
 
 
 class NodeClass(Protocol):
-    """What a node class says of itself by plain attributes."""
+    """What a node class says about itself in plain attributes."""
 
     node_name: ClassVar[str]
     dynamic_names: ClassVar[bool | Sequence[str]]
@@ -33,7 +33,7 @@ class NodeClass(Protocol):
 
 
 def snake_case(class_name: str) -> str:
-    """`TurtleSim` as `turtle_sim`: the name of a node that was given none."""
+    """`TurtleSim` as `turtle_sim`: the name of a node that is given none."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", class_name).lower()
 
 
@@ -43,7 +43,7 @@ def default_name(cls: type[NodeClass]) -> str:
 
 
 def held(cls: type) -> dict[str, Held]:
-    """The declarations of a class and its parents by attribute; a child's stand in place of its parents'."""
+    """The declarations of a class and its parents by attribute; a child's replace its parents'."""
     found: dict[str, Held] = {}
     for attribute, value in _members(cls):
         if isinstance(value, Held):
@@ -56,7 +56,7 @@ def held(cls: type) -> dict[str, Held]:
 def handlers(cls: type) -> dict[str, Handler]:
     """The handlers of a class and its parents by method name.
 
-    A child that overrides a handler's method without decorating it anew replaces the body only.
+    A child that overrides a handler's method without decorating it again replaces only the body.
     """
     found: dict[str, Handler] = {}
     for attribute, value in _members(cls):
@@ -81,7 +81,7 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 
 
 def hooks(cls: type) -> frozenset[str]:
-    """The methods that are called outside of any handler: by parameters, events, and to decide about goals."""
+    """The methods that are called outside any handler: by parameters, events, and to decide about goals."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
     called: list[Any] = [getattr(declared, "on_event", None) for declared in held(cls).values()]
     for handler in handlers(cls).values():
@@ -135,9 +135,9 @@ def _members(cls: type) -> Iterator[tuple[str, Any]]:
 
 
 def class_line() -> int:
-    """The line of the class statement that is being executed; to be called by `__init_subclass__`.
+    """The line of the class statement being executed, for `__init_subclass__` to call.
 
-    Python has it from 3.13 on as `__firstlineno__`. To look for it in the source takes milliseconds a class.
+    Python 3.13 and later have it as `__firstlineno__`. Looking for it in the source takes milliseconds per class.
     """
     frame = sys._getframe(1)
     while frame.f_code.co_name == "__init_subclass__" and frame.f_back is not None:
@@ -204,7 +204,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
 
 
 def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerInfo:
-    # A child may have replaced the body only, by one of the other kind and in another place.
+    # A child may have replaced only the body, with one of the other kind and in another place.
     function = inspect.unwrap(getattr(cls, attribute))
     code = getattr(function, "__code__", None)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)

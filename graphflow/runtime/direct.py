@@ -1,15 +1,15 @@
 """Calls between graphflow processes: a request and a response as two publications, where a query costs three.
 
-A query makes Zenoh keep account of every call in each process it passes, and hand over every reply on its own. ROS 2
-knows only queries, so every service answers them; two graphflow processes open a *line* beside that, on keys that no
+A query makes Zenoh keep track of every call in each process it passes, and deliver every reply on its own. ROS 2
+knows only queries, so every service answers them; two graphflow processes also open a *line*, on keys that no
 wildcard of ROS matches:
 
     @graphflow/<domain>/ask/<server's zid>/<server's eid>       requests, from any client
     @graphflow/<domain>/answer/<client's zid>/<client's eid>    responses, from any server
 
-Beside each travels the same attachment as in ROS; the sequence number of an error is negative. Both ways must work
-before a line is used. The client's process says sequence number 0 when it knows that somebody listens to its
-requests, with the key that it hears answers on, and the server's process says 0 when it knows that it is heard there.
+Each carries the same attachment as in ROS; the sequence number of an error is negative. Both ways must work
+before a line is used. The client's process sends sequence number 0 when it knows that its requests have a
+listener, with the key that it hears responses on, and the server's process sends 0 when it knows it is heard there.
 Until then, and with a server of another kind or several servers, calls are queries.
 """
 
@@ -45,17 +45,17 @@ class _Listener(NamedTuple):
 
 
 class Switchboard:
-    """A process's ends of all lines: who hears what arrives. One per `Context`."""
+    """A process's ends of all lines: what hears what arrives. One per `Context`."""
 
     def __init__(self, session: Session, domain: int, loop: AbstractEventLoop) -> None:
         self._session, self._domain, self._loop = session, domain, loop
         self._listeners: dict[tuple[str, str], _Listener] = {}
-        """By `ask` or `answer` and endpoint id."""
+        """Listeners, by `ask` or `answer` and endpoint id."""
         self._receivers: dict[str, Closable] = {}
         self._inboxes: dict[str, Inbox] = {}
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
-        """Requests that the loop has not seen yet: by whose runner each is for, the client's GID, its number."""
+        """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""
         found: list[tuple[Runner, bytes, int]] = []
         session = self._session
         for arrival in list(self._inboxes["ask"].items) if "ask" in self._inboxes else ():
@@ -72,7 +72,7 @@ class Switchboard:
         return f"@graphflow/{self._domain}/{what}/{zid}/{eid}"
 
     def listen(self, what: str, entity: Entity, heard: Heard, runner: Runner | None = None) -> None:
-        """Have `heard` called with what comes for an endpoint of this process."""
+        """Call `heard` with what comes for an endpoint of this process."""
         self._listeners[what, str(entity.eid)] = _Listener(heard, runner)
         if what not in self._receivers:
             # One for the process: Zenoh starts a thread for each.
@@ -132,13 +132,13 @@ class ServerLines:
     ) -> None:
         self._switchboard, self._entity, self._runner, self._asked = switchboard, entity, runner, asked
         self._senders: dict[bytes, Sender] = {}
-        """To the clients, by GID."""
+        """Senders to the clients, by GID."""
         self._is_listening = False
         self._is_closing = False
         self._unanswered = 0
 
     def client_came(self) -> None:
-        """There is a client, which may be graphflow's."""
+        """A client has come, which may be graphflow's."""
         if not self._is_listening:
             self._is_listening = True
             self._switchboard.listen("ask", self._entity, self._heard, self._runner)
@@ -164,7 +164,7 @@ class ServerLines:
             self.close()
 
     def _greet(self, where: bytes, gid: bytes) -> None:
-        """A client says where it hears answers."""
+        """A client says where it hears responses."""
         zid, _, eid = where.decode("ascii", "replace").partition("/")
         if not (zid.isalnum() and eid.isdecimal()) or gid in self._senders:
             return
@@ -190,7 +190,7 @@ class ClientLine:
     """A client's end of the line to one server.
 
     Args:
-        client, server: Its own entity and the server's.
+        client, server: The client's own entity and the server's.
     """
 
     def __init__(self, switchboard: Switchboard, client: Entity, server: Entity) -> None:
@@ -213,7 +213,7 @@ class ClientLine:
     def call(
         self, sequence: int, payload: Payload, beside: bytes, answered: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
-        """As `transport.base.Caller.call`; there is one answer, or None when the server is gone."""
+        """As `transport.base.Caller.call`; there is one response, or None when the server has gone."""
         self._pending[sequence] = answered
         self._sender.put(payload, attachment=beside)
         return lambda: self._give_up(sequence)
@@ -230,7 +230,7 @@ class ClientLine:
             answered(Answer(payload, beside, sequence < 0))
 
     def close(self) -> None:
-        """Hang up. Those who still wait learn that the server is gone."""
+        """Hang up. Calls that still wait learn that the server has gone."""
         self.is_open = False
         self._switchboard.forget("answer", self._client)
         self._sender.close()

@@ -67,7 +67,7 @@ class Endpoint(Part):
         return self.entity is not None
 
     def open(self) -> None:
-        """Declare it on the network and announce it. Done by the node."""
+        """Declare the endpoint on the network and announce it. Called by the node."""
         context, host = self.host.context, self.host
         there = context.cache.named(self.name)
         self.qos = self.qos.adapted(e.qos for e in there if {e.kind, self.kind} == {Kind.PUBLISHER, Kind.SUBSCRIPTION})
@@ -88,7 +88,7 @@ class Endpoint(Part):
             spec = RunnerSpec(f"events of {self.name}", self._on_event, self._event_handled, host.full_name)
             self._event_runner = host.runner(spec, self._events)
         self._open(self.entity.data_key)
-        # After the declaration, so that whoever sees the token can reach what it announces.
+        # After the declaration, so that a process that sees the token can reach what it announces.
         self._declared.append(context.session.announce(self.entity.token))
         self._stop_listening = context.on_name(self.name, self._counterpart)
         for entity in there:
@@ -96,7 +96,7 @@ class Endpoint(Part):
 
     @abstractmethod
     def _open(self, key: str) -> None:
-        """Declare it on the network under its data key."""
+        """Declare the endpoint on the network under its data key."""
 
     def close(self) -> None:
         self._stop_listening()
@@ -111,7 +111,7 @@ class Endpoint(Part):
         self.host.forget(self)
 
     async def wait_matched(self, count: int = 1) -> None:
-        """Wait until `count` counterparts are reached: for a publisher, so many subscriptions.
+        """Wait until `count` counterparts are reached: for a publisher, that many subscriptions.
 
         Raises:
             ClosedError: The node is not running.
@@ -125,7 +125,7 @@ class Endpoint(Part):
 
     def _counterpart(self, change: GraphChange) -> None:
         """Something of the same name came or went."""
-        if not self.host.is_running:  # it has stopped, and leaves the network with its context
+        if not self.host.is_running:  # it has stopped and leaves the network with its context
             return
         other = change.entity
         judged = verdict(self._announced(), other, self.host.context.profile)
@@ -171,4 +171,4 @@ class Endpoint(Part):
 
 
 def _nothing() -> None:
-    """Nobody is listened to."""
+    """Nothing is listened to."""

@@ -1,4 +1,4 @@
-"""What an endpoint notices about the other end: who came and went, what does not fit, what is late, lost or silent.
+"""What an endpoint notices about the other end: what came and went, what does not fit, what is late, lost or silent.
 
 Source: rmw's event types; DDS 1.4, 2.2.4.1 (statuses).
 """
@@ -26,11 +26,11 @@ class QosEvent(NamedTuple):
 
     kind: QosEventKind
     total: int
-    """How often it has happened to this endpoint; for `message_lost`, messages."""
+    """How often the event has happened to this endpoint; for `message_lost`, the number of messages."""
     change: int = 1
     """By how much `total` has grown with this event; for `matched` and `liveliness_changed`, `current`: may be -1."""
     current: int = 0
-    """For `matched`: counterparts there are now. For `liveliness_changed`: publishers that are alive."""
+    """For `matched`: current counterparts. For `liveliness_changed`: publishers that are alive."""
     detail: str = ""
     """The counterpart's node, or the policies that do not fit."""
 
@@ -39,9 +39,9 @@ OnEvent = Callable[[QosEvent], Any]
 
 
 class SilenceTimer:
-    """Calls `silent` once a period for as long as nobody calls `touch`.
+    """Calls `silent` once a period for as long as `touch` is not called.
 
-    A touch costs one look at the clock: the alarm that is set finds out how long it has been.
+    A touch costs one look at the clock: the pending alarm finds out how long it has been.
     """
 
     __slots__ = ("_alarm", "_clock", "_last_ns", "_period_ns", "_silent")
@@ -66,13 +66,13 @@ class SilenceTimer:
         self._last_ns = self._clock.monotonic_ns()
 
     def stop(self) -> None:
-        """Watch no more, until the next `start`."""
+        """Stop watching, until the next `start`."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
 
     def move(self, clock: Clock) -> None:
-        """Go by another clock; a period under way begins anew."""
+        """Switch to another clock; a period under way begins again."""
         was_running = self.is_running
         self.stop()
         self._clock = clock

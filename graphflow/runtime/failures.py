@@ -1,4 +1,4 @@
-"""What a node does about errors of its handlers: it says them, not too often, and ends when there are too many."""
+"""What a node does about errors in its handlers: it logs them, not too often, and ends when there are too many."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from graphflow.times import NANOSECONDS, to_ns
 
 
 class ErrorBudget(NamedTuple):
-    """So many errors in so many seconds are borne; one more ends the node."""
+    """How many errors in how many seconds are tolerated; one more ends the node."""
 
     errors: int
     per: float
 
 
 class Failures:
-    """The errors of one node's handlers.
+    """The errors in one node's handlers.
 
     Args:
-        budget: So many are borne; None for any number.
+        budget: How many are tolerated; None for any number.
         end: Called with the error that ends the node.
     """
 
@@ -31,7 +31,7 @@ class Failures:
         self._host, self._budget, self._end = host, budget, end
         self._counted: deque[int] = deque()
         self._silence: dict[str, tuple[int, int]] = {}
-        """By handler: until when its errors are not logged, and how many were not."""
+        """Until when each handler's errors are not logged, and how many were not."""
 
     def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
         """A handler has raised."""
@@ -58,8 +58,8 @@ class Failures:
         if len(self._counted) > budget.errors:
             self._counted.clear()
             text = (
-                f"{budget.errors + 1} errors of handlers within {budget.per:g} s, the last in {label}: "
+                f"{budget.errors + 1} handler errors within {budget.per:g} s, the last in {label}: "
                 f"{type(error).__name__}: {error}. The node ends; on_error='log' keeps a handler out of the count, and "
-                f"error_budget of the class sets it"
+                f"the class's error_budget sets the limit"
             )
             self._end(TooManyErrors(text))

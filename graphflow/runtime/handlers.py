@@ -1,4 +1,4 @@
-"""What a node class says that it does, by methods: for timers, messages, requests and goals, and as tasks.
+"""What a node class declares that it does, by methods: for timers, messages, requests and goals, and as tasks.
 
 A decorator leaves a mark on the method and returns it as it was.
 """
@@ -78,7 +78,7 @@ class Rate:
         """The period with these values of its parameters, or with their defaults.
 
         Raises:
-            ValueError: as `clock.period_ns`.
+            ValueError: As for `clock.period_ns`.
         """
 
         def plain(source: float | Param[Any] | None) -> float | None:
@@ -97,9 +97,9 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     other = getattr(fn, MARK, None)
     if isinstance(other, Handler):
         kinds = f"@{other.kind} and @{handler.kind}"
-        raise DeclarationError(f"{handler.place}: {name} is declared twice, as {kinds}; make it two methods")
+        raise DeclarationError(f"{handler.place}: {name} is declared twice, as {kinds}; split it into two methods")
     if inspect.isgeneratorfunction(fn) or inspect.isasyncgenfunction(fn):
-        raise DeclarationError(f"{handler.place}: {name} has a yield in it, so that its body would never run")
+        raise DeclarationError(f"{handler.place}: {name} has a yield in it, so its body would never run")
     if handler.thread and inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{handler.place}: {name}: thread=True is for `def`, an `async def` runs on the loop")
     positional = [
@@ -110,11 +110,11 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     if len(positional) not in arguments:
         wanted = " or ".join(["self", "self and one argument", "self and two arguments"][n - 1] for n in arguments)
         has = f"({', '.join(p.name for p in positional)})"
-        hint = "; it gets the request only, and returns a new response" if handler.kind == "service" else ""
+        hint = "; it gets only the request and returns a new response" if handler.kind == "service" else ""
         raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}{hint}")
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
-    # A record of its own: `every = timer(1.0)` may stand on several methods.
+    # A separate record: `every = timer(1.0)` may decorate several methods.
     setattr(fn, MARK, replace(handler, place=place, takes_info=takes_info))
     return fn
 
@@ -131,14 +131,14 @@ def subscription(
     on_event: Callable[..., Any] | None = None,
     on_error: OnError = "budget",
 ) -> Callable[[F], F]:
-    """Have the method called with each message of a topic: `async def heard(self, msg: String) -> None`.
+    """Call the method with each message of a topic: `async def heard(self, msg: String) -> None`.
 
-    With a third argument, `info: MessageInfo`, it is told too who sent the message, when, and its number in the row.
+    With a third argument, `info: MessageInfo`, it also gets the sender, the times and the sequence number.
 
     Args:
         ignore_local: Leave out what this process publishes itself.
         on_event: A method defined above it, called with each `QosEvent`.
-        on_error: What an error of it means for the node.
+        on_error: What an error in it means for the node.
     """
     place = here()
     check_on_error(on_error, place)
@@ -160,12 +160,12 @@ def timer(
     thread: bool = False,
     on_error: OnError = "budget",
 ) -> Callable[[F], F]:
-    """Have the method called once a period (seconds) or `hz` times a second; a parameter may stand for either.
+    """Call the method once a period (seconds) or `hz` times a second; either may be a parameter.
 
     Missed periods are skipped and the phase is kept. The method may take a `TimerInfo`.
 
     Args:
-        on_error: What an error of it means for the node.
+        on_error: What an error in it means for the node.
     """
     place = here()
     check_on_error(on_error, place)
@@ -189,7 +189,7 @@ def service(
     thread: bool = False,
     introspection: Introspection = "off",
 ) -> Callable[[F], F]:
-    """Have the method answer a service: `async def add(self, request: X.Request) -> X.Response`.
+    """Answer a service with the method: `async def add(self, request: X.Request) -> X.Response`.
 
     Args:
         introspection: What is published of each call on `name`/_service_event.
@@ -214,17 +214,17 @@ def action(
     on_client_loss: OnClientLoss = "continue",
     cleanup_timeout: float = 10.0,
 ) -> Callable[[F], F]:
-    """Have the method carry out goals: `async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result`.
+    """Execute goals with the method: `async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result`.
 
     Returning a result succeeds, raising `Abort` or any other error aborts. A goal that is cancelled gets
     `CancelledError` at its next `await`; its client then has what `goal.partial` held.
 
     Args:
-        policy: What becomes of a goal that comes while another is under way: `reject`, `queue`, `preempt`, `parallel`.
+        policy: What becomes of a goal that arrives while another runs: `reject`, `queue`, `preempt`, `parallel`.
         accept: A method defined above it, called with each goal's message; False rejects the goal.
         cancellable: Whether cancel requests are granted; or a method, called with the handle, that decides.
         on_client_loss: What becomes of a goal whose client has gone: `continue` or `cancel`.
-        cleanup_timeout: Seconds that a cancelled body gets; then its goal counts as aborted.
+        cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
     """
     place = here()
     check_type(type, Action, "@action", place)
@@ -232,19 +232,21 @@ def action(
     check_group(group, Group, "@action", place)
     for word, value, allowed in (("policy", policy, GoalPolicy), ("on_client_loss", on_client_loss, OnClientLoss)):
         if value not in get_args(allowed):
-            raise DeclarationError(f"{place}: {word} is one of {', '.join(get_args(allowed))}, not {value!r}")
+            raise DeclarationError(f"{place}: {word} must be one of {', '.join(get_args(allowed))}, not {value!r}")
     for word, hook in (("accept", accept), ("cancellable", cancellable)):
         if not (hook is None or isinstance(hook, bool) or inspect.isfunction(hook)):
             raise DeclarationError(f"{place}: @action: {word}= takes a method defined above it, not {hook!r}")
     if not cleanup_timeout > 0:
-        raise DeclarationError(f"{place}: cleanup_timeout is a number of seconds, more than 0, not {cleanup_timeout!r}")
+        raise DeclarationError(
+            f"{place}: cleanup_timeout must be a number of seconds, more than 0, not {cleanup_timeout!r}"
+        )
     options = ActionOptions(policy, accept, cancellable, on_client_loss, cleanup_timeout)
     handler = Handler("action", place, group, thread, type, name, action=options)
     return lambda fn: _mark(fn, handler, range(2, 3))
 
 
 def task(fn: F) -> F:
-    """Run the method once the node is up, beside everything else it does. An error in it ends the node."""
+    """Run the method once the node is up, alongside everything else it does. An error in it ends the node."""
     place = here()
     if not inspect.iscoroutinefunction(fn):
         raise DeclarationError(f"{place}: @task goes on an `async def` method, without parentheses")

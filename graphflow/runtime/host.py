@@ -1,4 +1,4 @@
-"""What the parts of a node need of it, and what a node needs of its parts."""
+"""What a node's parts need from it, and what it needs from its parts."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from graphflow.runtime.context import Context
 
 
 class Host(Protocol):
-    """A node, as its publishers, services, timers and the like see it."""
+    """A node as its publishers, services, timers and the like see it."""
 
     @property
     def id(self) -> int:
-        """Its number in the process, once it runs."""
+        """The node's number in the process, once it runs."""
 
     @property
     def name(self) -> str: ...
@@ -39,42 +39,42 @@ class Host(Protocol):
 
     @property
     def context(self) -> Context:
-        """Where it runs. Raises ClosedError when it does not."""
+        """The context that the node runs in. Raises ClosedError when it does not run."""
 
     @property
     def clock(self) -> Clock:
-        """The clock that its timers, sleeps and deadlines go by. Raises ClosedError when it does not run."""
+        """The clock for its timers, sleeps and deadlines. Raises ClosedError when the node does not run."""
 
     def serves(self, service: str) -> bool:
-        """Whether a service of that full name is its own."""
+        """Whether a service of that full name is the node's own."""
 
     def runner(self, spec: RunnerSpec, items: deque[Any], group: HandlerGroup | None = None) -> Runner:
         """A runner for one of its handlers; without a group it queues behind itself only."""
 
     def forget(self, part: Part) -> None:
-        """Take a part that was closed off the list."""
+        """Remove a closed part from the list."""
 
     def handler_failed(self, label: str, error: BaseException, on_error: OnError | None = None) -> None:
-        """Tell of an error of a handler, and what it means for the node; None where a caller has the error."""
+        """Report an error in a handler and what it means for the node; None where a caller gets the error."""
 
     def report_error(self, label: str, error: BaseException) -> None:
-        """Log an error: one of graphflow's own is a sentence, any other comes with its traceback."""
+        """Log an error: graphflow's own as a sentence, any other with its traceback."""
 
 
 class Part(ABC):
     """What a node opens, stops and closes: an endpoint, an action, a timer."""
 
     opens_last = False
-    """Whether it is to open when everything else is there, as what begins work by itself."""
+    """Whether the part must open after everything else, because it begins work by itself."""
 
     @property
     def title(self) -> str:
-        """What it is and its name; empty for what has no statistics."""
+        """The part's kind and name; empty for a part without statistics."""
         return ""
 
     @property
     def endpoints(self) -> Sequence[Any]:
-        """What it has on the network, as `Endpoint`."""
+        """What the part has on the network, as `Endpoint`."""
         return ()
 
     def statistics(self) -> dict[str, Any]:
@@ -83,15 +83,15 @@ class Part(ABC):
 
     @abstractmethod
     def open(self) -> None:
-        """Begin. Done by the node."""
+        """Begin. Called by the node."""
 
     def begin_to_stop(self) -> Runner | None:
-        """Begin no more work; returns what runs its handler, whose runs are then cancelled and waited for."""
+        """Begin no more work; returns the runner of its handler, whose runs are then cancelled and waited for."""
         return None
 
     @abstractmethod
     def close(self) -> None:
-        """Withdraw it from the network. Closing twice is harmless."""
+        """Withdraw the part from the network. Closing twice is harmless."""
 
     def clock_changed(self) -> None:  # noqa: B027 - most parts go by no clock
-        """The node goes by another clock."""
+        """The node has switched to another clock."""

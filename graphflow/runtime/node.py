@@ -38,13 +38,13 @@ class Node:
     """A ROS 2 node as an async Python class. Subclass it, declare what it holds and does, and `graphflow.run` it.
 
     Args:
-        name: Its name; without one, the class's in snake case.
+        name: Its name; by default the class's in snake case.
         namespace: Where it lives: `/` or `/robot1`.
         remap: Rules, first match wins; as objects or as text `from:=to`.
         overrides: Parameter values from outside with where they were written, for graph files and command lines.
         concurrency: Groups that differ from what the class declares, by name, for graph files.
-        start_parameter_services, enable_rosout, enable_logger_service: False for a tool that nobody sets parameters
-            of, reads the log of, or asks to say more.
+        start_parameter_services, enable_rosout, enable_logger_service: False for a tool whose parameters, log and log
+            levels nobody needs.
         **params: Parameter values by name.
 
     Raises:
@@ -56,11 +56,11 @@ class Node:
     default_group: ClassVar[Group | None] = None
     """The group of handlers that name none; None lets each queue behind itself only."""
     error_budget: ClassVar[ErrorBudget | None] = ErrorBudget(20, per=10.0)
-    """Errors of timers and subscriptions that the node bears; None for any number."""
+    """Errors in timers and subscriptions that the node tolerates; None for any number."""
     node_name: ClassVar[str] = ""
-    """The name of nodes that are given none; empty: the class's name in snake case."""
+    """The name of nodes that are given none; empty for the class's name in snake case."""
     dynamic_names: ClassVar[bool | Sequence[str]] = False
-    """Names the class makes at run time, which checks cannot know: True, or patterns such as `*/cmd_vel`."""
+    """Names the class makes at run time, unknown to checks: True, or patterns such as `*/cmd_vel`."""
     __firstlineno__: ClassVar[int]
 
     def __init__(
@@ -81,7 +81,7 @@ class Node:
         values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}}
         self._core = NodeCore(self, names, values, concurrency or {})
         self.log = self._core.log
-        """The node's logger; what it says goes to the console and to /rosout."""
+        """The node's logger; its records go to the console and to /rosout."""
         self.parameters = self._core.parameters
         self._core.bind(
             parameter_services=start_parameter_services, rosout=enable_rosout, logger_service=enable_logger_service
@@ -122,19 +122,19 @@ class Node:
 
     @property
     def context(self) -> Context:
-        """The context it runs in.
+        """The context that the node runs in.
 
         Raises:
-            ClosedError: It is not running.
+            ClosedError: The node is not running.
         """
         return self._core.context
 
     @property
     def clock(self) -> Clock:
-        """The clock that its timers, sleeps and deadlines go by: simulated time when `use_sim_time` is true.
+        """The clock for the node's timers, sleeps and deadlines: simulated time when `use_sim_time` is true.
 
         Raises:
-            ClosedError: It is not running.
+            ClosedError: The node is not running.
         """
         return self._core.clock
 
@@ -143,11 +143,11 @@ class Node:
         """The group of the handler that is running: `async with self.group.released(): ...`.
 
         Raises:
-            RuntimeError: What is running is no handler in a group, but a task, say.
+            RuntimeError: What is running is not a handler in a group but, say, a task.
         """
         group = getattr(asyncio.current_task(), "group", None)
         if not isinstance(group, HandlerGroup):
-            raise RuntimeError(f"{self.full_name}: what is running here is no handler that holds a slot of a group")
+            raise RuntimeError(f"{self.full_name}: what is running here is not a handler that holds a slot of a group")
         return group
 
     @property
@@ -156,7 +156,7 @@ class Node:
 
     @property
     def endpoints(self) -> list[Endpoint]:
-        """Everything it has on the network; of actions, the services and topics that they are made of."""
+        """Everything the node has on the network; for actions, the services and topics that they consist of."""
         return self._core.endpoints
 
     def statistics(self) -> dict[str, dict[str, Any]]:
@@ -188,10 +188,10 @@ class Node:
 
         Args:
             callback: A `def` or an `async def`, called with each message; None for a subscription to be iterated.
-            takes_info: Call it with the message and a `MessageInfo`: who sent it, when, its number in the row.
+            takes_info: Call it with the message and a `MessageInfo`: sender, times, sequence number.
             ignore_local: Leave out what this process publishes itself.
             on_event: Called with each `QosEvent`.
-            on_error: What an error of the callback means for the node.
+            on_error: What an error in the callback means for the node.
         """
         core, resolved = self._core, self._core.names.resolve(name)
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
@@ -214,7 +214,7 @@ class Node:
 
         Args:
             introspection: What is published of each call on `name`/_service_event: nothing, its metadata, or
-                request and response too.
+                request and response as well.
         """
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"service {name}", group, thread)
@@ -234,7 +234,7 @@ class Node:
         """A client of the service `name`, remapped; `introspection` as for `create_service`.
 
         Args:
-            group: Answers wait for a slot of it, as in ROS 2; without one they need none.
+            group: Responses wait for a slot of it, as in ROS 2; without a group they need none.
         """
         core = self._core
         slots = None if group is None else core.groups.at_work(group)
@@ -259,11 +259,11 @@ class Node:
         """An action on `name`, remapped; `callback` takes the goal's `ServerGoalHandle` and returns the result.
 
         Args:
-            policy: What becomes of a goal that comes while another is under way.
+            policy: What becomes of a goal that arrives while another is under way.
             accept: Called with each goal's message; False rejects it.
             cancellable: Whether cancel requests are granted, or a function of the handle that decides.
             on_client_loss: What becomes of a goal whose client has gone.
-            cleanup_timeout: Seconds that a cancelled body gets; then its goal counts as aborted.
+            cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
         """
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"action {name}", group, thread)
@@ -302,27 +302,27 @@ class Node:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
 
         Args:
-            dynamic: Let it take values of every type, and be deleted.
+            dynamic: Whether it takes values of any type and may be deleted.
 
         Raises:
-            ParameterError: It exists, or the value given from outside does not fit.
+            ParameterError: The parameter exists, or the value given from outside does not fit.
         """
         return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
-        """Take away a parameter that `declare_parameter` has made.
+        """Remove a parameter that `declare_parameter` has made.
 
         Raises:
-            ParameterError: There is none of that name, or it is read-only.
+            ParameterError: There is no parameter of that name, or it is read-only.
         """
         self.parameters.undeclare(name)
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` in a worker thread, for work that would hold the loop. It cannot be cancelled."""
+        """Run `fn(*args)` in a worker thread, for work that would block the loop. It cannot be cancelled."""
         return await self.context.in_thread(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
-        """Run `fn(*args)` beside everything else until the node stops. An error in it ends the node."""
+        """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""
         self._core.spawn(fn, *args)
 
     async def on_start(self) -> None:
@@ -332,7 +332,7 @@ class Node:
         """
 
     async def on_shutdown(self) -> None:
-        """For subclasses: say goodbye. Handlers and tasks have ended; publishers and clients still work."""
+        """For subclasses: finish. Handlers and tasks have ended; publishers and clients still work."""
 
     async def enter(self, manager: AbstractAsyncContextManager[T] | AbstractContextManager[T]) -> T:
         """Enter a context manager that is left when the node stops, in reverse order, after `on_shutdown`."""
@@ -341,7 +341,7 @@ class Node:
         return self._core.entered.enter_context(manager)
 
     def shutdown(self) -> None:
-        """End the node from within: what runs it will stop it, and a process with nothing else to run ends."""
+        """End the node from within: the code that runs it will stop it, and a process with nothing else to run ends."""
         self._core.shutdown()
 
     async def wait_ended(self) -> None:

@@ -1,4 +1,4 @@
-"""The services that every ROS 2 node has beside those of its parameters: type descriptions and logger levels.
+"""The services that every ROS 2 node has besides those for its parameters: type descriptions and logger levels.
 
 Source: type_description_interfaces/srv/GetTypeDescription (REP-2016); rcl_interfaces/srv/GetLoggerLevels and
 SetLoggerLevels.
@@ -39,7 +39,7 @@ class TypeDescriptions:
             return failed(f"this node uses no type {name!r}")
         digest = registry.hash_of(name)
         if request.type_hash and request.type_hash != digest:
-            return failed(f"the {name} of this node has the hash {digest}, not {request.type_hash}")
+            return failed(f"this node's {name} has the hash {digest}, not {request.type_hash}")
         whole = registry.whole_schema(name)
         parts = referenced(whole, registry.message_schema)
         response = GetTypeDescription.Response(successful=True)
@@ -86,7 +86,7 @@ _ROS_LEVELS = {number: python for python, number in LEVELS.items()}
 
 
 class LoggerLevels:
-    """Reads and sets how much a node's loggers say: its own, by its ROS name, and those below it."""
+    """Reads and sets the levels of a node's loggers: its own, by its ROS name, and those below it."""
 
     def __init__(self, own: logging.Logger) -> None:
         self._own = own.name.removeprefix(f"{ROOT}.")
@@ -114,11 +114,9 @@ class LoggerLevels:
         for wanted in request.levels:
             logger, reason = self._logger(wanted.name), ""
             if logger is None:
-                reason = f"{wanted.name!r} is no logger of this node; its own is {self._own!r}"
+                reason = f"{wanted.name!r} is not a logger of this node; its own is {self._own!r}"
             elif wanted.level not in (0, *_ROS_LEVELS):
-                reason = (
-                    f"{wanted.level} is no level; there are 10 debug, 20 info, 30 warn, 40 error, 50 fatal, 0 unset"
-                )
+                reason = f"{wanted.level} is not a level; use 10 debug, 20 info, 30 warn, 40 error, 50 fatal, 0 unset"
             else:
                 logger.setLevel(_ROS_LEVELS.get(wanted.level, logging.NOTSET))
             results.append(SetLoggerLevelsResult(successful=not reason, reason=reason))

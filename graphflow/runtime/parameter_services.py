@@ -1,4 +1,4 @@
-"""What the outside sees of a node's parameters: ROS 2's six services, and the topic /parameter_events.
+"""What others see of a node's parameters: ROS 2's six services and the topic /parameter_events.
 
 Source: rcl_interfaces. Unlike rclpy, one unknown name in a `get` does not empty the whole answer: it comes back as
 not set.
@@ -154,7 +154,7 @@ class ParameterEvents(Part):
         self.tell({name: ParameterChange(None, parameters.get(name)) for name in parameters.names()})
 
     def tell(self, changes: Mapping[str, ParameterChange]) -> None:
-        """Publish what has changed, if anybody listens."""
+        """Publish what has changed, if there are subscriptions."""
         if not self._publisher.is_wanted:
             return
         from graphflow.msgs.rcl_interfaces.msg import Parameter as ParameterMessage

@@ -1,4 +1,4 @@
-"""A node's parameters: typed, ranged values, checked before they change and followed after.
+"""A node's parameters: typed values with ranges, checked before they change and followed after.
 
 Source: rclpy's rules for declared parameters.
 """
@@ -14,7 +14,7 @@ from graphflow.names import did_you_mean
 
 
 class ParameterChange(NamedTuple):
-    """A parameter's value before and after; None where there is no parameter."""
+    """A parameter's value before and after a change; None where there was or is no parameter."""
 
     old: Any
     new: Any
@@ -43,7 +43,7 @@ class Parameters:
         """Add a parameter; its value is the override given for it, else its default.
 
         Raises:
-            ParameterError: It is declared already, or the override does not fit.
+            ParameterError: The parameter is already declared, or the override does not fit.
         """
         if parameter.name in self._declared:
             raise ParameterError(f"parameter {parameter.name!r} is declared twice")
@@ -61,10 +61,10 @@ class Parameters:
         return value
 
     def undeclare(self, name: str) -> None:
-        """Take a parameter away.
+        """Remove a parameter.
 
         Raises:
-            ParameterError: There is none of that name, or it is read-only.
+            ParameterError: There is no parameter of that name, or it is read-only.
         """
         if self.describe(name).read_only:
             raise ParameterError(f"parameter {name!r} is read-only")
@@ -73,7 +73,7 @@ class Parameters:
         self._tell({name: ParameterChange(value, None)})
 
     def unused_overrides(self) -> list[str]:
-        """Overrides for which no parameter has been declared, as sentences that help."""
+        """Overrides for which no parameter has been declared, as helpful sentences."""
         return [
             f"there is no parameter {name!r} (from {source}){did_you_mean(name, self._declared)}"
             for name, (_, source) in self._overrides.items()
@@ -90,7 +90,7 @@ class Parameters:
         """A parameter's value.
 
         Raises:
-            ParameterError: There is none of that name; the text names the nearest.
+            ParameterError: There is no parameter of that name; the text names the nearest.
         """
         if name not in self._values:
             raise ParameterError(f"there is no parameter {name!r}{did_you_mean(name, self._declared)}")
@@ -101,7 +101,7 @@ class Parameters:
         return self._sources[name]
 
     def describe(self, name: str) -> Parameter:
-        """A parameter's declaration. Raises ParameterError as `get`."""
+        """A parameter's declaration. Raises ParameterError like `get`."""
         self.get(name)
         return self._declared[name]
 
@@ -119,7 +119,7 @@ class Parameters:
                 raise ParameterError(f"parameter {name!r} is read-only")
             if value is None and not declared.dynamic:
                 raise ParameterError(
-                    f"parameter {name!r} belongs to the node and cannot be deleted; those with dynamic typing can"
+                    f"parameter {name!r} belongs to the node and cannot be deleted; only those with dynamic typing can"
                 )
             fitted[name] = declared.fit(value)
         for check in self._checks:
@@ -133,11 +133,11 @@ class Parameters:
         self._tell(changes)
 
     def check(self, check: Check) -> None:
-        """Have `check(values)` called before each change; a ParameterError that it raises refuses them all."""
+        """Call `check(values)` before each change; a ParameterError that it raises refuses them all."""
         self._checks.append(check)
 
     def observe(self, observer: Observer) -> None:
-        """Have `observer(changes)` called after each change, by name; also for what is declared or deleted."""
+        """Call `observer(changes)`, changes by name, after each change; also when one is declared or deleted."""
         self._observers.append(observer)
 
     def _tell(self, changes: Mapping[str, ParameterChange]) -> None:

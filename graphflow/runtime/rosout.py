@@ -1,4 +1,4 @@
-"""Python's logging as ROS 2's: the console's line format, and every record published on /rosout.
+"""Python's logging as ROS 2's: the console's line format and every record published on /rosout.
 
 Source: rcutils' default console format; rcl_interfaces/msg/Log.
 """
@@ -46,16 +46,16 @@ def log_level(word: str) -> int:
     """A logging level by ROS 2's word: debug, info, warn, error or fatal.
 
     Raises:
-        GraphflowError: It is none of them.
+        GraphflowError: The word is none of these.
     """
     words = {"debug": 10, "info": 20, "warn": 30, "warning": 30, "error": 40, "fatal": 50}
     if word.lower() not in words:
-        raise GraphflowError(f"{word!r} is no log level{did_you_mean(word.lower(), words)}")
+        raise GraphflowError(f"{word!r} is not a log level{did_you_mean(word.lower(), words)}")
     return words[word.lower()]
 
 
 def setup_console(level: int = logging.INFO) -> None:
-    """Write graphflow's log records to stderr in ROS 2's format. Calling it again changes the level only."""
+    """Write graphflow's log records to stderr in ROS 2's format. Calling it again only changes the level."""
     logger = logging.getLogger("graphflow")
     logger.setLevel(level)
     if not any(isinstance(h.formatter, ConsoleFormatter) for h in logger.handlers):
@@ -81,7 +81,7 @@ class Rosout(logging.Handler, Part):
         self._host.log.addHandler(self)
 
     def detach(self) -> None:
-        """Listen to the node's logger no more."""
+        """Stop listening to the node's logger."""
         self._host.log.removeHandler(self)
 
     def close(self) -> None:
@@ -100,7 +100,7 @@ class Rosout(logging.Handler, Part):
             loop.call_soon_threadsafe(self._publish, record)
 
     def _is_ours(self, record: logging.LogRecord) -> bool:
-        """Whether this is the nearest node above the record: those of /arm/hand pass by the logger of /arm too."""
+        """Whether this is the nearest node above the record: those of /arm/hand reach the logger of /arm too."""
         logger: logging.Logger | None = logging.getLogger(record.name)
         while logger is not None and not any(isinstance(h, Rosout) for h in logger.handlers):
             logger = logger.parent
@@ -110,7 +110,7 @@ class Rosout(logging.Handler, Part):
         if self._host.is_running:
             try:
                 self._publisher.publish(to_log(record))
-            except Exception:  # as every handler of Python's: to log is never an error of who logs
+            except Exception:  # as in every handler of Python's: logging must not fail its caller
                 self.handleError(record)
 
 

@@ -23,14 +23,14 @@ from graphflow.transport import loop
 logger = logging.getLogger("graphflow")
 
 SAME_SIGNAL = 0.1
-"""Seconds within which a second signal is the first once more."""
+"""Seconds within which a second signal counts as the first."""
 
 
 @asynccontextmanager
 async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerator[Context, None]:
-    """Run nodes for the length of the block; a node that fails cancels the block and its error leaves it.
+    """Run nodes for the length of the block; a node that fails cancels the block and its error is raised from it.
 
-    Errors come out as they are; only if several happen at once, as an ExceptionGroup.
+    Errors are raised as they are, and only if several happen at once as an ExceptionGroup.
 
     Args:
         context: Where to run them; without one, a new one over Zenoh, closed at the end.
@@ -54,7 +54,7 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
                         watcher.cancel()
         except BaseExceptionGroup as errors:
             failure = errors.exceptions[0] if len(errors.exceptions) == 1 else errors
-        if failure is not None:  # raised here, where it does not get the group for a context
+        if failure is not None:  # raised here, where the group does not become its context
             raise failure
 
 
@@ -64,7 +64,7 @@ async def serve(
     stop: asyncio.Event,
     ready: Callable[[Node], None] | None = None,
 ) -> None:
-    """Run nodes until `stop` is set, one of them fails, or all have ended themselves. The context is to be closed then.
+    """Run nodes until `stop` is set, one fails, or all have ended themselves. The caller then closes the context.
 
     Args:
         ready: Called with each node once it has started.
@@ -91,7 +91,7 @@ async def serve(
 
 
 async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> bool:
-    """Start a node; False when it was asked to stop before it was ready."""
+    """Start a node; returns False when it was asked to stop before it was ready."""
     starting = asyncio.create_task(core_of(node).start(context))
     try:
         await asyncio.wait({starting, asked}, return_when=asyncio.FIRST_COMPLETED)
@@ -105,12 +105,12 @@ async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> boo
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
-    """Set `stop` on SIGINT or SIGTERM; a second one ends the process at once, also when the loop is blocked.
+    """Set `stop` on SIGINT or SIGTERM; a second one ends the process at once, even when the loop is blocked.
 
-    Signals that come together are one: who signals a process and then its group means it once.
+    Signals that come together count as one: a signal to a process and then to its group is meant once.
 
     Returns:
-        What puts the former handlers back.
+        A function that restores the former handlers.
     """
     loop = asyncio.get_running_loop()
     first = 0.0
@@ -191,7 +191,7 @@ def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
 
 
 def print_error(error: GraphflowError) -> None:
-    """Tell the person at the terminal."""
+    """Tell the user at the terminal."""
     sys.stderr.write(f"error: {error}\n")
 
 

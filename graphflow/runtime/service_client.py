@@ -1,4 +1,4 @@
-"""Clients of services at work: calls with a deadline, whose failures have names."""
+"""Service clients: calls with a deadline, whose failures have names."""
 
 from __future__ import annotations
 
@@ -43,21 +43,21 @@ from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 DISCOVERY_GRACE = 1.0
-"""Seconds a call waits for a server that nobody has announced yet."""
+"""Seconds a call waits for a server that has not been announced yet."""
 
 
 class _Reply(NamedTuple):
-    """An answer that waits for a slot."""
+    """A response that waits for a slot."""
 
     call: str
     deliver: Callable[[], None]
 
 
 class ServiceClient(Endpoint, Generic[Request, Response]):
-    """A client at work.
+    """A client of a service, as it runs.
 
     Args:
-        group: Whose slots answers take, as in ROS 2; None delivers them at once.
+        group: The group whose slots responses take, as in ROS 2; None delivers them at once.
     """
 
     kind = Kind.CLIENT
@@ -75,7 +75,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._group = group
         self._replies: deque[_Reply] = deque()
         self.runner: Runner | None = None
-        """Delivers answers that wait for a slot of the client's group."""
+        """Delivers responses that wait for a slot of the client's group."""
         service = registry.service_schema(type_.NAME)
         self._request: type[Any] = registry.interface_class(service.request.name)
         self._requests, self._responses = registry.codec(service.request.name), registry.codec(service.response.name)
@@ -83,7 +83,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._service_events = ServiceEvents(host, type_, name)
         self._caller: Caller | None = None
         self._line: ClientLine | None = None
-        """To the server, while there is only one."""
+        """The line to the server, while there is only one."""
         self._pending: set[Future[Answer]] = set()
         self._waiting: set[Future[None]] = set()
 
@@ -97,23 +97,23 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self._service_events.open()
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
-        """As `ServiceServer.configure_introspection`."""
+        """The same as `ServiceServer.configure_introspection`."""
         self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def service_is_ready(self) -> bool:
         """Whether a server of this name and type is in the graph and can be reached."""
         self._announced()
-        # A token may come before what it announces: only both together make sure of the first call.
+        # A token may come before what it announces: only both together make the first call safe.
         return bool(self.matched) and self._caller is not None and self._caller.has_server
 
     async def wait_ready(self, timeout: float | None = None) -> None:
         """Wait until there is a server.
 
         Args:
-            timeout: Seconds; None for as long as it takes.
+            timeout: Seconds; None to wait as long as it takes.
 
         Raises:
-            ServiceUnavailable: None came in time.
+            ServiceUnavailable: No server came in time.
             ClosedError: The node is not running, or stopped meanwhile.
         """
         if self.service_is_ready():
@@ -152,10 +152,10 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         if self.host.serves(self.name):
             return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
         offers = {e.name for e in self.host.context.cache.endpoints(Kind.SERVICE)}
-        return f"nobody offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
+        return f"no node offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
 
     async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
-        """Ask, and wait for the response.
+        """Send a request and wait for the response.
 
         Args:
             request: An instance of the service's `Request`.
@@ -172,7 +172,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return (await self.call_noted(request, timeout=timeout))[0]
 
     async def call_noted(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> tuple[Response, str]:
-        """As `call`, with the note that a server of graphflow's has added; empty where there is none."""
+        """As `call`, with the note that a graphflow server has added; empty if there is none."""
         if request.__class__ is not self._request:
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
         payload = self._requests.encode(request)
@@ -242,15 +242,15 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
     def _send(
         self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
-        """Put a request on its way; returns what gives the answer up."""
+        """Send a request; returns a function that gives up the response."""
         if self._line is not None and self._line.is_open and len(self.matched) == 1:
             return self._line.call(sequence, payload, beside + chain, arrived)
         assert self._caller is not None
-        # Other servers than this process's own may not know what stands behind the attachment.
+        # Servers other than this process's own may not understand what follows the attachment.
         return self._caller.call(payload, beside + chain if self._is_own() else beside, arrived)
 
     def _queued(self, answered: Callable[[Answer | None], None], call: str) -> Callable[[Answer | None], None]:
-        """Have answers wait for a slot of the client's group."""
+        """Make responses wait for a slot of the client's group."""
         runner = self.runner
         assert runner is not None
 
@@ -266,13 +266,13 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return queue
 
     def call_sync(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
-        """Ask from a thread, and block it until the response is there. For `def` handlers with `thread=True`.
+        """Call from a thread, and block it until the response is there. For `def` handlers with `thread=True`.
 
-        Arguments and errors as `call`.
+        Arguments and errors as for `call`.
 
         Raises:
             LoopBlockedError: This is the event loop's thread, where nothing could ever be received. With the deadlock
-                policy `report`, which is for teaching, it blocks all the same.
+                policy `report`, which is for teaching, it blocks anyway.
         """
         context = self.host.context
         if (thread := threading.get_ident()) != context.ledger.thread:
@@ -280,7 +280,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             return asyncio.run_coroutine_threadsafe(asking, context.loop).result()
         if context.search.policy != "report":
             raise LoopBlockedError(
-                f"{self.name}: call_sync would block the event loop, which has to receive the answer; "
+                f"{self.name}: call_sync would block the event loop, which must receive the response; "
                 "await client.call(...) in an `async def`, or run the handler in a thread (thread=True)"
             )
         return self._block(request, context.call_timeout if timeout is ... else timeout)
@@ -292,14 +292,14 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             return await self.call(request, timeout=timeout)
 
     def _block(self, request: Request, timeout: float | None) -> Response:
-        """Send a request and wait for its answer where it cannot arrive."""
+        """Send a request and wait for its response where it cannot arrive."""
         asking = self.call(request, timeout=timeout)
         with closing(asking), self.host.context.ledger.blocked_by(asking.send(None)):
             threading.Event().wait(timeout)
-        raise CallTimeout(f"{self.name} could not answer within {timeout:g} s: the event loop was blocked")
+        raise CallTimeout(f"no response from {self.name} could arrive within {timeout:g} s: the event loop was blocked")
 
     def _is_own(self) -> bool:
-        """Whether its only server is in this process."""
+        """Whether the service's only server is in this process."""
         servers = self.matched.values()
         return len(servers) == 1 and all(server.zid == self.host.context.session.zid for server in servers)
 
@@ -307,7 +307,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         return self.runner
 
     def close(self) -> None:
-        """Withdraw it. Calls that are waiting end with ClosedError."""
+        """Withdraw the client. Calls that are waiting end with ClosedError."""
         self._service_events.close()
         waiting: list[Future[Any]] = [*self._pending, *self._waiting]
         for future in waiting:
@@ -324,11 +324,11 @@ def _deliver(reply: _Reply) -> None:
 
 
 def _delivered(*_: Any) -> None:
-    """The future of the call has what there is to be told."""
+    """Nothing: the call's future already has its outcome."""
 
 
 def _nothing() -> None:
-    """There is nothing to be given up yet."""
+    """Nothing: there is nothing to give up yet."""
 
 
 def _error_of(payload: bytes, service: str) -> CallError:

@@ -1,4 +1,4 @@
-"""Service introspection: what passes between a client and a server, published for whoever wants to look.
+"""Service introspection: what passes between a client and a server, published for anyone who wants to look.
 
 Source: service_msgs/msg/ServiceEventInfo; rcl service_introspection.
 """
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from graphflow.msgs.base import Message, Service
 
 Introspection = Literal["off", "metadata", "contents"]
-"""What is published of a call: nothing, who called when, or request and response too."""
+"""What is published of a call: nothing, who called when, or request and response as well."""
 
 
 class ServiceEvent(IntEnum):
@@ -42,7 +42,7 @@ class ServiceEvents:
         self._publisher: TopicPublisher[Any] | None = None
 
     def configure(self, level: Introspection, qos: Qos, *, is_open: bool) -> None:
-        """Publish so much from now on.
+        """Publish this much from now on.
 
         Args:
             is_open: Whether the client or server is on the network.
@@ -51,7 +51,7 @@ class ServiceEvents:
             ValueError: There is no such level.
         """
         if level not in ("off", "metadata", "contents"):
-            raise ValueError(f"introspection is off, metadata or contents, not {level!r}")
+            raise ValueError(f"introspection must be off, metadata or contents, not {level!r}")
         self.close()
         self._level, self._qos = level, qos
         if is_open:

@@ -1,4 +1,4 @@
-"""Services at work."""
+"""Service servers."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
 
 REQUEST_QUEUE = 64
-"""Requests that may wait for a service; more are refused with ServerBusy."""
+"""Requests that may wait for a service; any more are refused with ServerBusy."""
 NOTE_LIMIT = 1_000
-"""Bytes of a note beside a response, at most."""
+"""Longest note sent with a response, in bytes."""
 
 STOPPING = RemoteError("Cancelled", "the server is stopping")
-"""What a server that stops answers; no exception class is called that."""
+"""What a stopping server answers; no exception class has that name."""
 
 
 class ServiceServer(Endpoint, Generic[Request, Response]):
-    """A service at work.
+    """A server of a service, as it runs.
 
     Args:
         label: The handler's name, for messages.
-        is_inner: Whether it is one that every node has, or a part of an action.
+        is_inner: Whether the service is one that every node has, or part of an action.
     """
 
     kind = Kind.SERVICE
@@ -74,7 +74,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._service_events = ServiceEvents(host, type_, name)
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
-        """Publish what passes on `<service>/_service_event`: nothing, its metadata, or its contents too."""
+        """Publish what passes on `<service>/_service_event`: nothing, its metadata, or its contents as well."""
         self._service_events.configure(level, Qos.of(qos), is_open=self.is_open)
 
     def _open(self, key: str) -> None:
@@ -131,7 +131,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         return self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
-        if not self.host.is_running:  # it has not waited for this run, and its clients know that it has gone
+        if not self.host.is_running:  # stopping did not wait for this run, and its clients know that it has gone
             return
         if error is None:
             try:

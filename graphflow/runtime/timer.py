@@ -1,4 +1,4 @@
-"""Timers at work."""
+"""Timers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class TimerInfo(NamedTuple):
 
 
 class Timer(Part):
-    """A timer at work: skips missed periods, keeps phase, and has one run at a time.
+    """A timer as it runs: skips missed periods, keeps phase, and has one run at a time.
 
     Source: rcl timer.c.
     """
@@ -72,7 +72,7 @@ class Timer(Part):
         """Seconds between runs. Setting it re-arms the timer, one new period from now.
 
         Raises:
-            ValueError: It is set to something that is not a positive number.
+            ValueError: The new value is not a positive number.
         """
         return self._period_ns / 1e9
 
@@ -89,11 +89,11 @@ class Timer(Part):
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew: the next run is one period from now."""
+        """Start over: the next run is one period from now."""
         self._arm(self.host.clock.monotonic_ns() + self._period_ns)
 
     def clock_changed(self) -> None:
-        """The node goes by another clock: begin anew on it, if the timer runs."""
+        """The node has switched to another clock: start over on it, if the timer runs."""
         if self._handle is not None:
             self.reset()
 
@@ -144,7 +144,7 @@ class Timer(Part):
         return self.runner
 
     def close(self) -> None:
-        """Stop for good, and cancel a run under way."""
+        """Stop for good and cancel a run under way."""
         self.cancel()
         if self.runner is not None:
             self.runner.cancel()

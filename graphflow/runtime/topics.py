@@ -1,4 +1,4 @@
-"""Publishers and subscriptions at work."""
+"""Publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from graphflow.wire.liveliness import Entity, Kind
 M = TypeVar("M", bound=Message)
 
 KEEP_ALL_BOUND = 10_000
-"""Messages a KEEP_ALL subscription holds before it counts losses."""
+"""Messages that a KEEP_ALL subscription holds before it counts losses."""
 SOURCES_BOUND = 4096
-"""Publishers a subscription keeps count of."""
+"""Publishers that a subscription keeps track of."""
 
 
 class TopicPublisher(Endpoint, Generic[M]):
-    """A publisher at work."""
+    """A publisher as it runs."""
 
     kind = Kind.PUBLISHER
 
@@ -67,15 +67,15 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a message published now would reach anybody, or be kept: look before you make a big one."""
+        """Whether a message published now would reach a subscription or be kept: check before you build a large one."""
         return self._sender.is_wanted
 
     def publish(self, message: M) -> None:
         """Send a message. Never waits: a subscriber that cannot keep up loses messages.
 
         Raises:
-            EncodeError: A field does not fit its type, or the message is of another type. A message that nobody
-                listens to is not encoded, and its fields are not looked at.
+            EncodeError: A field does not fit its type, or the message is of another type. A message without
+                listeners is not encoded, and its fields are not looked at.
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
@@ -94,7 +94,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._lease.touch()
 
     def assert_liveliness(self) -> None:
-        """Say that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
+        """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
 
         Raises:
             ClosedError: The node is not running.
@@ -113,7 +113,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         return {"published": self.published, **super().statistics()}
 
     def get_subscription_count(self) -> int:
-        """Subscriptions in the graph that get these messages."""
+        """Number of subscriptions in the graph that get these messages."""
         self._announced()
         return len(self.matched)
 
@@ -141,12 +141,12 @@ _NOT_OPEN = _NotOpen()
 
 
 def _alive_key(publisher: Entity) -> str:
-    """Where a publisher with manual liveliness says that it is alive. ROS 2 has no word for that over Zenoh."""
+    """Where a publisher with manual liveliness asserts that it is alive. rmw_zenoh has no equivalent."""
     return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"
 
 
 _NO_INFO = (0, 0, bytes(16))
-"""Beside a message without an attachment, or with one of another layout."""
+"""Stands in for a missing attachment, or for one of another layout."""
 
 
 class _Source:
@@ -162,7 +162,7 @@ class _Source:
 
 
 class TopicSubscription(Endpoint, Generic[M]):
-    """A subscription at work: with a callback, or to be iterated: `async for message in subscription`.
+    """A subscription as it runs: with a callback, or to be iterated: `async for message in subscription`.
 
     Args:
         takes_info: Whether the callback is called with the message and its `MessageInfo`.
@@ -189,7 +189,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
         self.type = type_
         self.malformed = 0
-        """Payloads that were no message of the type, and were dropped."""
+        """Payloads that were not a message of the type and were dropped."""
         self.expired = 0
         """Messages dropped because they were older than the publisher's lifespan, or the subscription's."""
         self._callback = callback
@@ -226,7 +226,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._declared.append(receiver)
 
     def _watch_deadline(self, inbox: Inbox) -> None:
-        """Count a missed deadline for every period without a message, while there is a publisher to keep it."""
+        """Count a missed deadline for every period without a message, while there is a publisher to meet it."""
         timer = SilenceTimer(self.host.clock, self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
         ready = inbox.ready
 
@@ -251,7 +251,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     @property
     def lost(self) -> int:
-        """Messages that never arrived, told by gaps in the publishers' sequence numbers."""
+        """Messages that never arrived, counted by gaps in the publishers' sequence numbers."""
         return self.event_total("message_lost")
 
     def statistics(self) -> dict[str, Any]:
@@ -270,7 +270,7 @@ class TopicSubscription(Endpoint, Generic[M]):
                 timer.move(self.host.clock)
 
     def get_publisher_count(self) -> int:
-        """Publishers in the graph whose messages arrive here."""
+        """Number of publishers in the graph whose messages arrive here."""
         self._announced()
         return len(self.matched)
 
@@ -296,7 +296,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         def silent() -> None:
             assert source.lease is not None
             if any(_gid_of(beside) == other.gid for _, beside in map(read, waiting.items)):
-                source.lease.touch()  # it has spoken: the handler is late, not the publisher
+                source.lease.touch()  # it has published: the handler is late, not the publisher
                 return
             source.lease.stop()
             self._liveliness_changed(-1, other.node_name)
@@ -332,11 +332,11 @@ class TopicSubscription(Endpoint, Generic[M]):
     # taking messages
 
     def _take(self, arrival: Any) -> tuple[M, tuple[int, int, bytes]] | None:
-        """The message that has arrived and the fields of its `MessageInfo`; None when it is too old or malformed."""
+        """The arrived message and the fields of its `MessageInfo`; None when it is too old or malformed."""
         payload, beside = self._read(arrival)
         try:
             fields = attachment.fields(beside or b"")
-        except DecodeError:  # peers that send none, or one of another layout, are heard all the same
+        except DecodeError:  # peers that send none, or one of another layout, are heard anyway
             fields = _NO_INFO
         else:
             if not self._is_fresh(*fields):
@@ -352,7 +352,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         """Note where a message stands among its publisher's; False when it has outlived its lifespan."""
         source = self._sources.get(gid)
         if source is None:
-            if len(self._sources) >= SOURCES_BOUND:  # whoever invents senders must not fill the memory
+            if len(self._sources) >= SOURCES_BOUND:  # invented senders must not fill the memory
                 return True
             source = self._sources[gid] = _Source(self.qos.lifespan_ns)
         missing = sequence - source.sequence - 1
@@ -409,7 +409,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         return (await self.next_with_info())[0]
 
     async def next_with_info(self) -> tuple[M, MessageInfo]:
-        """The next message and what came beside it. Ends the iteration when the subscription is closed."""
+        """The next message and its `MessageInfo`. Ends the iteration when the subscription is closed."""
         while True:
             if self._inbox is None or self.entity is None:
                 raise StopAsyncIteration
@@ -446,7 +446,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
 
 def _gid_of(beside: bytes | None) -> bytes:
-    """The sender named by an attachment; empty when there is none."""
+    """The sender named by an attachment; empty if there is none."""
     return beside[-16:] if beside is not None else b""
 
 
@@ -455,4 +455,4 @@ def _unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
 
 
 def _nothing() -> None:
-    """Nobody waits yet."""
+    """Nothing waits yet."""

@@ -26,7 +26,7 @@ VALUE_FIELDS = (
 
 
 def to_message(value: Any, type_: int) -> rcl.ParameterValue:
-    """A value as message.
+    """A value as a message.
 
     Args:
         type_: A number of rcl_interfaces/msg/ParameterType.
@@ -40,12 +40,12 @@ def from_message(message: rcl.ParameterValue) -> Any:
     """The Python value of a message; None when it is not set.
 
     Raises:
-        ParameterError: Its type number is none of ROS 2's.
+        ParameterError: Its type number is not one of ROS 2's.
     """
     if message.type == 0:
         return None
     if message.type >= len(VALUE_FIELDS):
-        raise ParameterError(f"{message.type} is no parameter type")
+        raise ParameterError(f"{message.type} is not a parameter type")
     value = getattr(message, VALUE_FIELDS[message.type])
     if message.type == 5:
         return value.tobytes()

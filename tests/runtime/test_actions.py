@@ -54,7 +54,7 @@ async def test_a_goal_can_be_refused(graph: Graph, order: int) -> None:
     """By the accept hook, also by one that fails."""
     _, asker = await pair(graph)
 
-    with pytest.raises(GoalRejected, match="/fibonacci has rejected the goal"):
+    with pytest.raises(GoalRejected, match="/fibonacci rejected the goal"):
         await asker.order(order)
 
 

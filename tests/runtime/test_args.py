@@ -97,7 +97,7 @@ def test_values_for_one_node() -> None:
         (["-p", ":=2"], "-p ':=2': write name:=value"),
         (["-r", "nothing"], "'nothing' is not a remap rule; write it as from:=to"),
         (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node'?; use --ros-args -r __ns:=/turtle1"),
-        (["--ros-args", "--remp", "a:=b"], "'--remp' is no ROS argument; did you mean '--remap'?"),
+        (["--ros-args", "--remp", "a:=b"], "'--remp' is not a ROS argument; did you mean '--remap'?"),
     ],
 )
 def test_what_is_wrong_is_said(words: list[str], text: str) -> None:

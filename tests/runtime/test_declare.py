@@ -25,7 +25,7 @@ def of_three(self: Any, one: Any, two: Any) -> None: ...
 MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Publisher(anything("chatter"), anything(String)), "Publisher needs a message class, not 'chatter'"),
     (lambda: Publisher(anything(AddTwoInts), "x"), "Publisher needs a message class, not <class"),
-    (lambda: Publisher(String, anything(10)), "Publisher: the type comes first, then the name; 10 is no name"),
+    (lambda: Publisher(String, anything(10)), "Publisher: the type comes first, then the name; 10 is not a name"),
     (lambda: Publisher(String, "a b"), "Publisher: 'a b' is not a topic or service name: 'a b' may have only letters"),
     (lambda: Publisher(String, ""), "Publisher: '' is not a topic or service name: it is empty"),
     (lambda: Publisher(String, "x", depth=-1), "a queue depth cannot be -1"),

@@ -339,7 +339,7 @@ async def test_only_the_handler_itself_can_release_its_slot(graph: Graph) -> Non
 
     assert len(log) == 2
     assert all("cannot be released here: only a handler that runs in it can do that" in text for text in log)
-    with pytest.raises(RuntimeError, match="no handler that holds a slot"):
+    with pytest.raises(RuntimeError, match="not a handler that holds a slot"):
         _ = node.group
 
 

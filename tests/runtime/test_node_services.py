@@ -85,8 +85,8 @@ async def test_logger_levels_are_read_and_set(graph: Graph) -> None:
         )
         results = (await graph.call(SetLoggerLevels, "/left/arm/set_logger_levels", asked)).results
         assert [r.successful for r in results] == [True, True, False, False]
-        assert results[2].reason == "'right.arm' is no logger of this node; its own is 'left.arm'"
-        assert results[3].reason.startswith("11 is no level")
+        assert results[2].reason == "'right.arm' is not a logger of this node; its own is 'left.arm'"
+        assert results[3].reason.startswith("11 is not a level")
         assert node.log.isEnabledFor(logging.DEBUG)
 
         names = GetLoggerLevels.Request(names=["left.arm", "left.arm.hand", "left.arm.foot", "other"])

@@ -211,5 +211,5 @@ def test_levels_by_word(word: str, level: int) -> None:
 
 def test_a_level_that_is_none() -> None:
     """The error offers the nearest."""
-    with pytest.raises(GraphflowError, match="'debg' is no log level; did you mean 'debug'"):
+    with pytest.raises(GraphflowError, match="'debg' is not a log level; did you mean 'debug'"):
         log_level("debg")

@@ -46,7 +46,7 @@ def test_a_value_that_is_not_set() -> None:
 
 def test_a_type_number_that_is_none() -> None:
     """A peer's unknown type is an error of its own name."""
-    with pytest.raises(ParameterError, match="10 is no parameter type"):
+    with pytest.raises(ParameterError, match="10 is not a parameter type"):
         from_message(ParameterValue(type=10))
 
 
