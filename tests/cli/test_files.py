@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.exits import UsageFault
 from graphflow.cli.files import find_graph
+from graphflow.errors import UsageFault
 from tests.conftest import PROJECT, Machine
 
 GRAPH = "nodes:\n  /talker: {class: nodes.talker:Talker, params: {rate: 5.0}, remap: {chatter: said}}\n"

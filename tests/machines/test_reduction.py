@@ -26,6 +26,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
     joined,
 )
+from tests.cases import cases, count, limit
 from tests.machines.pictures import BACKGROUND, DEAD, LIVE, call, circle, group, picture, queue, run, waits_for_itself
 from tests.machines.tiny_graph import (
     Ask,
