@@ -12,7 +12,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, OnError
 from graphflow.machines.goal import GoalRules
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
-from graphflow.names import Remap, Resolver
+from graphflow.names import Remap, Resolution, Resolver
 from graphflow.qos import SERVICES, Qos
 from graphflow.runtime import declared
 from graphflow.runtime.action_client import GoalClient
@@ -116,17 +116,21 @@ class Node:
         return self._core.full_name
 
     @property
-    def names(self) -> Resolver:
-        """Its names: `names.resolve("pose")` is what a remap has made of one."""
-        return self._core.names
+    def derivations(self) -> Mapping[str, Resolution]:
+        """How each name came about that the node has used, by its full name before remaps."""
+        return self._core.names.derivations
+
+    def resolve_topic_name(self, name: str) -> str:
+        """The full name of a topic that the node calls `name`, remapped."""
+        return self._core.names.resolve(name)
+
+    def resolve_service_name(self, name: str) -> str:
+        """The full name of a service or action that the node calls `name`, remapped."""
+        return self._core.names.resolve(name, "service")
 
     @property
     def context(self) -> Context:
-        """The context that the node runs in.
-
-        Raises:
-            ClosedError: The node is not running.
-        """
+        """The context that the node runs in. Raises ClosedError when it is not running."""
         return self._core.context
 
     @property
@@ -294,7 +298,6 @@ class Node:
         """
         nanoseconds = period_ns(period, None)
         label, call, slots = self._core.place(callback, "timer", group, thread)
-
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
         return self._core.add(made, late=True)
 
@@ -310,11 +313,7 @@ class Node:
         return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
-        """Remove a parameter that `declare_parameter` has made.
-
-        Raises:
-            ParameterError: There is no parameter of that name, or it is read-only.
-        """
+        """Remove a parameter that `declare_parameter` has made. Raises ParameterError if it cannot."""
         self.parameters.undeclare(name)
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
