@@ -112,7 +112,7 @@ def entries_of(node: Subject) -> set[str]:
 
 
 @dataclass(frozen=True)
-class _Place:
+class _Spot:
     """A frame of one of the node's methods."""
 
     frame: FrameType
@@ -138,11 +138,11 @@ class _Question:
         self._source = source_of(self._instance)
         self._waits = [wait for wait in map(object_wait, frames) if wait is not None]
         self.is_bounded = any(wait.is_bounded for wait in self._waits)
-        self._places: list[_Place] = []
+        self._places: list[_Spot] = []
         for frame in frames:
             function = self._source.function(frame.f_code)
             if function is not None and frame.f_locals.get("self") is self._instance:
-                self._places.append(_Place(frame, function))
+                self._places.append(_Spot(frame, function))
             elif frame.f_locals.get("self") is self._instance and not _is_library(frame):
                 raise Unknown  # a method whose source was not found
             elif self._places and not _is_library(frame):

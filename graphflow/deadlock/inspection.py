@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from graphflow.deadlock.protocols import Process, Subject
+from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.search import Search
 from graphflow.errors import GraphflowError, InvalidName, RemoteError
 from graphflow.executor.runner import Runner
@@ -26,7 +26,7 @@ _KINDS = ("timer", "subscription", "service", "action")
 class Inspection:
     """The answers of one process."""
 
-    def __init__(self, process: Process, search: Search) -> None:
+    def __init__(self, process: Surroundings, search: Search) -> None:
         self._process, self._search = process, search
         session, domain = process.session, process.domain
         self._reports = (

@@ -48,7 +48,7 @@ class Subject(Protocol):
         """Methods that are called outside any handler: checks of parameters, events, whether a goal is wanted."""
 
 
-class Process(Protocol):
+class Surroundings(Protocol):
     """What the nodes of one process share, as far as the search needs it."""
 
     @property

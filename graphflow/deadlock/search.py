@@ -18,7 +18,7 @@ from functools import partial
 from typing import NamedTuple
 
 from graphflow.deadlock.chains import Chains
-from graphflow.deadlock.protocols import Process
+from graphflow.deadlock.protocols import Surroundings
 from graphflow.deadlock.snapshot import Snapshot, id_of
 from graphflow.deadlock.stalls import Stalls
 from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive, calls_of
@@ -80,7 +80,7 @@ class Foreign(NamedTuple):
 class Search:
     """The search for deadlocks in which one process has a part. One per process."""
 
-    def __init__(self, process: Process, policy: DeadlockPolicy) -> None:
+    def __init__(self, process: Surroundings, policy: DeadlockPolicy) -> None:
         self._process = process
         self.policy = policy
         self.is_on = policy != "off"

@@ -22,7 +22,7 @@ from weakref import WeakKeyDictionary
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, method_of, setters
-from graphflow.deadlock.protocols import Process, Subject
+from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import innermost
 from graphflow.deadlock.watchdog import Watchdog
@@ -60,7 +60,7 @@ LOOP_LIMIT = 0.2
 class Snapshot:
     """Takes the wait-for graph of one process, and remembers between two of them what has been seen before."""
 
-    def __init__(self, process: Process, watchdog: Watchdog) -> None:
+    def __init__(self, process: Surroundings, watchdog: Watchdog) -> None:
         self._process, self._watchdog = process, watchdog
         self._count = 0
         """The numbers of tasks that have one."""
@@ -120,7 +120,7 @@ def place_of(task: Any) -> str:
 class _Look:
     """One wait-for graph in the making."""
 
-    def __init__(self, process: Process, memory: Snapshot, watchdog: Watchdog) -> None:
+    def __init__(self, process: Surroundings, memory: Snapshot, watchdog: Watchdog) -> None:
         self._process, self._memory, self._watchdog = process, memory, watchdog
         self._ledger = process.ledger
         self._zid = process.session.zid

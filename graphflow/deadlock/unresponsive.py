@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import logging
 
-from graphflow.deadlock.protocols import Process
+from graphflow.deadlock.protocols import Surroundings
 from graphflow.machines.explain import title, where
 from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
 from graphflow.times import NANOSECONDS
@@ -25,7 +25,7 @@ SILENT_AFTER = 1.0
 class Unresponsive:
     """The processes that did not answer. One per process."""
 
-    def __init__(self, here: Process) -> None:
+    def __init__(self, here: Surroundings) -> None:
         self._here = here
         self._processes: dict[str, ProcessToken] = {}
         self._since: dict[str, int] = {}

@@ -43,7 +43,7 @@ class Event(Enum):
     EXIT = "exit"
 
 
-class Action(Enum):
+class Do(Enum):
     SPAWN = "spawn"
     TERMINATE = "terminate"
     """SIGTERM to the whole process group."""
@@ -53,27 +53,27 @@ class Action(Enum):
     """The process was not ready in time: report it."""
 
 
-TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Action, ...]]]] = {
+TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
     State.PENDING: {
-        Event.GO: (State.STARTING, (Action.SPAWN,)),
+        Event.GO: (State.STARTING, (Do.SPAWN,)),
         Event.STOP: (State.ENDED, ()),
         Event.KILL: (State.ENDED, ()),
     },
     State.STARTING: {
         Event.READY: (State.READY, ()),
-        Event.STOP: (State.STOPPING, (Action.TERMINATE,)),
-        Event.KILL: (State.STOPPING, (Action.KILL,)),
-        Event.LATE: (State.STOPPING, (Action.GIVE_UP, Action.TERMINATE)),
+        Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
+        Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.LATE: (State.STOPPING, (Do.GIVE_UP, Do.TERMINATE)),
         Event.EXIT: (State.ENDED, ()),
     },
     State.READY: {
-        Event.STOP: (State.STOPPING, (Action.TERMINATE,)),
-        Event.KILL: (State.STOPPING, (Action.KILL,)),
+        Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
+        Event.KILL: (State.STOPPING, (Do.KILL,)),
         Event.EXIT: (State.ENDED, ()),
     },
     State.STOPPING: {
-        Event.KILL: (State.STOPPING, (Action.KILL,)),
-        Event.LATE: (State.STOPPING, (Action.KILL,)),
+        Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.LATE: (State.STOPPING, (Do.KILL,)),
         Event.EXIT: (State.ENDED, ()),
     },
     State.ENDED: {},
@@ -84,7 +84,7 @@ ALARMS: Mapping[State, float] = {State.STARTING: START_LIMIT, State.STOPPING: ST
 """Seconds after entering a state at which LATE happens."""
 
 
-def step(state: State, event: Event) -> tuple[State, tuple[Action, ...]]:
+def step(state: State, event: Event) -> tuple[State, tuple[Do, ...]]:
     """What an event does in a state."""
     return TRANSITIONS[state].get(event, (state, ()))
 

@@ -210,7 +210,7 @@ class _Preload:
 
         worker.become(request["log"], request["env"], parent)
         _reseed()
-        worker.main(request["job"], worker.PipeReport(self._status))
+        worker.main(request["job"], worker.PipeReporter(self._status))
 
     def _spawn_fresh(self, request: dict[str, Any]) -> int:
         """A worker in a new interpreter, for environments that a running one cannot take on."""

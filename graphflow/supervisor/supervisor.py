@@ -12,7 +12,7 @@ from typing import Any
 
 from graphflow.errors import GraphflowError
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.machines.process import ALARMS, Action, Event, Exit, Order, State, step
+from graphflow.machines.process import ALARMS, Do, Event, Exit, Order, State, step
 from graphflow.runtime.context import Context
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
@@ -170,7 +170,7 @@ class Supervisor:
         if what == "spawned":
             process.pid = event["pid"]
             if process.stop_asked:  # it was asked to stop before it had a pid
-                self._act(process, Action.TERMINATE)
+                self._act(process, Do.TERMINATE)
         elif what == "ready":
             process.waiting_for.discard(event["node"])
             self._tell(event="ready", node=event["node"], pid=process.pid)
@@ -247,14 +247,14 @@ class Supervisor:
         if process.state is State.ENDED and was is not State.ENDED:
             self._process_ended(process, was)
 
-    def _act(self, process: Process, action: Action) -> None:
-        if action is Action.SPAWN:
+    def _act(self, process: Process, action: Do) -> None:
+        if action is Do.SPAWN:
             self._spawn(process)
-        elif action is Action.TERMINATE and process.pid is not None:
+        elif action is Do.TERMINATE and process.pid is not None:
             self._starter.terminate(process.name, process.pid)
-        elif action is Action.KILL and process.pid is not None:
+        elif action is Do.KILL and process.pid is not None:
             self._starter.kill(process.name, process.pid)
-        elif action is Action.GIVE_UP:
+        elif action is Do.GIVE_UP:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
             self._tell(event="error", message=f"{process.error}\n  its log: {process.log}")

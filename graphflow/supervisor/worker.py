@@ -62,7 +62,7 @@ def make_node(planned: PlannedNode) -> Node:
     return node
 
 
-class Report(Protocol):
+class Reporter(Protocol):
     """A worker's line to its supervisor."""
 
     def tell(self, **event: Any) -> None: ...
@@ -71,7 +71,7 @@ class Report(Protocol):
         """Have `stop` called, on any thread, when the supervisor asks for the end by this way and not by a signal."""
 
 
-class PipeReport:
+class PipeReporter:
     """Events go into a pipe that all workers share; to be stopped takes a signal."""
 
     def __init__(self, pipe: int) -> None:
@@ -87,7 +87,7 @@ class PipeReport:
         """Signals do that."""
 
 
-class SocketReport:
+class SocketReporter:
     """A connection to the supervisor for this worker alone; when it breaks, the supervisor is dead, and so is this."""
 
     def __init__(self, port: int, token: str, process: str) -> None:
@@ -115,7 +115,7 @@ class SocketReport:
         os._exit(EXIT_ERROR)
 
 
-def main(job: dict[str, Any], report: Report) -> None:
+def main(job: dict[str, Any], report: Reporter) -> None:
     """Run a worker to its end; does not return.
 
     Args:
@@ -143,7 +143,7 @@ def main(job: dict[str, Any], report: Report) -> None:
     os._exit(code)
 
 
-async def _run(nodes: list[Node], job: dict[str, Any], report: Report) -> int:
+async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
     running = asyncio.get_running_loop()
@@ -226,9 +226,9 @@ def _start() -> None:
     _line_buffered()
     if len(sys.argv) == 3:
         die_with_parent(int(sys.argv[2]))
-        main(json.load(sys.stdin), PipeReport(int(sys.argv[1])))
+        main(json.load(sys.stdin), PipeReporter(int(sys.argv[1])))
     given = json.load(sys.stdin)
-    main(given["job"], SocketReport(int(sys.argv[1]), given["token"], given["job"]["process"]))
+    main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))
 
 
 if __name__ == "__main__":

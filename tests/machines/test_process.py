@@ -6,25 +6,25 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Action, Event, Exit, Order, State, step
+from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Do, Event, Exit, Order, State, step
 
 P, S, R, T, E = State.PENDING, State.STARTING, State.READY, State.STOPPING, State.ENDED
 
 # Written by hand, every state and every event; what is not said here changes nothing.
 EFFECTS = {
-    (P, Event.GO): (S, (Action.SPAWN,)),
+    (P, Event.GO): (S, (Do.SPAWN,)),
     (P, Event.STOP): (E, ()),
     (P, Event.KILL): (E, ()),
     (S, Event.READY): (R, ()),
-    (S, Event.STOP): (T, (Action.TERMINATE,)),
-    (S, Event.KILL): (T, (Action.KILL,)),
-    (S, Event.LATE): (T, (Action.GIVE_UP, Action.TERMINATE)),
+    (S, Event.STOP): (T, (Do.TERMINATE,)),
+    (S, Event.KILL): (T, (Do.KILL,)),
+    (S, Event.LATE): (T, (Do.GIVE_UP, Do.TERMINATE)),
     (S, Event.EXIT): (E, ()),
-    (R, Event.STOP): (T, (Action.TERMINATE,)),
-    (R, Event.KILL): (T, (Action.KILL,)),
+    (R, Event.STOP): (T, (Do.TERMINATE,)),
+    (R, Event.KILL): (T, (Do.KILL,)),
     (R, Event.EXIT): (E, ()),
-    (T, Event.KILL): (T, (Action.KILL,)),
-    (T, Event.LATE): (T, (Action.KILL,)),
+    (T, Event.KILL): (T, (Do.KILL,)),
+    (T, Event.LATE): (T, (Do.KILL,)),
     (T, Event.EXIT): (E, ()),
 }
 
@@ -39,14 +39,14 @@ def test_every_event_in_every_state(state: State, event: Event) -> None:
 def test_the_stop_ladder() -> None:
     """Stopping asks, waits, kills, and is over only when the process has gone."""
     state, actions = step(State.READY, Event.STOP)
-    assert (state, actions) == (State.STOPPING, (Action.TERMINATE,))
+    assert (state, actions) == (State.STOPPING, (Do.TERMINATE,))
     assert ALARMS[state] == STOP_LIMIT
 
     state, actions = step(state, Event.STOP)  # asking again does not signal again
     assert (state, actions) == (State.STOPPING, ())
 
     state, actions = step(state, Event.LATE)
-    assert (state, actions) == (State.STOPPING, (Action.KILL,))
+    assert (state, actions) == (State.STOPPING, (Do.KILL,))
 
     assert step(state, Event.EXIT) == (State.ENDED, ())
 
@@ -64,14 +64,14 @@ def test_a_spawned_process_ends_by_its_exit_alone(events: list[Event]) -> None:
     for event in events:
         before = state
         state, actions = step(state, event)
-        assert actions.count(Action.SPAWN) <= (before is State.PENDING)
-        alive = alive or Action.SPAWN in actions
+        assert actions.count(Do.SPAWN) <= (before is State.PENDING)
+        alive = alive or Do.SPAWN in actions
         if event is Event.EXIT:
             alive = False
         if state is State.ENDED and before is not State.ENDED:
             assert not alive
         if not alive and before is not State.PENDING:
-            assert not set(actions) & {Action.SPAWN}
+            assert not set(actions) & {Do.SPAWN}
 
 
 @pytest.mark.parametrize(
