@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures
+import contextlib
 import gc
 import inspect
 import queue
@@ -83,6 +84,19 @@ def entered(coroutine: Any) -> Iterator[Any]:
         elif isinstance(below, FunctionType) and below.__name__ in _EXITS and _is_method_of(below, referent):
             yield referent
         below = referent
+
+
+def files_entered(coroutine: Any) -> Iterator[str]:
+    """The source files of what a suspended coroutine has entered by `with`; empty for what is not known."""
+    for context in entered(coroutine):
+        generator = getattr(context, "gen", None)  # of contextlib's decorators
+        frame = getattr(generator, "ag_frame", None) or getattr(generator, "gi_frame", None)
+        if frame is not None:
+            yield frame.f_code.co_filename
+        elif isinstance(context, (contextlib.ExitStack, contextlib.AsyncExitStack)):
+            yield ""
+        else:
+            yield getattr(sys.modules.get(type(context).__module__), "__file__", None) or ""
 
 
 def _is_method_of(function: FunctionType, thing: object) -> bool:

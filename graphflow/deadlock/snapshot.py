@@ -24,7 +24,7 @@ from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, method_of, setters
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.user_code import innermost
+from graphflow.deadlock.user_code import innermost, is_users
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.errors import DecodeError, Place
 from graphflow.executor.activity import Activity
@@ -293,9 +293,8 @@ class _Look:
             return FREE
         frames = self._frames_of(task)
         limit_ns = self._limit_of(task)
-        way = _Way(
-            way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, way.is_bounded or limit_ns is not None
-        )
+        is_bounded = way.is_bounded or limit_ns is not None or _may_give_up(task)
+        way = _Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
         if limit_ns is not None:
             self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
         for frame in reversed(frames):
@@ -480,7 +479,12 @@ class _Way:
     tasks: frozenset[int] = frozenset()
     """The ids of those tasks."""
     is_bounded: bool = False
-    """Whether one of them gives up after some time."""
+    """Whether one of them gives up after some time, or may."""
+
+
+def _may_give_up(task: Any) -> bool:
+    """Whether a task has entered something of the user's by `with`, in which there may be a timeout."""
+    return any(is_users(file) for coroutine in aio.coroutines(task) for file in aio.files_entered(coroutine))
 
 
 def _has_failed(future: Any) -> bool:

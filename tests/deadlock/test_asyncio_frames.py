@@ -231,6 +231,27 @@ async def test_what_is_being_left(graphflow_runner: asyncio.Runner) -> None:
     assert await entered_by(body()) == []
 
 
+async def test_whose_code_was_entered(graphflow_runner: asyncio.Runner) -> None:
+    """It is the file of a class, or of the generator that contextlib keeps in `gen`; a stack of them is not known."""
+
+    @contextlib.contextmanager
+    def plain() -> Iterator[None]:
+        yield
+
+    @contextlib.asynccontextmanager
+    async def asynchronous() -> AsyncIterator[None]:
+        yield
+
+    async def body() -> None:
+        async with Room(), asynchronous(), asyncio.Lock(), contextlib.AsyncExitStack():
+            with Room(), plain(), contextlib.suppress(ValueError), contextlib.ExitStack():
+                await never()
+
+    task = await suspended(body())
+    found = [file for each in aio.coroutines(task) for file in aio.files_entered(each)]
+    assert found == [__file__, __file__, asyncio.locks.__file__, "", __file__, __file__, contextlib.__file__, ""]
+
+
 @pytest.mark.parametrize("kind", [asyncio.Lock, asyncio.Condition, asyncio.Semaphore, asyncio.BoundedSemaphore])
 async def test_who_is_inside(graphflow_runner: asyncio.Runner, kind: Callable[[], Any]) -> None:
     """Who has entered a lock is inside, and who waits in its `__aenter__` is not."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from functools import partial
 from time import monotonic_ns
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -481,6 +482,55 @@ class LooksInBetween(Waiter):
             self.look()
             with suppress(TimeoutError):
                 async with self.clock.timeout(0.1):
+                    await self.arrived.wait()
+
+
+class Within:
+    """A timeout of the user's own making."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._timeout = clock.timeout(0.1)
+
+    async def __aenter__(self) -> None:
+        await self._timeout.__aenter__()
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self._timeout.__aexit__(kind, error, trace)
+
+
+class LooksInBetweenByItsOwnTimeout(LooksInBetween):
+    async def go(self, _: String) -> None:
+        while not self.arrived.is_set():
+            self.look()
+            with suppress(TimeoutError):
+                async with Within(self.clock):
+                    await self.arrived.wait()
+
+
+@asynccontextmanager
+async def within(clock: Clock) -> AsyncIterator[None]:
+    async with clock.timeout(0.1):
+        yield
+
+
+class LooksInBetweenByAGenerator(LooksInBetween):
+    async def go(self, _: String) -> None:
+        while not self.arrived.is_set():
+            self.look()
+            with suppress(TimeoutError):
+                async with within(self.clock):
+                    await self.arrived.wait()
+
+
+class LooksInBetweenByAStack(LooksInBetween):
+    async def go(self, _: String) -> None:
+        while not self.arrived.is_set():
+            self.look()
+            with suppress(TimeoutError):
+                async with AsyncExitStack() as stack:
+                    await stack.enter_async_context(self.clock.timeout(0.1))
                     await self.arrived.wait()
 
 
@@ -1174,6 +1224,9 @@ def legal(program: type[Robot]) -> Any:
         legal(FlagOfAParameter),
         legal(LooksItself),
         legal(LooksInBetween),
+        legal(LooksInBetweenByItsOwnTimeout),
+        legal(LooksInBetweenByAGenerator),
+        legal(LooksInBetweenByAStack),
         legal(StepsItself),
         legal(EndsAtATime),
         legal(PollsWhatAnotherCancels),
