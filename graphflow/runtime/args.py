@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
-from graphflow.graph import params_file
-from graphflow.graph.source import parse_value
 from graphflow.interface import Interface
 from graphflow.names import Remap, Resolver, did_you_mean
 
@@ -41,6 +39,8 @@ class RosArgs:
             GraphFileError: A parameter file is wrong, or has nothing for this node.
         """
         full_name = Resolver(interface.node_name, "/", self.remaps).full_name
+        if self.params_files:
+            from graphflow.graph import params_file  # and with it PyYAML, which most processes never need
         found: dict[str, tuple[Any, str]] = {}
         for file in self.params_files:
             sections = params_file.read(Path(file), file)
@@ -94,6 +94,8 @@ def _option(result: RosArgs, option: str, value: str) -> None:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:
             raise GraphflowError(f"-p {value!r}: write name:=value, for example rate:=2.0")
+        from graphflow.graph.source import parse_value
+
         node, colon, name = target.rpartition(":")
         result.params.append((node if colon else None, name, parse_value(text), "command line"))
 
