@@ -6,11 +6,11 @@ import time
 
 import click
 
-from graphflow.cli import output
+from graphflow.cli import exits, output
 from graphflow.cli.types import agree, use_project
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
-from graphflow.errors import UsageFault
+from graphflow.errors import ServiceUnavailable, UsageFault
 from graphflow.introspect.view import View
 from graphflow.names import expand
 
@@ -48,7 +48,7 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
 @click.option("--json", "as_json", is_flag=True, help="Print the response as JSON.")
 def call(
     name: str, type_name: str | None, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool
-) -> None:
+) -> int:
     """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
     from graphflow.introspect.echo import plain
     from graphflow.msgs import registry
@@ -65,7 +65,11 @@ def call(
     with View(domain_id()) as view:
         if full not in view.cache.services():
             output.talk("waiting for service to become available...")
-            view.wait_for_service(full, min(timeout, 2.0))
+            try:
+                view.wait_for_service(full, min(timeout, 2.0))
+            except ServiceUnavailable as error:
+                output.error(str(error))
+                return exits.TIMEOUT
         actual = agree(wanted, view.service_type(full), full)
         request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
         while True:
@@ -78,5 +82,5 @@ def call(
             else:
                 output.data(f"response:\n{response!r}\n")
             if rate is None:
-                return
+                return exits.OK
             time.sleep(max(0.0, 1 / rate - (time.monotonic() - started)))

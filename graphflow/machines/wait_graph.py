@@ -103,6 +103,7 @@ class ActivityView:
     left: float | None = None
     """Seconds until its call times out; None if never."""
     process: str = ""
+    """The id of its process's Zenoh session, in hex."""
     is_inner: bool = False
     """Whether the activity is graphflow's own, not something users wrote."""
     is_async: bool = True
