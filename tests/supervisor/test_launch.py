@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
 import socket
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
 
+from graphflow.supervisor import launch as module
+from graphflow.supervisor.launch import launch
 from graphflow.transport.rendezvous import address
 from tests.conftest import PROGRAMS, Machine
 from tests.supervisor.running import GOOD, nothing_is_left, rows, write
 
-pytestmark = pytest.mark.real
 
-
+@pytest.mark.real
 def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> None:
     """The second says since when it runs and how to stop it; the first is not touched."""
     file = write(project, GOOD)
@@ -31,6 +34,7 @@ def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> No
     machine.look("down")
 
 
+@pytest.mark.real
 def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Machine, project: Path) -> None:
     """The owner is named; two graphs with other names may run beside each other, and then `down` asks which."""
     machine.run("up", "-d", write(project, GOOD), cwd=project)
@@ -46,6 +50,7 @@ def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Ma
     machine.look("down")
 
 
+@pytest.mark.real
 def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
     machine: Machine, project: Path
 ) -> None:
@@ -57,6 +62,7 @@ def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
     nothing_is_left(machine, [])
 
 
+@pytest.mark.real
 def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, project: Path) -> None:
     """Whoever listens where the rendezvous should be is named, and no node is started."""
     _, port = address(machine.endpoint)
@@ -68,6 +74,7 @@ def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, proje
     nothing_is_left(machine, [])
 
 
+@pytest.mark.real
 def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, project: Path) -> None:
     """A start that takes long can be broken off."""
     shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
@@ -84,3 +91,65 @@ def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, projec
 
 def children(pid: int) -> list[int]:
     return [child.pid for child in psutil.Process(pid).children()]
+
+
+class Begun:
+    """Stands for a supervisor that has begun: it reports some bytes, and ends."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *chunks: bytes) -> None:
+        self.job: dict[str, Any] = {}
+        self.is_reaped = False
+        self.chunks = chunks
+        for way in ("_begin_forked", "_begin_portable"):
+            monkeypatch.setattr(module, way, self.begin)
+
+    def begin(self, job: dict[str, Any]) -> tuple[int, int, Any]:
+        self.job = job
+        read, write = os.pipe()
+        for chunk in self.chunks:
+            os.write(write, chunk)
+        os.close(write)
+        return -1, read, self.reap
+
+    def reap(self) -> None:
+        self.is_reaped = True
+
+
+def test_a_supervisor_that_reports(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It got the whole job, its report may come in pieces, and it runs on."""
+    report = {"ok": True, "run": {"pid": 5}, "classes": {}}
+    data = json.dumps(report).encode() + b"\n"
+    begun = Begun(monkeypatch, data[:5], data[5:])
+    assert launch(Path("g.yaml"), ["a:=1"], 7, attached=True) == report
+    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "attached": True}
+    assert not begun.is_reaped
+
+
+def test_a_supervisor_that_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its reason comes back, and it leaves no zombie."""
+    report = {"ok": False, "exit_code": 2, "message": "g.yaml:1:1: no"}
+    begun = Begun(monkeypatch, json.dumps(report).encode() + b"\n")
+    assert launch(Path("g.yaml"), [], None, attached=False) == report
+    assert begun.is_reaped
+
+
+def test_a_supervisor_that_dies(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told as a failure."""
+    Begun(monkeypatch)
+    report = launch(Path("g.yaml"), [], None, attached=False)
+    assert report == {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}
+
+
+@pytest.mark.real
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        ("nodes: {/a: {class: nodes.lab:God}}\n", 2, "did you mean 'Good'?\n1 problem, nothing was started\n"),
+        ("nods: {}\nnodes: {/a: {}}\n", 2, "2 problems, nothing was started\n"),
+        ("nodes: {/a: {class: nodes.lab:Good}}\ndomain: no\n", 2, "1 problem, nothing was started\n"),
+    ],
+)
+def test_a_wrong_file_is_refused(machine: Machine, project: Path, text: str, code: int, told: str) -> None:
+    """All its problems at once, and the exit code of wrong usage."""
+    assert told in machine.run("up", write(project, text), cwd=project, code=code)
+    nothing_is_left(machine, [])

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
+import random
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from graphflow.supervisor.preload import PROBE_LIMIT, _reseed, probe_result, sweep
 from graphflow.system import is_portable
 from tests.conftest import Machine, alive
 from tests.supervisor.running import GOOD, nothing_is_left, rows, write
 
-pytestmark = pytest.mark.real
 
-
+@pytest.mark.real
 @pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
 def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> None:
     """Otherwise forking it would be unsafe."""
@@ -25,6 +29,7 @@ def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> 
     machine.look("down")
 
 
+@pytest.mark.real
 def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project: Path) -> None:
     """`env:` with PYTHON..., LD_... or MALLOC_... starts the node in an interpreter of its own."""
     text = "nodes:\n  /a: {class: nodes.lab:Good, env: {PYTHONHASHSEED: 7, COLOUR: blue}}\n"
@@ -36,6 +41,7 @@ def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project
     nothing_is_left(machine, [pid])
 
 
+@pytest.mark.real
 def test_an_impossible_environment_fails_its_node_only(machine: Machine, project: Path) -> None:
     """The process that starts nodes survives what cannot be started."""
     text = 'nodes:\n  /bad: {class: nodes.lab:Good, env: {"LD_A=B": x}}\n'
@@ -44,6 +50,7 @@ def test_an_impossible_environment_fails_its_node_only(machine: Machine, project
     assert "cannot be started" in up.text
 
 
+@pytest.mark.real
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
 def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, how: int) -> None:
     """A child process of a node does not outlive it, however the node ends."""
@@ -56,3 +63,34 @@ def test_what_a_node_has_started_goes_with_it(machine: Machine, project: Path, h
 
     machine.until(lambda: not alive(child), "the child is gone")
     up.wait()
+
+
+def test_what_a_probing_child_wrote() -> None:
+    """Its answer, or one problem for each class: that it took too long, or died."""
+    assert probe_result(b'{"a:A": {"doc": ""}}', True, ["a:A"]) == {"a:A": {"doc": ""}}
+    died = {"problem": "the process that imported it died"}
+    assert probe_result(b"", True, ["a:A", "b:B"]) == {"a:A": died, "b:B": died}
+    late = probe_result(b'{"a', False, ["a:A"])["a:A"]["problem"]
+    assert late.startswith(f"importing it takes longer than {PROBE_LIMIT:.0f} s; ")
+
+
+@pytest.mark.real
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no process groups")
+def test_what_a_worker_has_left_behind() -> None:
+    """Its process group is ended; one that has ended already is none."""
+    sleeper = subprocess.Popen(["sleep", "600"], start_new_session=True)
+    sweep(sleeper.pid)
+    assert sleeper.wait(10.0) == -signal.SIGKILL
+    sweep(sleeper.pid)
+
+
+def test_workers_have_random_numbers_of_their_own() -> None:
+    """Two that are forked from one process do not draw the same."""
+    drawn = []
+    for _ in range(2):
+        random.seed(1)
+        np.random.seed(1)
+        _reseed()
+        drawn.append((random.random(), float(np.random.random())))
+    assert drawn[0][0] != drawn[1][0]
+    assert drawn[0][1] != drawn[1][1]

@@ -25,10 +25,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copy(PROGRAMS / "supervisor" / "robot.py", folder / "machines")
     for name, text in {
         "raises": "def deep():\n    raise RuntimeError('no wheels')\n\n\ndeep()\n",
-        "needs": "\nimport no_such_module_anywhere\n",
-        "from_robot": "from machines.robot import Robto\n",
         "syntax": "class Robot(:\n    pass\n",
-        "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
         "dies": "import os\nos._exit(3)\n",
         "hangs": "import time\nwhile True: time.sleep(1)\n",
     }.items():
@@ -56,44 +53,14 @@ def test_what_a_class_declares(project: Path) -> None:
     ("class_path", "problem"),
     [
         ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
-        ("machines.robot:Wheel", "machines.robot:Wheel is no node class: it does not derive from graphflow.Node"),
-        (
-            "machines.nowhere:Robot",
-            "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
-            "there is declares, dies, from_robot, hangs, needs, raises, robot, syntax",
-        ),
-        (
-            "nowhere.robot:Robot",
-            "cannot import nowhere.robot: there is no module 'nowhere'; modules are looked for in {project}",
-        ),
-        ("machines.raises:Robot", "cannot import machines.raises: {machines}/raises.py:2: RuntimeError: no wheels"),
-        (
-            "machines.needs:Robot",
-            "cannot import machines.needs: {machines}/needs.py:2: ModuleNotFoundError: "
-            "No module named 'no_such_module_anywhere'",
-        ),
-        (
-            "machines.from_robot:Robot",
-            "cannot import machines.from_robot: {machines}/from_robot.py:1: ImportError: "
-            "cannot import name 'Robto' from 'machines.robot' ({machines}/robot.py)",
-        ),
-        ("machines.syntax:Robot", "cannot import machines.syntax: {machines}/syntax.py:1: invalid syntax"),
         ("machines.dies:Robot", "the process that imported it died"),
     ],
 )
 def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
-    """Each failure names the place in the user's own code, or the nearest name."""
+    """What `classes` tells comes back, and that the process told nothing is told, too."""
     fault = found(project, class_path)[class_path]
     assert isinstance(fault, Problem)
-    assert fault.message == problem.replace("{machines}", f"{project}/machines").replace("{project}", str(project))
-
-
-def test_a_wrong_declaration_names_its_line(project: Path) -> None:
-    """A class that refuses to be made says where, and why."""
-    fault = found(project, "machines.declares:Robot")["machines.declares:Robot"]
-    assert isinstance(fault, Problem)
-    assert f"{project}/machines/declares.py:5: " in fault.message
-    assert "out of range: at least 3" in fault.message
+    assert fault.message == problem
 
 
 def test_one_failure_leaves_the_others(project: Path) -> None:

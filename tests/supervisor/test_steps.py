@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from graphflow import Node, service
+from graphflow.errors import CallTimeout, EncodeError, Place, RemoteError, ServiceUnavailable
+from graphflow.graph.plan import PlannedStep
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.supervisor.steps import StepRunner
+from graphflow.testing import Graph
 from tests.conftest import Machine
 from tests.supervisor.running import nothing_is_left, write
 
-pytestmark = pytest.mark.real
 
-
+@pytest.mark.real
 @pytest.mark.parametrize(
     ("call", "expected"),
     [("/fails", "OSError: the disk is full"), ("/nowhere, type: std_srvs/srv/Trigger", "nobody offers the service")],
@@ -26,3 +35,97 @@ def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: st
     assert "step ask FAILED" in up.text
     assert expected in up.text
     nothing_is_left(machine, [])
+
+
+TYPE = "example_interfaces/srv/AddTwoInts"
+
+
+class Adder(Node):
+    @service(AddTwoInts, "/add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        if request.a < 0:
+            raise ValueError("no debts")
+        if request.a:
+            await self.clock.sleep(request.a)
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+def step(call: str = "/add", timeout: float = 10.0, **request: Any) -> PlannedStep:
+    place = Place("graph.yaml", 1, 1)
+    return PlannedStep("ask", call, place, place, place, request, timeout=timeout)
+
+
+@asynccontextmanager
+async def runner(graph: Graph, types: dict[str, str]) -> AsyncIterator[StepRunner]:
+    """What makes the calls, in a process of its own."""
+    await graph.start(supervisor := Node("_supervisor"))
+    made = StepRunner(supervisor.context, types)
+    yield made
+    await made.close()
+
+
+@pytest.mark.parametrize("types", [{"ask": TYPE}, {}], ids=["told by the plan", "found in the graph"])
+async def test_a_step_is_a_call(graph: Graph, types: dict[str, str]) -> None:
+    """Of the type that the plan's classes tell, or that the server announces; once is as good as twice."""
+    await graph.start(Adder())
+    async with runner(graph, types) as steps:
+        assert (await steps.run(step(a=0, b=5))).sum == 5
+        assert (await steps.run(step(a=0, b=6))).sum == 6
+
+
+@pytest.mark.parametrize("types", [{"ask": TYPE}, {}], ids=["told by the plan", "found in the graph"])
+async def test_a_server_may_come_later(graph: Graph, types: dict[str, str]) -> None:
+    """It is waited for."""
+    async with runner(graph, types) as steps:
+        running = asyncio.ensure_future(steps.run(step(b=5)))
+        await graph.clock.advance(9.0)
+        await graph.start(Adder())
+        assert (await running).sum == 5
+
+
+@pytest.mark.parametrize("types", [{"ask": TYPE}, {}], ids=["told by the plan", "found in the graph"])
+async def test_a_server_that_never_comes(graph: Graph, types: dict[str, str]) -> None:
+    """It is waited for as long as the step says."""
+    async with runner(graph, types) as steps:
+        running = asyncio.ensure_future(steps.run(step(timeout=3.0)))
+        await graph.clock.advance(2.9)
+        assert not running.done()
+        await graph.clock.advance(0.2)
+        with pytest.raises(ServiceUnavailable, match="/add"):
+            await running
+
+
+async def test_an_answer_that_comes_too_late(graph: Graph) -> None:
+    """The call has as long as the step says."""
+    await graph.start(Adder())
+    async with runner(graph, {}) as steps:
+        running = asyncio.ensure_future(steps.run(step(timeout=3.0, a=5)))
+        await graph.clock.advance(3.1)
+        with pytest.raises(CallTimeout):
+            await running
+
+
+@pytest.mark.parametrize(
+    ("request_", "error", "text"),
+    [({"a": "x"}, EncodeError, "expected int64"), ({"c": 1}, EncodeError, "c"), ({"a": -1}, RemoteError, "no debts")],
+)
+async def test_a_request_that_fails(graph: Graph, request_: dict[str, Any], error: type[Exception], text: str) -> None:
+    """It does not fit the type, or the server has none of it."""
+    await graph.start(Adder())
+    async with runner(graph, {}) as steps:
+        with pytest.raises(error, match=text):
+            await steps.run(step(**request_))
+
+
+async def test_it_is_hidden_and_leaves(graph: Graph) -> None:
+    """Its node is not listed, and is gone when it is closed; one that made no call has none."""
+    await graph.start(adder := Adder())
+    cache = adder.context.cache
+    async with runner(graph, {}) as steps:
+        before = cache.nodes()
+        await steps.run(step())
+        await graph.settle()
+        assert len(cache.nodes()) == len(before) + 1
+        assert cache.nodes(hidden=False) == ["/adder"]
+    await graph.settle()
+    assert cache.nodes() == before

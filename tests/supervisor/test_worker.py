@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import socket
+import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from graphflow.errors import GraphflowError, Place
+from graphflow.graph.plan import PlannedNode, Rule, Setting
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.supervisor import worker
+from graphflow.supervisor.worker import PIPE_BUF, PipeReport, SocketReport, _one_line, make_node
+from graphflow.testing import Graph
+from nodes.talker import Talker
 from tests.conftest import Machine
 from tests.supervisor.running import rows, write
 
-pytestmark = pytest.mark.real
 
-
+@pytest.mark.real
 def test_an_error_in_a_task_ends_the_node_with_its_traceback(machine: Machine, project: Path) -> None:
     """When all nodes have ended the graph has, with code 1 if one failed."""
     up = machine.start("up", write(project, "nodes:\n  /c: {class: nodes.lab:Crashes}\n"), cwd=project)
@@ -26,6 +36,7 @@ def test_an_error_in_a_task_ends_the_node_with_its_traceback(machine: Machine, p
     assert "lab.py" in up.text
 
 
+@pytest.mark.real
 def test_nodes_that_share_a_process_share_its_pid_and_its_end(machine: Machine, project: Path) -> None:
     """A crash ends the mates; nodes elsewhere go on."""
     text = (
@@ -43,9 +54,112 @@ def test_nodes_that_share_a_process_share_its_pid_and_its_end(machine: Machine, 
     machine.look("down")
 
 
+@pytest.mark.real
 def test_a_node_that_leaves_before_it_is_ready_has_failed(machine: Machine, project: Path) -> None:
     """Exit code 0 or not: what waits for it would wait for ever."""
     text = "nodes:\n  /gone: {class: nodes.lab:Leaves}\n  /good: {class: nodes.lab:Good, after: /gone}\n"
     up = machine.start("up", write(project, text), cwd=project)
     assert up.wait() == 1
     assert "ended before it was ready: /gone" in up.text
+
+
+PLACE = Place("graph.yaml", 2, 3)
+
+
+def planned(class_path: str = "nodes.talker:Talker", name: str = "/left/voice", **more: Any) -> PlannedNode:
+    return PlannedNode(name, class_path, PLACE, PLACE, **more)
+
+
+async def test_a_node_as_planned(graph: Graph) -> None:
+    """Its name, parameters and remaps are the plan's; what is optional and not there is left out."""
+    params = {"rate": Setting(5.0, PLACE), "greeting": Setting("Hi", PLACE, True), "other": Setting(1, PLACE, True)}
+    node = make_node(planned(params=params, remaps=(Rule("chatter", "said", PLACE),)))
+    assert isinstance(node, Talker)
+    assert (node.full_name, node.rate) == ("/left/voice", 5.0)
+    heard = graph.tap(String, "/left/said")
+    await graph.start(node)
+    await graph.clock.advance(0.4)
+    assert [m.data for m in heard] == ["Hi: 1", "Hi: 2"]
+
+
+@pytest.mark.parametrize(
+    ("node", "told"),
+    [
+        (planned("nodes.talker:Talkr"), "did you mean 'Talker'"),
+        (planned(params={"rate": Setting(-1.0, PLACE)}), "out of range"),
+        (planned(params={"rate": Setting("fast", PLACE)}), "'fast' is not"),
+    ],
+)
+def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
+    """The error names what was meant."""
+    with pytest.raises(GraphflowError, match=told):
+        make_node(node)
+
+
+def test_a_report_keeps_in_one_piece() -> None:
+    """A pipe that many write to mixes lines that are longer: an error is cut, the rest is not."""
+    read, write = os.pipe()
+    report = PipeReport(write)
+    report.tell(event="ready", process="/a", node="/a")
+    report.tell(event="failed", process="/a", error="x" * 10_000)
+    os.close(write)
+    with open(read, "rb") as pipe:
+        ready, failed = pipe.read().splitlines(keepends=True)
+    assert json.loads(ready) == {"event": "ready", "process": "/a", "node": "/a"}
+    assert PIPE_BUF // 4 < len(failed) <= PIPE_BUF
+    assert json.loads(failed)["error"].strip("x") == ""
+
+
+@pytest.fixture
+def ends(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Exit codes of this process, were it a worker."""
+    codes: list[int] = []
+    monkeypatch.setattr(os, "_exit", codes.append)
+    return codes
+
+
+def until_it_has_listened() -> None:
+    for thread in threading.enumerate():
+        if thread.name == "graphflow-supervisor":
+            thread.join(10.0)
+
+
+def test_a_worker_that_is_asked_to_stop(ends: list[int]) -> None:
+    """It shows its token first; a line asks it to stop; when the line ends, so does it, at once."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        report = SocketReport(server.getsockname()[1], "secret", "/a")
+        stopped = threading.Event()
+        report.on_stop(stopped.set)
+        connection, _ = server.accept()
+        with connection:
+            report.tell(event="ready")
+            with connection.makefile("rb") as lines:
+                assert json.loads(lines.readline()) == {"token": "secret", "process": "/a"}
+                assert json.loads(lines.readline()) == {"event": "ready"}
+            assert not stopped.is_set()
+            connection.sendall(b'{"do": "stop"}\n')
+            assert stopped.wait(10.0)
+            assert ends == []
+        until_it_has_listened()
+    assert ends == [worker.EXIT_ERROR]
+    report._socket.close()
+
+
+def test_a_worker_that_was_asked_before_it_could_stop(ends: list[int]) -> None:
+    """It stops as soon as it can."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        report = SocketReport(server.getsockname()[1], "secret", "/a")
+        connection, _ = server.accept()
+        with connection:
+            connection.sendall(b'{"do": "stop"}\n')
+        until_it_has_listened()
+    stopped: list[bool] = []
+    report.on_stop(lambda: stopped.append(True))
+    assert stopped == [True]
+    report._socket.close()
+
+
+def test_an_error_in_one_line() -> None:
+    """One of ours speaks for itself, others say of what kind they are."""
+    assert _one_line(GraphflowError("no such class")) == "no such class"
+    assert _one_line(ValueError("no camera")) == "ValueError: no camera"

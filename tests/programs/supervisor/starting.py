@@ -1,0 +1,67 @@
+"""A script that starts workers by a starter and prints what it hears: `KIND ROOT`.
+
+A starter that forks must be made while its process has one thread, and so in a process of its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from graphflow.supervisor.forking import ForkingStarter
+from graphflow.supervisor.spawning import SpawningStarter
+from graphflow.supervisor.starter import Starter
+
+KINDS: dict[str, Callable[[], Starter]] = {"forking": lambda: ForkingStarter(()), "spawning": SpawningStarter}
+ROOT = Path(sys.argv[2])
+
+
+def planned(class_path: str) -> dict[str, Any]:
+    """A node as a plan has it."""
+    place = ["graph.yaml", 1, 1]
+    more: dict[str, Any] = {"params": {}, "remaps": [], "after": [], "concurrency": {}, "process": "", "env": {}}
+    return {"name": "/a", "class_path": class_path, "place": place, "class_place": place, **more}
+
+
+async def start(starter: Starter) -> None:
+    """Start one worker after another, each of which ends by itself or is ended."""
+    heard = asyncio.Queue[dict[str, Any]]()
+    await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda: print("lost"))
+
+    async def follow(name: str, class_path: str, env: dict[str, str], end: Callable[[str, int], None] | None) -> None:
+        job = {"process": name, "root": str(ROOT), "nodes": [planned(class_path)]}
+        (log := ROOT / f"{name}.log").touch()
+        starter.spawn(name, job, str(log), env)
+        pid = 0
+        while True:
+            event = await heard.get()
+            pid = event.pop("pid", pid)
+            if event["event"] == "exited" or "node" in event or "error" in event:
+                print(json.dumps(event), flush=True)
+            if event["event"] == "exited":
+                return
+            if event["event"] == "spawned" and end is not None:
+                while not log.read_text():
+                    await asyncio.sleep(0.01)
+                end(name, pid)
+
+    await follow("wrong", "nodes.lab:Refuses", {}, None)
+    await follow("leaves", "nodes.lab:Leaves", {}, None)
+    await follow("fresh", "nodes.lab:Refuses", {"PYTHONHASHSEED": "7"}, None)
+    await follow("impossible", "nodes.lab:Good", {"LD_A=B": "x"}, None)
+    await follow("killed", "nodes.dawdles:Dawdles", {"GREETING": "good morning"}, starter.kill)
+    await starter.close()
+
+
+if __name__ == "__main__":
+    starter = KINDS[sys.argv[1]]()
+    starter.begin_probe(["nodes.lab:Good", "nodes.lab:Missing"], str(ROOT))
+    found = starter.probed()
+    print(sorted(found), found["nodes.lab:Missing"], flush=True)
+    asyncio.run(start(starter))
+    starter.end()
+    print("end", flush=True)

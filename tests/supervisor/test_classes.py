@@ -1,0 +1,119 @@
+"""Node classes by their paths."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from graphflow.errors import GraphflowError, Problem
+from graphflow.interface import Interface
+from graphflow.msgs import registry
+from graphflow.supervisor import classes
+from graphflow.supervisor.classes import add_root, import_class, interfaces, read_interfaces
+from tests.conftest import PROGRAMS
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A project whose classes can be imported while the test runs, most of them by a mistake each only in theory."""
+    folder = tmp_path / "project" / "machines"
+    folder.mkdir(parents=True)
+    shutil.copy(PROGRAMS / "supervisor" / "robot.py", folder)
+    for name, text in {
+        "raises": "def deep():\n    raise RuntimeError('no wheels')\n\n\ndeep()\n",
+        "needs": "\nimport no_such_module_anywhere\n",
+        "ros": "import geometry_msgs.msg\n",
+        "from_robot": "from machines.robot import Robto\n",
+        "syntax": "class Robot(:\n    pass\n",
+        "declares": "from graphflow import Node, Param\n\n\nclass Robot(Node):\n    rate = Param(1, ge=3)\n",
+        "ends": "raise SystemExit(3)\n",
+    }.items():
+        (folder / f"{name}.py").write_text(text)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr(classes, "_roots", [])
+    monkeypatch.setattr(registry, "_roots", [])
+    with patch.dict(sys.modules):
+        add_root(str(folder.parent))
+        yield folder.parent
+
+
+def test_a_class_by_its_path(project: Path) -> None:
+    """It is imported, and is the one that is meant."""
+    assert import_class("machines.robot:Robot") is sys.modules["machines.robot"].Robot
+
+
+@pytest.mark.parametrize(
+    ("class_path", "problem"),
+    [
+        ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
+        ("machines.robot:Wheel", "machines.robot:Wheel is no node class: it does not derive from graphflow.Node"),
+        (
+            "machines.nowhere:Robot",
+            "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
+            "there is declares, ends, from_robot, needs, raises, robot, ros, syntax",
+        ),
+        (
+            "nowhere.robot:Robot",
+            "cannot import nowhere.robot: there is no module 'nowhere'; modules are looked for in {project}",
+        ),
+        ("machines.raises:Robot", "cannot import machines.raises: {machines}/raises.py:2: RuntimeError: no wheels"),
+        (
+            "machines.needs:Robot",
+            "cannot import machines.needs: {machines}/needs.py:2: ModuleNotFoundError: "
+            "No module named 'no_such_module_anywhere'",
+        ),
+        (
+            "machines.from_robot:Robot",
+            "cannot import machines.from_robot: {machines}/from_robot.py:1: ImportError: "
+            "cannot import name 'Robto' from 'machines.robot' ({machines}/robot.py)",
+        ),
+        ("machines.ends:Robot", "cannot import machines.ends: {machines}/ends.py:1: SystemExit: 3"),
+        (
+            "machines.ros:Robot",
+            "cannot import machines.ros: {machines}/ros.py:1: ModuleNotFoundError: No module named 'geometry_msgs'; "
+            "write graphflow.msgs.geometry_msgs",
+        ),
+        ("machines.syntax:Robot", "cannot import machines.syntax: {machines}/syntax.py:1: invalid syntax"),
+    ],
+)
+def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path) -> None:
+    """Each failure names the place in the user's own code, or the nearest name."""
+    with pytest.raises(GraphflowError) as caught:
+        import_class(class_path)
+    assert str(caught.value) == problem.replace("{machines}", f"{project}/machines").replace("{project}", str(project))
+
+
+def test_a_wrong_declaration_names_its_line(project: Path) -> None:
+    """A class that refuses to be made says where, and why."""
+    with pytest.raises(GraphflowError) as caught:
+        import_class("machines.declares:Robot")
+    assert f"{project}/machines/declares.py:5: " in str(caught.value)
+    assert "out of range: at least 3" in str(caught.value)
+
+
+def test_interfaces_travel_as_json(project: Path) -> None:
+    """What a class declares, or why it cannot be had; one that fails leaves the others."""
+    paths = ["machines.raises:Robot", "machines.robot:Robot"]
+    problem, interface = read_interfaces(interfaces(paths)).values()
+    assert isinstance(problem, Problem)
+    assert "no wheels" in problem.message
+    assert isinstance(interface, Interface)
+    assert interface == import_class("machines.robot:Robot").interface()
+
+
+def test_where_a_project_is_looked_for(project: Path) -> None:
+    """Before what is installed, behind the standard library, once; its interfaces are known."""
+    (project / "interfaces").mkdir()
+    before = list(sys.path)
+    add_root(str(project))
+    assert sys.path == before
+    assert registry._roots == [project / "interfaces"]
+    at = sys.path.index(str(project))
+    installed = [i for i, entry in enumerate(sys.path) if entry.endswith("-packages")]
+    standard = sys.path.index(str(Path(shutil.__file__).parent))
+    assert standard < at < min(installed)

@@ -1,0 +1,64 @@
+"""Workers forked from the preload process: what `test_starter` does not say of them."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+from graphflow.errors import SupervisorError
+from graphflow.supervisor import preload
+from graphflow.supervisor.forking import ForkingStarter, _signal
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="nothing is forked there")
+
+
+class Channel:
+    """Stands for the socket to the preload process."""
+
+    def __init__(self, *chunks: bytes) -> None:
+        self.chunks = list(chunks)
+        self.sent = b""
+
+    def sendall(self, data: bytes) -> None:
+        self.sent += data
+
+    def recv(self, size: int) -> bytes:
+        return self.chunks.pop(0) if self.chunks else b""
+
+
+def starter(channel: Channel, monkeypatch: pytest.MonkeyPatch) -> ForkingStarter:
+    def start(keep: tuple[int, ...]) -> tuple[Any, int, int]:
+        assert keep == (5,)
+        return channel, -1, 0
+
+    monkeypatch.setattr(preload, "start", start)
+    return ForkingStarter((5,))
+
+
+def test_classes_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a line of JSON; the answer may come in pieces."""
+    channel = Channel(b'{"event": "probed", "inter', b'faces": {"a:A": {}}}\n')
+    made = starter(channel, monkeypatch)
+    made.begin_probe(("a:A",), "/lab")
+    assert channel.sent == b'{"do": "probe", "classes": ["a:A"], "root": "/lab"}\n'
+    assert made.probed() == {"a:A": {}}
+
+
+def test_a_preload_process_that_dies_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told, and nobody waits for ever."""
+    with pytest.raises(SupervisorError, match="the process that imports node classes died"):
+        starter(Channel(b'{"event"'), monkeypatch).probed()
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("is_leader", [True, False])
+def test_a_signal_reaches_a_worker(is_leader: bool) -> None:
+    """With its whole process group, or alone before it has made one; one that has ended needs none."""
+    sleeper = subprocess.Popen(["sleep", "600"], start_new_session=is_leader)
+    _signal(sleeper.pid, signal.SIGTERM)
+    assert sleeper.wait(10.0) == -signal.SIGTERM
+    _signal(sleeper.pid, signal.SIGKILL)
