@@ -1,4 +1,4 @@
-"""Lines of JSON over a descriptor, on the supervisor's loop."""
+"""Lines of JSON over a file descriptor, on the supervisor's loop."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Lines:
 
     Args:
         heard: Called with each event.
-        lost: Called once when the other end is gone.
+        lost: Called once when the other end has gone.
     """
 
     def __init__(

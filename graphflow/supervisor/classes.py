@@ -19,7 +19,7 @@ _roots: list[str] = []
 
 
 def add_root(root: str) -> None:
-    """Let modules and interfaces of the project at `root` be found.
+    """Make modules and interfaces of the project at `root` importable.
 
     Before the installed packages, so that a project's own `nodes` is never shadowed; after the standard library, so
     that a file that happens to be called `queue.py` breaks nothing.
@@ -35,8 +35,8 @@ def import_class(class_path: str) -> type[Node]:
     """The node class at `package.module:Class`.
 
     Raises:
-        NoModule: There is no such module; the text names the nearest, or where it was looked for.
-        GraphflowError: It has no such class, or importing it failed; the text says where.
+        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        GraphflowError: The module has no such class, or importing it failed; the text says where.
     """
     module_name, _, class_name = class_path.partition(":")
     try:
@@ -50,7 +50,7 @@ def import_class(class_path: str) -> type[Node]:
         classes = [k for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node)]
         raise GraphflowError(f"module {module_name} has no class {class_name!r}{did_you_mean(class_name, classes)}")
     if not (isinstance(found, type) and issubclass(found, Node)):
-        raise GraphflowError(f"{class_path} is no node class: it does not derive from graphflow.Node")
+        raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node")
     return found
 
 
@@ -64,7 +64,7 @@ def _no_module(module: str, wanted: str, root: str) -> str:
 
 
 def _where(error: BaseException) -> str:
-    """The error in one line, with the place in the user's code it came from."""
+    """The error on one line, with the place in the user's code it came from."""
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
     frame, place = error.__traceback__, ""
@@ -97,7 +97,7 @@ def interfaces(class_paths: list[str]) -> dict[str, Any]:
 
 
 def read_interfaces(data: dict[str, Any]) -> dict[str, Any]:
-    """What `interfaces` gave, as Interfaces and Problems."""
+    """What `interfaces` returned, as Interfaces and Problems."""
     return {
         path: Problem(Place(""), value["problem"]) if "problem" in value else Interface.from_json(value)
         for path, value in data.items()

@@ -1,7 +1,7 @@
 """The control socket: lines of JSON between a supervisor and its doors.
 
-Its address is the path of a Unix socket or, the portable way, `tcp/PORT/TOKEN` on loopback: whoever can read the run
-file knows the token, and every request shows it.
+Its address is the path of a Unix socket or, the portable way, `tcp/PORT/TOKEN` on loopback: what can read the run file
+knows the token, and every request carries it.
 
 A door sends one request and reads lines until the supervisor closes the connection:
 
@@ -35,7 +35,7 @@ _TCP = "tcp/"
 
 
 class Commands(Protocol):
-    """What the socket lets a door ask of a supervisor."""
+    """What a door may ask of a supervisor over the socket."""
 
     def describe(self) -> list[dict[str, Any]]: ...
 
@@ -56,10 +56,10 @@ class ControlServer:
         self._connections: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
 
     def expect_lifeline(self) -> None:
-        """Stop the graph if no door with a lifeline comes soon: the one that started it is dead already."""
+        """Stop the graph if no door with a lifeline comes soon: the one that started it is already dead."""
         loop = asyncio.get_running_loop()
         self._expectation = loop.call_later(
-            LIFELINE_LIMIT, lambda: self._commands.begin_stop(now=False, reason="its terminal never came")
+            LIFELINE_LIMIT, lambda: self._commands.begin_stop(now=False, reason="its terminal never connected")
         )
 
     async def open(self, path: Path) -> str:
@@ -81,7 +81,7 @@ class ControlServer:
         return str(path)
 
     async def wait_followed(self) -> None:
-        """Wait until a door follows the graph, but not for long: a graph that fails at once still tells why."""
+        """Wait until a door follows the graph, but not for long: a graph that fails at once can then still say why."""
         try:
             async with asyncio.timeout(LIFELINE_LIMIT):
                 await self._followed.wait()
@@ -126,7 +126,7 @@ class ControlServer:
         elif what == "follow":
             await self._follow(reader, writer, lifeline=bool(request.get("lifeline")))
         else:
-            _write(writer, {"event": "error", "message": f"{what!r} is no request"})
+            _write(writer, {"event": "error", "message": f"{what!r} is not a request"})
         await writer.drain()
 
     async def _down(self, writer: asyncio.StreamWriter, *, now: bool) -> None:
@@ -167,7 +167,7 @@ def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:
 
 
 def _peer_uid(connection: Any) -> int | None:
-    """The user at the other end, where the system tells."""
+    """The user at the other end, where the system can tell."""
     if not hasattr(socket, "SO_PEERCRED"):
         return None
     layout = struct.Struct("3i")
@@ -176,7 +176,7 @@ def _peer_uid(connection: Any) -> int | None:
 
 
 def _connect(address: str) -> tuple[socket.socket, dict[str, str]]:
-    """A connection to a supervisor, and what to show there."""
+    """A connection to a supervisor, and the token to show there."""
     if address.startswith(_TCP):
         port, _, token = address.removeprefix(_TCP).partition("/")
         return socket.create_connection(("127.0.0.1", int(port)), CONNECT_LIMIT), {"token": token}
@@ -194,7 +194,7 @@ class ControlClient:
     """A door's side; blocking.
 
     Raises:
-        SupervisorError: Nobody is at the address.
+        SupervisorError: Nothing answers at the address.
     """
 
     def __init__(self, address: str) -> None:
@@ -217,15 +217,15 @@ class ControlClient:
         """Send a request.
 
         Raises:
-            SupervisorError: The supervisor is gone.
+            SupervisorError: The supervisor has gone.
         """
         try:
             self._socket.sendall(json.dumps({**request, **self._token}).encode() + b"\n")
         except OSError as error:
-            raise SupervisorError(f"the supervisor is gone: {error.strerror}") from None
+            raise SupervisorError(f"the supervisor has gone: {error.strerror}") from None
 
     def receive(self, timeout: float | None = CONNECT_LIMIT) -> Iterator[dict[str, Any]]:
-        """Events as they come, until the supervisor closes.
+        """Events as they come, until the supervisor closes the connection.
 
         Args:
             timeout: Seconds between two events; None for no limit.
@@ -249,7 +249,7 @@ class ControlClient:
             self._buffer += data
 
     def pending(self) -> list[dict[str, Any]] | None:
-        """Events that have arrived, without waiting; None when the supervisor has closed."""
+        """Events that have arrived, without waiting; None when the supervisor has closed the connection."""
         self._socket.setblocking(False)
         try:
             while True:

@@ -1,4 +1,4 @@
-"""Workers forked from the preload process: the way of Linux, which starts twenty nodes in a tenth of a second."""
+"""Workers forked from the preload process: used on Linux, where it starts twenty nodes in a tenth of a second."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class ForkingStarter:
 def _signal(pid: int, number: signal.Signals) -> None:
     try:
         os.killpg(pid, number)
-    except ProcessLookupError:  # it has ended, or has not made its session yet
+    except ProcessLookupError:  # it has ended, or has not made its process session yet
         try:
             os.kill(pid, number)
         except ProcessLookupError:

@@ -1,7 +1,7 @@
 """From a graph file to a running supervisor: what happens between `graphflow up` and the first node.
 
 The command forks the supervisor before anything heavy is imported, and the supervisor forks the preload process at
-once, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong until the
+once, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong before the
 graph runs goes back over a report pipe, as the exit code and text the command ends with.
 """
 
@@ -36,7 +36,7 @@ def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) 
         file: The graph file.
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
-        attached: The graph is to go down when the command that follows it is gone.
+        attached: Whether the graph must go down when the command that follows it has gone.
 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
@@ -61,7 +61,7 @@ def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) 
 
 
 _Begun = tuple[int, int, Callable[[], object]]
-"""The supervisor's process id, the descriptor its report comes from, and what waits for its end."""
+"""The supervisor's process id, the descriptor its report comes from, and a function that waits for its end."""
 
 
 def _begin_forked(job: dict[str, Any]) -> _Begun:
@@ -115,12 +115,12 @@ class _Launch:
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
-            return self._refuse(2, f"{error}\n{count} problem{'s' if count > 1 else ''}, nothing was started")
+            return self._refuse(2, f"{error}\n{count} problem{'s' if count > 1 else ''}; nothing was started")
         except SupervisorError as error:
             return self._refuse(error.exit_code, str(error))
         except GraphflowError as error:
             return self._refuse(1, str(error))
-        except BaseException:  # a forked child: it must answer whoever waits, not unwind into its parent's code
+        except BaseException:  # a forked child: it must answer the waiting command, not unwind into its parent's code
             import traceback
 
             return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")
@@ -129,7 +129,7 @@ class _Launch:
                 starter.end()
 
     def _report(self, **report: Any) -> None:
-        if self._report_pipe < 0:  # it has been told that the graph is up; what comes now goes to the log
+        if self._report_pipe < 0:  # the command already knows that the graph is up; what comes now goes to the log
             sys.stderr.write(f"{report}\n")
             return
         try:
@@ -231,7 +231,7 @@ class _Launch:
 
 
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Once the graph is up, tell of the deadlocks that its source tells of."""
+    """Once the graph is up, report the deadlocks that its source shows."""
     import asyncio
 
     from graphflow.graph.static import findings, warnings
@@ -266,7 +266,7 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
 
 
 def _log_to(path: Path) -> None:
-    """From here on the supervisor speaks to its log only; the terminal belongs to the command."""
+    """From here on the supervisor writes only to its log; the terminal belongs to the command."""
     import logging
 
     null = os.open(os.devnull, os.O_RDWR)
@@ -277,7 +277,7 @@ def _log_to(path: Path) -> None:
 
 
 def _tell_notes(note: Callable[[str], None]) -> None:
-    """Have what the supervisor's process learns of the network told to whoever follows the graph."""
+    """Pass what the supervisor's process learns about the network on to the doors that follow the graph."""
     import logging
 
     class Notes(logging.Handler):
@@ -294,7 +294,7 @@ if __name__ == "__main__":
 
 
 def _make_starter(keep: tuple[int, ...]) -> Starter:
-    """A starter of the kind that this system takes. To be made while this process has one thread.
+    """A starter of the kind that this system uses. Must be made while this process has one thread.
 
     Args:
         keep: Descriptors that workers must not inherit.

@@ -1,7 +1,7 @@
 """The preload process: it has imported everything a node needs, and forks workers that then start in milliseconds.
 
 It is forked from the supervisor before that opens a Zenoh session, never opens one itself and keeps to one thread,
-so that forking it is safe. It is the workers' parent: it reaps them and tells the supervisor how each ended.
+so that forking it is safe. It is the workers' parent: it reaps them and reports to the supervisor how each ended.
 
 The supervisor sends requests as lines of JSON over a socket pair and gets lines back:
 
@@ -40,10 +40,10 @@ _WARM = (
 
 
 def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
-    """Fork the preload process. To be called while this process has one thread and no Zenoh session.
+    """Fork the preload process. Must be called while this process has one thread and no Zenoh session.
 
     Args:
-        keep: Descriptors that the preload process must not keep.
+        keep: Descriptors that the preload process must not keep open.
 
     Returns:
         The socket to it, the reading end of the workers' status pipe, and its process id.
@@ -89,7 +89,7 @@ class _Preload:
             os.set_blocking(fd, False)
         signal.set_wakeup_fd(wake_write, warn_on_full_buffer=False)
         signal.signal(signal.SIGCHLD, lambda *_: None)
-        # Blocked and not ignored: one that is sent to a worker just forked waits until the worker can act on it.
+        # Blocked, not ignored: a signal to a worker just forked waits until the worker can act on it.
         signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
         selector = selectors.DefaultSelector()
         selector.register(self._channel, selectors.EVENT_READ)
@@ -188,7 +188,7 @@ class _Preload:
         parent = os.getpid()
         try:
             pid = self._spawn_fresh(request) if fresh else os.fork()
-        except (OSError, ValueError) as error:  # no memory, no process left, an impossible environment
+        except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
             self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
             self._answer({"event": "exited", "process": request["process"], "status": 1})
             return
@@ -213,7 +213,7 @@ class _Preload:
         worker.main(request["job"], worker.PipeReporter(self._status))
 
     def _spawn_fresh(self, request: dict[str, Any]) -> int:
-        """A worker in a new interpreter, for environments that a running one cannot take on."""
+        """A worker in a new interpreter, for environments that a running one cannot adopt."""
         log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with open(log, "ab") as out:
             child = subprocess.Popen(
@@ -226,7 +226,7 @@ class _Preload:
                 start_new_session=True,
             )
         assert child.stdin is not None
-        # By stdin, since an argument may have 128 KiB at the most.
+        # Over stdin, since an argument is limited to 128 KiB.
         child.stdin.write(json.dumps(request["job"]).encode())
         child.stdin.close()
         child.returncode = 0  # it is reaped below with the others
@@ -253,7 +253,7 @@ def answer_probe(request: dict[str, Any], write: int) -> None:
 
     add_root(request["root"])
     null = os.open(os.devnull, os.O_RDWR)
-    for fd in (0, 1, 2):  # what a module prints while it is imported is nobody's business
+    for fd in (0, 1, 2):  # what a module prints while it is imported is dropped
         os.dup2(null, fd)
     data = json.dumps(interfaces(request["classes"])).encode()
     while data:
@@ -263,7 +263,7 @@ def answer_probe(request: dict[str, Any], write: int) -> None:
 def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
     """What a probing child wrote, or why it wrote nothing."""
     if not done:
-        why = f"importing it takes longer than {PROBE_LIMIT:.0f} s; do the work in the node, not while importing"
+        why = f"importing it takes longer than {PROBE_LIMIT:.0f} s; do the work in the node, not at import"
         return {path: {"problem": why} for path in classes}
     if not data:
         return {path: {"problem": "the process that imported it died"} for path in classes}
@@ -272,7 +272,7 @@ def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
 
 
 def sweep(group: int) -> None:
-    """End what a worker has started and left behind in its process group."""
+    """End what a worker has left behind in its process group."""
     try:
         os.killpg(group, signal.SIGKILL)
     except ProcessLookupError:

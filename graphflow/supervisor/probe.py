@@ -13,7 +13,7 @@ from graphflow.supervisor.preload import PROBE_LIMIT, answer_probe, probe_result
 
 
 def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
-    """What each class declares, as `classes.interfaces` gives it."""
+    """What each class declares, as `classes.interfaces` returns it."""
     return finish(begin(classes, root), classes)
 
 
@@ -25,7 +25,7 @@ def begin(classes: Iterable[str], root: str) -> subprocess.Popen[bytes]:
 
 
 def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str, Any]:
-    """What came of it."""
+    """The result of the import."""
     with probing:
         try:
             out, _ = probing.communicate(timeout=PROBE_LIMIT)

@@ -1,6 +1,6 @@
-"""A node that lives for a moment in memory, in the preload process: its workers then share what a first time leaves.
+"""A node that lives for a moment in memory, in the preload process: the workers then share what a first run leaves.
 
-That is what was compiled, looked up and cached on the way, and the interpreter's own notes in the code it ran.
+That is what was compiled, looked up and cached on the way, and what the interpreter noted in the code it ran.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ LIMIT = 1.0
 
 
 def rehearse() -> bool:
-    """Make a node, have it talk to itself and stop it; returns whether it heard itself."""
+    """Make a node, let it talk to itself and stop it; returns whether it heard itself."""
     with asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(_rehearse())
 
@@ -48,7 +48,7 @@ async def _rehearse() -> bool:
     node = Rehearsal()
     node.log.setLevel(logging.DEBUG)
     await core_of(node).start(context)
-    with suppress(TimeoutError):  # then the workers do everything for the first time, and the graph runs all the same
+    with suppress(TimeoutError):  # then the workers do everything for the first time, and the graph runs anyway
         async with asyncio.timeout(LIMIT):
             await done.wait()
     await core_of(node).stop()

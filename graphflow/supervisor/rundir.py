@@ -1,11 +1,11 @@
-"""Where a running graph leaves its traces: the run directory, the run file, the logs.
+"""What a running graph leaves on disk: the run directory, the run file, the logs.
 
     $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock      (0700)
     $XDG_RUNTIME_DIR/graphflow/<domain>.<graph>.lock   held while the graph runs
     $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, supervisor.log; `latest` points to the newest
 
 Without XDG_RUNTIME_DIR a private folder under the temporary directory is used; ROS_LOG_DIR moves the logs.
-A graph runs when its run file names a process that lives and was started when the file says.
+A graph runs when its run file names a process that is alive and was started when the file says.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from graphflow.errors import SupervisorError
 from graphflow.system import is_portable, user_id
 
 SOCKET_PATH_LIMIT = 100
-"""Bytes that a Unix socket's path may have, with some left for the C string."""
+"""Bytes that a Unix socket's path may have, leaving room for the C string's end."""
 
 
 def runtime_root() -> Path:
     """The folder of all this user's run directories, made if need be.
 
     Raises:
-        SupervisorError: It cannot be made, or it is somebody else's.
+        SupervisorError: The folder cannot be made, or belongs to another user.
     """
     given = os.environ.get("XDG_RUNTIME_DIR")
     root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
@@ -41,9 +41,7 @@ def runtime_root() -> Path:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         found = root.lstat()
     except OSError as error:
-        raise SupervisorError(
-            f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder of yours that can be written"
-        ) from None
+        raise SupervisorError(f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder you can write to") from None
     if found.st_uid != user_id() or not stat.S_ISDIR(found.st_mode):
         raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
     return root
@@ -66,7 +64,7 @@ def open_logs(graph: str, run_id: str) -> Path:
     """Make a run's log folder and point `latest` to it.
 
     Raises:
-        SupervisorError: It cannot be made.
+        SupervisorError: The folder cannot be made.
     """
     folder = log_root() / graph / run_id
     try:
@@ -74,11 +72,11 @@ def open_logs(graph: str, run_id: str) -> Path:
         link = folder.parent / "latest"
         fresh = folder.parent / f".latest-{os.getpid()}"
         fresh.unlink(missing_ok=True)
-        if not is_portable():  # links take a right on Windows that few have
+        if not is_portable():  # links take a privilege on Windows that few users have
             fresh.symlink_to(run_id)
             fresh.replace(link)
     except OSError as error:
-        raise SupervisorError(f"{folder}: {error.strerror}; set ROS_LOG_DIR to a folder that can be written") from None
+        raise SupervisorError(f"{folder}: {error.strerror}; set ROS_LOG_DIR to a folder you can write to") from None
     return folder
 
 
@@ -94,7 +92,7 @@ def log_file(folder: Path, node: str) -> Path:
 
 
 def start_time(pid: int) -> float | None:
-    """When a living process was started, in some fixed unit; None when it does not live."""
+    """When a live process was started, in some fixed unit; None when it is not alive."""
     try:
         text = Path(f"/proc/{pid}/stat").read_text()
         fields = text.rpartition(")")[2].split()
@@ -123,7 +121,7 @@ class GraphRun:
     started: float
     """`start_time` of the supervisor."""
     began: float
-    """When, in seconds since 1970."""
+    """When the run began, in seconds since 1970."""
     file: str
     socket: str
     logs: str
@@ -155,9 +153,9 @@ class RunDirectory:
         """Take the directory for this process.
 
         Raises:
-            SupervisorError: The graph runs already, or the directory cannot be made.
+            SupervisorError: The graph is already running, or the directory cannot be made.
         """
-        # Beside the directory, and never removed: whoever holds the lock on this one file owns the directory.
+        # Next to the directory, and never removed: the process that holds the lock on this one file owns the directory.
         lock = self.path.parents[1] / f"{self.path.parent.name}.{self.path.name}.lock"
         try:
             self._lock = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
@@ -171,7 +169,7 @@ class RunDirectory:
             run = read_run(self.path / "run.json")
             since = f" since {time.strftime('%H:%M:%S', time.localtime(run.began))}, process {run.pid}" if run else ""
             raise SupervisorError(
-                f"graph {self.path.name} is running already (domain {self.path.parent.name}{since}); "
+                f"graph {self.path.name} is already running (domain {self.path.parent.name}{since}); "
                 f"stop it with: graphflow down --graph {self.path.name}"
             ) from None
         try:
@@ -214,7 +212,7 @@ class RunDirectory:
 
 
 def _lock(fd: int) -> None:
-    """Lock a file until its descriptor is closed; an OSError says that somebody else has."""
+    """Lock a file until its descriptor is closed; raises OSError when another process has locked it."""
     if sys.platform == "win32":
         import msvcrt
 
@@ -226,7 +224,7 @@ def _lock(fd: int) -> None:
 
 
 def read_run(path: Path) -> GraphRun | None:
-    """A run file's content; None when it is not there or not one."""
+    """A run file's content; None when it is missing or not a run file."""
     try:
         data: Any = json.loads(path.read_text())
         return GraphRun(**data)
@@ -235,7 +233,7 @@ def read_run(path: Path) -> GraphRun | None:
 
 
 def running() -> list[GraphRun]:
-    """Every graph of this user that runs now, by name."""
+    """Every graph of this user that is running now, by name."""
     found = [read_run(path) for path in sorted(runtime_root().glob("*/*/run.json"))]
     return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
 
@@ -244,7 +242,7 @@ def choose(name: str | None) -> GraphRun:
     """The running graph that is meant.
 
     Raises:
-        SupervisorError: None runs (exit 3), or several do and `name` does not tell which (exit 2).
+        SupervisorError: None is running (exit 3), or several are and `name` does not say which (exit 2).
     """
     from graphflow.names import did_you_mean
 

@@ -1,7 +1,7 @@
-"""Workers as interpreters of their own: the portable way, for systems where forking or signals are not to be had.
+"""Workers as interpreters of their own: the portable way, for systems without forking or signals.
 
 A worker gets its job over stdin, connects to a port of the supervisor on loopback and shows a token. Over that
-connection it tells how it is, and is asked to stop; when the connection breaks, either side knows that the other is
+connection it reports its state and is asked to stop; when the connection breaks, either side knows that the other is
 dead.
 """
 
@@ -29,7 +29,7 @@ from graphflow.system import detached
 logger = logging.getLogger("graphflow.supervisor")
 
 _LAST_WORDS = 1.0
-"""Seconds that a dead worker's words may take to arrive."""
+"""Seconds that a dead worker's last reports may take to arrive."""
 
 
 class SpawningStarter:
@@ -95,7 +95,7 @@ class SpawningStarter:
                     env={**os.environ, **env},
                     **detached(),  # a terminal's Ctrl-C is for `up`, which asks the supervisor
                 )
-        except (OSError, ValueError) as error:  # no memory, no process left, an impossible environment
+        except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
             self._heard({"event": "failed", "process": process, "error": f"cannot be started: {error}"})
             self._heard({"event": "exited", "process": process, "status": 1})
             return
@@ -106,7 +106,7 @@ class SpawningStarter:
             worker.stdin.write(json.dumps({"token": self._token, "job": job}).encode())
             worker.stdin.close()
             await worker.stdin.wait_closed()
-        except ConnectionError:  # it is dead already, as the next line learns
+        except ConnectionError:  # it is already dead, as the next line finds out
             logger.debug("%s did not read its job", process)
         status = await worker.wait()
         if hasattr(os, "killpg"):
@@ -123,7 +123,7 @@ class SpawningStarter:
         voice = self._voices.get(process)
         if voice is not None:
             voice.write(b'{"do": "stop"}\n')
-        else:  # it has not come so far as to hear
+        else:  # it is not yet able to hear
             self.kill(process, pid)
 
     def kill(self, process: str, pid: int) -> None:
@@ -147,4 +147,4 @@ class SpawningStarter:
             await asyncio.wait(self._workers.values())
 
     def end(self) -> None:
-        """Nothing is left."""
+        """Nothing is left to give back."""

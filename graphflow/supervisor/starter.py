@@ -1,4 +1,4 @@
-"""How a supervisor starts and ends the processes of its graph: what it asks, whichever way that goes."""
+"""How a supervisor starts and ends the processes of its graph, whichever way that is done."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ class Starter(Protocol):
     """Starts workers and ends them. Made before the loop runs."""
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
-        """Have node classes imported, in a process of their own."""
+        """Start importing node classes, in a process of their own."""
 
     def probed(self) -> dict[str, Any]:
-        """What they declare, as `classes.interfaces` gives it. Blocks until it is known.
+        """What those classes declare, as `classes.interfaces` returns it. Blocks until it is known.
 
         Raises:
-            SupervisorError: The process that was to import them died.
+            SupervisorError: The process that should import them died.
         """
 
     async def open(self, log: Path, heard: Heard, lost: Callable[[], None]) -> None:
-        """Tell of workers from now on, and of their own end if that comes first.
+        """Report on workers from now on, and on the starter's own end if that comes first.
 
         Args:
-            log: Where troubles of the starter itself are written.
+            log: The file for the starter's own errors.
         """
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
@@ -42,17 +42,17 @@ class Starter(Protocol):
         Args:
             job: See `worker.main`.
             log: The file that its output is appended to.
-            env: Variables it has beside the supervisor's own.
+            env: Variables it gets besides the supervisor's own.
         """
 
     def terminate(self, process: str, pid: int) -> None:
         """Ask a worker to end."""
 
     def kill(self, process: str, pid: int) -> None:
-        """End a worker at once, and what it has started."""
+        """End a worker at once, with what it has started."""
 
     async def close(self) -> None:
-        """Tell no more."""
+        """Stop reporting."""
 
     def end(self) -> None:
-        """Give everything back, after the loop has ended."""
+        """Release everything, after the loop has ended."""

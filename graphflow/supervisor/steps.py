@@ -19,7 +19,7 @@ class StepRunner:
     """Makes the calls, under a hidden node of the supervisor.
 
     Args:
-        types: Service types by step name, as far as the plan's classes tell.
+        types: Service types by step name, as far as the plan's classes say.
     """
 
     def __init__(self, context: Context, types: dict[str, str]) -> None:
@@ -28,10 +28,10 @@ class StepRunner:
         self._node: Node | None = None
 
     async def run(self, step: PlannedStep) -> Any:
-        """Do a step; returns the response.
+        """Run a step; returns the response.
 
         Raises:
-            CallError: The service is not there, failed, or did not answer within the step's timeout.
+            CallError: The service is unavailable, failed, or did not answer within the step's timeout.
             EncodeError: The request does not fit the service's type.
         """
         if self._node is None:
@@ -55,7 +55,7 @@ class StepRunner:
             async with self._context.clock.timeout(step.timeout):
                 await self._context.wait_for(lambda: bool(servers()))
         except TimeoutError:
-            raise ServiceUnavailable(f"nobody offers the service {step.call}") from None
+            raise ServiceUnavailable(f"no node offers the service {step.call}") from None
         return str(servers()[0].type)
 
     async def close(self) -> None:

@@ -32,13 +32,13 @@ class Process:
         self.pid: int | None = None
         self.exit: Exit | None = None
         self.since = time.time()
-        """When it entered its state, in seconds since 1970."""
+        """When the process entered its state, in seconds since 1970."""
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
         self.error = ""
         self.stop_asked = False
         self.failed = False
-        """Whether it ended by itself, and not well."""
+        """Whether the process ended by itself with a failure."""
         self.alarm: asyncio.TimerHandle | None = None
 
 
@@ -46,7 +46,7 @@ class Supervisor:
     """One running graph.
 
     Args:
-        starter: Starts the processes; what becomes of them comes to `heard`.
+        starter: Starts the processes; what becomes of them is passed to `heard`.
         step_types: Service types by step, as far as they are known.
         logs: The folder of the nodes' logs.
     """
@@ -55,7 +55,7 @@ class Supervisor:
         self.plan = plan
         self.exit_code = 0
         self.up = asyncio.Event()
-        """All is ready, and all steps are done."""
+        """Whether everything is ready and all steps are done."""
         self.ended = asyncio.Event()
         self._context = context
         self._starter = starter
@@ -91,7 +91,7 @@ class Supervisor:
     # what doors may ask
 
     def describe(self) -> list[dict[str, Any]]:
-        """One row a node, for `ps`."""
+        """One row per node, for `ps`."""
         return [
             {
                 "node": node.name,
@@ -114,7 +114,7 @@ class Supervisor:
         return process.state.value
 
     def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]:
-        """Have events told, those of the past first if `replay`; returns what ends that."""
+        """Pass events to a listener, past ones first if `replay`; returns a function that stops this."""
         if replay:
             for event in self._history:
                 listener(event)
@@ -139,7 +139,7 @@ class Supervisor:
         self._stop_next_layer()
 
     def note(self, text: str) -> None:
-        """Tell those who follow the graph something about its surroundings."""
+        """Tell the doors that follow the graph something about its surroundings."""
         self._tell(event="note", text=text)
 
     # events from below
@@ -162,7 +162,7 @@ class Supervisor:
         return self.exit_code
 
     def heard(self, event: dict[str, Any]) -> None:
-        """Something that became of a worker, or that it said."""
+        """Take in an event of a worker."""
         process = self._processes.get(event.get("process", ""))
         if process is None:
             return
@@ -184,7 +184,7 @@ class Supervisor:
             self._happen(process, Event.EXIT)
 
     def starter_lost(self) -> None:
-        """The starter died, and all workers with it."""
+        """The starter has died, and all workers with it."""
         if not self.ended.is_set():
             logger.error("the process that starts nodes died; all nodes went with it")
             self.exit_code = 1
@@ -258,7 +258,7 @@ class Supervisor:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
             self._tell(event="error", message=f"{process.error}\n  its log: {process.log}")
-            self._fail(f"{process.name} did not get ready")
+            self._fail(f"{process.name} did not become ready")
 
     def _spawn(self, process: Process) -> None:
         env: dict[str, str] = {}
@@ -326,6 +326,6 @@ class Supervisor:
 
 
 SIGKILL = 9
-"""As everywhere; Windows does not name it."""
+"""SIGKILL's number on every system; Windows has no name for it."""
 MESH_LIMIT = 24
-"""Processes up to which each is a peer of every other; beyond, they are clients of the rendezvous."""
+"""Up to this many processes each is a peer of every other; beyond, they are clients of the rendezvous."""

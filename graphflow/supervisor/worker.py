@@ -25,19 +25,19 @@ from graphflow.supervisor.classes import add_root, import_class
 from graphflow.transport import loop
 
 STOP_SIGNALS = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
-"""The preload process blocks these; a worker has them unblocked once it can act on them."""
+"""Signals that the preload process blocks; a worker unblocks them once it can act on them."""
 PIPE_BUF = 4096
-"""Bytes that a pipe takes in one piece on Linux (PIPE_BUF of pipe(7))."""
+"""Bytes that a pipe accepts atomically on Linux (PIPE_BUF of pipe(7))."""
 CONNECT_LIMIT = 5.0
 """Seconds that reaching the supervisor may take, over loopback."""
 EXIT_ERROR = 70
-"""A node failed while it ran."""
+"""Exit code: a node failed while it ran."""
 EXIT_CONFIGURATION = 78
-"""A node could not be made: starting it again would not help."""
+"""Exit code: a node could not be made; starting it again would not help."""
 
 
 def make_node(planned: PlannedNode) -> Node:
-    """The node that a plan wants.
+    """Make the node that a plan describes.
 
     Raises:
         GraphflowError: Its class cannot be imported, or refuses what the plan gives it.
@@ -68,7 +68,7 @@ class Reporter(Protocol):
     def tell(self, **event: Any) -> None: ...
 
     def on_stop(self, stop: Callable[[], object]) -> None:
-        """Have `stop` called, on any thread, when the supervisor asks for the end by this way and not by a signal."""
+        """Call `stop`, on any thread, when the supervisor asks for the end over this line."""
 
 
 class PipeReporter:
@@ -78,13 +78,13 @@ class PipeReporter:
         self._pipe = pipe
 
     def tell(self, **event: Any) -> None:
-        # In one piece: a pipe keeps lines of up to 4096 bytes together.
+        # In one write: a pipe keeps lines of up to 4096 bytes together.
         while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
             event["error"] = event["error"][: len(event["error"]) // 2]
         os.write(self._pipe, line + b"\n")
 
     def on_stop(self, stop: Callable[[], object]) -> None:
-        """Signals do that."""
+        """Does nothing: signals stop this worker."""
 
 
 class SocketReporter:
@@ -107,8 +107,8 @@ class SocketReporter:
             stop()
 
     def _listen(self) -> None:
-        # Not on the loop: a node whose loop is blocked must not outlive its supervisor either.
-        with self._socket.makefile("rb") as lines, suppress(OSError):  # an error is as good as the end
+        # Not on the loop: even a node whose loop is blocked must not outlive its supervisor.
+        with self._socket.makefile("rb") as lines, suppress(OSError):  # an error counts as the end
             for _ in lines:
                 self._asked.set()
                 self._stop()
@@ -125,7 +125,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable()
     if hasattr(signal, "SIGUSR2"):
-        faulthandler.register(signal.SIGUSR2)  # `kill -USR2` has the log show where a process hangs, also in C
+        faulthandler.register(signal.SIGUSR2)  # `kill -USR2` logs where a process hangs, even in C
     setup_console()
     code = 0
     try:
@@ -183,7 +183,7 @@ def _one_line(error: Exception) -> str:
 
 
 def become(log: str, env: dict[str, str], parent: int) -> None:
-    """Turn a fresh child into a worker's process: session, signals, stdin, log file, environment."""
+    """Turn a new child into a worker's process: session, signals, stdin, log file, environment."""
     os.setsid()
     die_with_parent(parent)
     for number in (*STOP_SIGNALS, signal.SIGCHLD):
@@ -206,10 +206,10 @@ def _line_buffered() -> None:
 
 
 def die_with_parent(parent: int) -> None:
-    """Have the kernel kill this process when its parent dies (Linux).
+    """Let the kernel kill this process when its parent dies (Linux).
 
     Args:
-        parent: Its process id from before the fork: it may be dead already.
+        parent: The parent's process id from before the fork: it may be dead already.
     """
     import ctypes
 

@@ -65,7 +65,7 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
         (["nodes.talker:Talker", "-p", "rate:=-1.0"], 2, "out of range"),
         (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
         (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
-        (["nodes.talker:Talker", "--log-level", "loud"], 2, "is no log level"),
+        (["nodes.talker:Talker", "--log-level", "loud"], 2, "is not a log level"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], code: int, expected: str) -> None:

@@ -74,7 +74,7 @@ def test_an_import_that_does_not_end(project: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(probe_module, "PROBE_LIMIT", 0.5)
     fault = found(project, "machines.hangs:Robot")["machines.hangs:Robot"]
     assert isinstance(fault, Problem)
-    assert fault.message.endswith("do the work in the node, not while importing")
+    assert fault.message.endswith("do the work in the node, not at import")
 
 
 def test_nothing_to_look_at() -> None:

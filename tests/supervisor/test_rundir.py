@@ -68,10 +68,10 @@ def test_a_folder_that_cannot_be_made(folders: Path, monkeypatch: pytest.MonkeyP
     """What is in the way is named, with the variable that leads elsewhere."""
     (folders / "file").touch()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(folders / "file"))
-    with pytest.raises(SupervisorError, match="Not a directory; set XDG_RUNTIME_DIR to a folder of yours"):
+    with pytest.raises(SupervisorError, match="Not a directory; set XDG_RUNTIME_DIR to a folder you can write to"):
         runtime_root()
     monkeypatch.setenv("ROS_LOG_DIR", str(folders / "file"))
-    with pytest.raises(SupervisorError, match="Not a directory; set ROS_LOG_DIR to a folder that can be written"):
+    with pytest.raises(SupervisorError, match="Not a directory; set ROS_LOG_DIR to a folder you can write to"):
         open_logs("chase", "id")
 
 
@@ -156,7 +156,7 @@ def test_a_graph_runs_once() -> None:
     with pytest.raises(SupervisorError) as caught:
         second.claim()
     text = str(caught.value)
-    assert text.startswith("graph chase is running already (domain 7 since ")
+    assert text.startswith("graph chase is already running (domain 7 since ")
     assert text.endswith(f", process {os.getpid()}); stop it with: graphflow down --graph chase")
     start("chase", domain=8).release()
     first.release()
@@ -168,7 +168,7 @@ def test_a_claim_before_the_run_file() -> None:
     """While the first is still coming up, there is less to tell."""
     first = RunDirectory(7, "chase")
     first.claim()
-    with pytest.raises(SupervisorError, match=r"graph chase is running already \(domain 7\); stop it with"):
+    with pytest.raises(SupervisorError, match=r"graph chase is already running \(domain 7\); stop it with"):
         RunDirectory(7, "chase").claim()
     first.release()
 
