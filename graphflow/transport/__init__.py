@@ -1,1 +1,1 @@
-"""The network: small protocols, and the two rooms that fulfil them. Only this package knows Zenoh."""
+"""The network: small protocols and two implementations of them. Only this package knows Zenoh."""

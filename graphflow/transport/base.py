@@ -1,8 +1,8 @@
-"""What the runtime asks of a network, as small protocols, and the queue through which foreign threads reach the loop.
+"""What the runtime needs from a network, as small protocols, and the queue by which foreign threads reach the loop.
 
-The one path of whatever arrives: the network's thread appends it to an `Inbox`, which is bounded, and rings the
-`Bell` if it is silent; the loop empties the inbox. Payloads stay what the network gave until a handler is about to
-run, so that a message dropped from a full inbox has cost nothing.
+Everything that arrives takes one path: the network's thread appends it to an `Inbox`, which is bounded, and rings the
+`Bell` if it is silent; the loop empties the inbox. Payloads stay as the network delivered them until a handler is about
+to run, so that a message dropped from a full inbox has cost nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Payload = bytes | bytearray | memoryview
 EARLY = 0.1
-"""Seconds after which reports that have come are told although others have not."""
+"""Seconds after which the reports so far are passed on although others are missing."""
 
 
 class Closable(Protocol):
@@ -34,10 +34,10 @@ class Sender(Closable, Protocol):
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anything sent now would reach or be kept for somebody."""
+        """Whether anything sent now would reach a receiver or be kept for one."""
 
     def put(self, payload: Payload, *, attachment: bytes) -> None:
-        """Send without waiting. A receiver that cannot keep up loses messages; the sender is not held."""
+        """Send without waiting. A receiver that cannot keep up loses messages; the sender is not blocked."""
 
 
 class Caller(Closable, Protocol):
@@ -49,10 +49,10 @@ class Caller(Closable, Protocol):
         """Send a request.
 
         Args:
-            answered: Called on the loop for each answer, and at the end with None.
+            answered: Called on the loop for each reply, and at the end with None.
 
         Returns:
-            A function that gives the request up; no answer comes after it.
+            A function that gives up the request; no reply comes after it.
         """
 
     @property
@@ -61,7 +61,7 @@ class Caller(Closable, Protocol):
 
 
 class Answer(NamedTuple):
-    """One answer to a call."""
+    """One reply to a call."""
 
     payload: bytes
     attachment: bytes | None = None
@@ -96,7 +96,7 @@ class Session(Protocol):
     """One process's place on the network."""
 
     zid: str
-    """The session's id as it stands in tokens: lower-case hex."""
+    """The session's id as written in tokens: lower-case hex."""
     bell: Bell
     """Rung by this session's inboxes."""
 
@@ -109,8 +109,8 @@ class Session(Protocol):
         """Put every publication on `key` into `inbox`; `read` opens what is found there.
 
         Args:
-            key: Its last part may be `*`; `key_of` then tells what was meant.
-            ignore_local: Leave out what this session sends itself.
+            key: Its last part may be `*`; `key_of` then gives the full key.
+            ignore_local: Whether to leave out what this session sends itself.
         """
 
     def open_server(self, key: str, inbox: Inbox) -> Closable:
@@ -122,13 +122,13 @@ class Session(Protocol):
         """
 
     def announce(self, token: str) -> Closable:
-        """Show a liveliness token for as long as this process lives and the result is not closed."""
+        """Declare a liveliness token that lasts until the process ends or the result is closed."""
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> Closable:
-        """Call `changed(token, alive)` on the loop for every token that matches, also those already there."""
+        """Call `changed(token, alive)` on the loop for every token that matches, including existing ones."""
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> Closable:
-        """Answer whoever asks on `key` with what `report` returns. It is called on a thread of its own, where there
+        """Answer queries on `key` with what `report` returns. It is called on a thread of its own, where there
         are threads, so that it answers while the loop is blocked.
         """
 
@@ -136,22 +136,22 @@ class Session(Protocol):
         """Ask all reports whose key matches.
 
         Args:
-            limit: Seconds that they get to come.
-            told: Called on the loop with those that came, and whether these are all: once, or also before, after
-                `EARLY` seconds, where some have not come by then.
+            limit: Seconds that they have to arrive.
+            told: Called on the loop with those that arrived, and whether these are all: once, or also earlier, after
+                `EARLY` seconds, when some are still missing by then.
         """
 
     def read(self, arrival: Any) -> tuple[bytes, bytes | None]:
-        """Payload and attachment of something that `open_receiver` put into an inbox."""
+        """Payload and attachment of something that `open_receiver` put in an inbox."""
 
     def key_of(self, arrival: Any) -> str:
-        """The key on which it was published."""
+        """The key on which an arrival was published."""
 
     async def close(self) -> None: ...
 
 
 class Bell:
-    """Wakes the loop, once for a burst.
+    """Wakes the loop, once per burst.
 
     Args:
         loop: The loop to wake.
@@ -161,7 +161,7 @@ class Bell:
     def __init__(self, loop: AbstractEventLoop, *, threads: bool = True) -> None:
         self._loop = loop
         self.rung: deque[Inbox] = deque()
-        """Inboxes that wait to be attended to."""
+        """Inboxes that wait to be emptied."""
         self.pending = False
         """Whether the loop has been woken for them."""
         self._closed = False
@@ -175,7 +175,7 @@ class Bell:
                 loop.add_reader(self._fd, self._answer)
 
     def ring(self) -> None:
-        """Have the loop attend to the inboxes in `rung`. From any thread."""
+        """Make the loop empty the inboxes in `rung`. Callable from any thread."""
         if self._closed:
             return
         self.pending = True
@@ -195,10 +195,10 @@ class Bell:
         rung = self.rung
         while rung and not self._closed:
             inbox = rung.popleft()
-            inbox.ringing = False  # before the queue is read, so that what comes now rings again
+            inbox.ringing = False  # before the queue is read, so that what arrives now rings again
             try:
                 inbox.ready()
-            except Exception as error:  # one inbox's trouble is not the others'
+            except Exception as error:  # one inbox's failure must not affect the others
                 self._loop.call_exception_handler({"message": f"{inbox.ready} failed", "exception": error})
 
     def close(self) -> None:
@@ -211,12 +211,12 @@ class Bell:
 
 
 class Inbox:
-    """A bounded queue that a foreign thread fills and the loop empties; when full the oldest is dropped.
+    """A bounded queue that a foreign thread fills and the loop empties; when full, the oldest item is dropped.
 
     Args:
         bell: Wakes the loop.
         depth: Items kept; None for no bound.
-        ready: Called on the loop when there is something and nobody is attending to it yet.
+        ready: Called on the loop when there is something that is not being handled yet.
     """
 
     __slots__ = ("_bell", "dropped", "items", "ready", "ringing")
@@ -231,7 +231,7 @@ class Inbox:
         self._bell = bell
 
     def put(self, item: Any) -> None:
-        """Add an item. From any one thread."""
+        """Add an item. Callable from any one thread."""
         items = self.items
         if len(items) == items.maxlen:
             self.dropped += 1

@@ -18,11 +18,11 @@ TOKENS_LIMIT = 2.0
 
 
 class Client:
-    """A session at the rendezvous, or where nothing runs on this machine, at a router that `--connect` names.
+    """A session at the rendezvous or, where nothing runs on this machine, at a router that `--connect` names.
 
     Raises:
-        TransportError: as `rendezvous.join`.
-        SupervisorError: Nobody is there (exit 3).
+        TransportError: As for `rendezvous.join`.
+        SupervisorError: Nothing answers (exit 3).
     """
 
     def __init__(self) -> None:
@@ -41,14 +41,14 @@ class Client:
         return [str(r.ok.key_expr) for r in replies if r.ok is not None]
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
-        """What everybody answers who matches, within `timeout` seconds."""
+        """All replies on matching keys within `timeout` seconds."""
         replies = self._session.get(
             key, target=zenoh.QueryTarget.ALL, consolidation=zenoh.ConsolidationMode.NONE, timeout=timeout
         )
         return [r.ok.payload.to_bytes() for r in replies if r.ok is not None]
 
     def call(self, key: str, payload: bytes, attachment: bytes, timeout: float) -> Answer | None:
-        """Ask the servers on a key; the first answer, or None when none came and none will.
+        """Ask the servers on a key; returns the first reply, or None when none came and none will.
 
         Raises:
             TimeoutError: Nothing came within `timeout` seconds.
@@ -80,13 +80,13 @@ class Client:
 
 def _nobody() -> str:
     if reaches_out():
-        return f"nobody answers at {rendezvous_endpoint()}, nor where --connect or --net point to"
-    return f"nobody answers at {rendezvous_endpoint()}; start a graph with graphflow up, or a node with graphflow run"
+        return f"nothing answers at {rendezvous_endpoint()}, nor where --connect or --net points"
+    return f"nothing answers at {rendezvous_endpoint()}; start a graph with graphflow up, or a node with graphflow run"
 
 
 def _dial() -> zenoh.Session | None:
     if not reaches_out():
         return None
-    from graphflow.transport.link import dial  # with all that reads profiles
+    from graphflow.transport.link import dial  # imports all that reads profiles
 
     return dial()

@@ -15,17 +15,17 @@ ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 """Where a ROS 2 node with default settings looks for its router."""
 CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
-"""Endpoints of routers on other machines, with spaces between them."""
+"""Endpoints of routers on other machines, separated by spaces."""
 PROFILE_VARIABLE = "GRAPHFLOW_NET"
 """The path of a net profile (`graph.net`)."""
 
 CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
 OPEN_LIMIT = 10.0
-"""Seconds that two sessions may take to agree. Peers that find each other try once: on a busy machine, with twenty of
-them starting, an impatient one would stay without a connection for good."""
+"""Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
+them starting, an impatient one would never get a connection."""
 QUERY_LIMIT_MS = 600_000
-"""As rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
+"""As in rmw_zenoh; graphflow's own deadlines are shorter and kept by the runtime."""
 
 _CONFIG = """{
   mode: "%(mode)s",
@@ -40,9 +40,9 @@ _CONFIG = """{
     multicast: { enabled: false },
     gossip: {
       enabled: true,
-      // One of two peers dials the other: else both do, and keep both connections.
+      // One of two peers dials the other: otherwise both do, and keep both connections.
       autoconnect_strategy: { peer: { to_router: "always", to_peer: "greater-zid" } },
-      // The rendezvous tells everybody of everybody; peers need not repeat it to each other.
+      // The rendezvous tells every peer about every other; peers need not repeat it.
       target: { router: ["router", "peer"], peer: ["router"] },
     },
   },
@@ -52,7 +52,7 @@ _CONFIG = """{
   adminspace: { enabled: false },
   transport: {
     unicast: { open_timeout: %(open_limit)d, accept_timeout: 10000 },
-    // Two signs of life a lease, as rmw_zenoh: in a mesh of twenty they are most of what idle nodes do.
+    // Two keep-alives per lease, as in rmw_zenoh: in a mesh of twenty they are most of what idle nodes do.
     link: { tx: { lease: 10000, keep_alive: 2 } },
     // Shared memory for publications only: zenoh#2628 affects queries.
     shared_memory: { transport_optimization: { messages: ["put"] } },
@@ -88,7 +88,7 @@ def config(
 
 @cache
 def _quiet() -> None:
-    """Keep Zenoh's own log to what RUST_LOG asks for."""
+    """Limit Zenoh's own log to what RUST_LOG asks for."""
     zenoh.init_log_from_env_or("off")
 
 
@@ -119,10 +119,10 @@ _closer: threading.Thread | None = None
 
 
 def close_at_exit(session: zenoh.Session) -> None:
-    """Close `session` when the main thread has ended, if nobody has by then.
+    """Close `session` when the main thread has ended, if it has not been closed by then.
 
     Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
-    So a thread of our own waits for the main thread, which is over the moment the interpreter begins to end.
+    So a thread of our own waits for the main thread, which is done the moment the interpreter begins to end.
     """
     global _closer
     if _closer is None:

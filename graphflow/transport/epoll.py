@@ -1,7 +1,7 @@
-"""asyncio's loop with a shorter way in, on Linux.
+"""asyncio's loop with a shorter path in, on Linux.
 
-What arrives from the network rings a `Bell`, an eventfd. asyncio would make a handle of that, queue it and run it in
-its next phase; here the bell is answered where the selector sees it. That saves 10 us of a message's way, cold.
+What arrives from the network rings a `Bell`, an eventfd. asyncio would make a handle for that, queue it and run it in
+its next phase; here the bell is answered where the selector sees it. That saves a message 10 us, cold.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class _BellSelector(selectors.EpollSelector):
 
     def hang(self, fd: int, answer: Callable[[], None]) -> None:
         self.register(fd, selectors.EVENT_READ)
-        # By edges: every write is an event, and nothing has to be read in between.
+        # Edge-triggered: every write is an event, and nothing has to be read in between.
         self._selector.modify(fd, select.EPOLLIN | select.EPOLLET)
         self._bells[fd] = answer
 
@@ -38,7 +38,7 @@ class _BellSelector(selectors.EpollSelector):
         self.unregister(fd)
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        # As EpollSelector's, with no step more than it takes: all of it is cold when a message comes.
+        # As in EpollSelector, with no step too many: all of it is cold when a message comes.
         wait = -1.0 if timeout is None else max(0.0, math.ceil(timeout * 1000) / 1000)
         try:
             events = self._poll(wait)
@@ -56,7 +56,7 @@ class _BellSelector(selectors.EpollSelector):
 
 
 class BellLoop(asyncio.SelectorEventLoop):
-    """asyncio's loop; `hang_bell(fd, answer)` has `answer` called when `fd` can be read."""
+    """asyncio's loop; `hang_bell(fd, answer)` calls `answer` when `fd` can be read."""
 
     def __init__(self) -> None:
         selector = _BellSelector()

@@ -1,11 +1,11 @@
 """The link to other machines: a router session between this machine's rendezvous and routers elsewhere.
 
-Nodes stay on loopback: what they say reaches the rendezvous, this session passes it to the routers it is connected
-to, and back. It is a session of its own, beside whoever hosts the rendezvous, so that it works the same when that is
-another graph's process, or rmw_zenohd, and goes when the process that asked for it goes.
+Nodes stay on loopback: what they send reaches the rendezvous, this session passes it to the routers it is connected
+to, and back. It is a session of its own, next to the one that hosts the rendezvous, so that it works the same when that
+is another graph's process, or rmw_zenohd, and goes when the process that asked for it goes.
 
-A connection that is cut without a word is the hard case: the other side may allow us a minute before it misses us,
-and TCP repeats itself ever more slowly. So whoever goes unanswered for `PATIENCE` is hung up on and dialled anew.
+A connection that is cut silently is the hard case: the other side may allow us a minute before it misses us,
+and TCP retransmits ever more slowly. So a connection that goes unanswered for `PATIENCE` is dropped and dialled again.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ from graphflow.transport.config import (
 logger = logging.getLogger("graphflow.link")
 
 PATIENCE = 2.0
-"""Seconds that what was sent may go without an acknowledgement."""
+"""Seconds that sent data may go without an acknowledgement."""
 DIAL_LIMIT = 2.0
-"""Seconds until the other side must have answered a dial: time for five exchanges, and soon tried again."""
+"""Seconds until the other side must have answered a dial: time for five exchanges, and a retry comes soon."""
 LEASE_MS = 4000
-"""After so long without a sign of life the other side may take this one for dead; 10 s is Zenoh's own."""
+"""After this long without a sign of life the other side may take this one for dead; 10 s is Zenoh's default."""
 
 _MESSAGES = (
     *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
@@ -54,7 +54,7 @@ class Link:
     """A link, until closed.
 
     Args:
-        bell: Wakes the loop on which it hears that a connection came or went.
+        bell: Wakes the loop on which the link hears that a connection came or went.
         domain: What passes, if a profile says what may.
 
     Raises:
@@ -68,7 +68,7 @@ class Link:
         self._linked: dict[str, int] = {}
         """Connections by endpoint."""
         self.ready = asyncio.Event()
-        """Set when there has been a connection to every endpoint that is to be reached."""
+        """Set when there has been a connection to every endpoint that must be reached."""
         self._session = open_session(self._config(profile, domain))
         close_at_exit(self._session)
         self._inbox = Inbox(bell, None, self._deliver)
@@ -82,7 +82,7 @@ class Link:
         listen = profile.listen if profile is not None else None
         connect = [rendezvous_endpoint(), *self._wanted]
         settings = config("router", connect=connect, listen=listen, open_limit=DIAL_LIMIT)
-        # Peers here and there need not know of each other's addresses: they would try to reach them directly.
+        # Peers on both sides must not learn each other's addresses: they would try to connect directly.
         settings.insert_json5("scouting/gossip/enabled", "false")
         settings.insert_json5("transport/link/tx/lease", str(LEASE_MS))
         if profile is not None:
@@ -107,12 +107,12 @@ class Link:
             self.ready.set()
 
     async def wait_ready(self, timeout: float) -> None:
-        """Wait until there has been a connection to every endpoint, or say that there is none yet, and go on."""
+        """Wait until there has been a connection to every endpoint; if there is none in time, log that and go on."""
         try:
             async with asyncio.timeout(timeout):
                 await self.ready.wait()
         except TimeoutError:
-            logger.warning("%s: no answer yet; trying on", ", ".join(self._wanted))
+            logger.warning("%s: no answer yet; still trying", ", ".join(self._wanted))
 
     def close(self) -> None:
         """End the link. Blocks for as long as closing takes."""
@@ -137,11 +137,11 @@ def _endpoints(profile: NetProfile | None) -> list[str]:
 
 
 def dial() -> zenoh.Session | None:
-    """A client session straight at a router elsewhere, for commands on a machine where nothing runs; None if nobody
+    """A client session directly at a router elsewhere, for commands on a machine where nothing runs; None if nothing
     answers.
 
     Raises:
-        TransportError, GraphFileError: What the environment says makes no sense.
+        TransportError, GraphFileError: The environment says something invalid.
     """
     profile = _profile()
     endpoints = _endpoints(profile)
@@ -171,7 +171,7 @@ def _tls(profile: NetProfile) -> dict[str, Any]:
 
 def _access(profile: NetProfile, domain: int) -> dict[str, Any]:
     """What passes over encrypted connections; this machine's own are not."""
-    names = [f"{domain}{pattern}/*/*" for pattern in profile.allow]  # behind a name: its type and that one's hash
+    names = [f"{domain}{pattern}/*/*" for pattern in profile.allow]  # after a name come its type and the type's hash
     latched = [f"{name}/@adv/**" for name in names]
     there = [str(zenoh.KeyExpr.autocanonize(key)) for key in (f"@ros2_lv/{domain}/**", *names, *latched)]
     allowed = {"permission": "allow", "messages": _MESSAGES, "flows": ["ingress", "egress"]}
@@ -188,7 +188,7 @@ def _access(profile: NetProfile, domain: int) -> dict[str, Any]:
 
 
 def _hang_up_early(there: str) -> None:
-    """Have the system end connections that go unanswered for `PATIENCE`, where it can be asked to."""
+    """Make the system end connections that go unanswered for `PATIENCE`, where it supports that."""
     if not hasattr(socket, "TCP_USER_TIMEOUT"):
         return
     import psutil

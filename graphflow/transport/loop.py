@@ -18,7 +18,7 @@ LOOP_VARIABLE = "GRAPHFLOW_LOOP"
 
 
 def new_event_loop() -> asyncio.AbstractEventLoop:
-    """A loop of the best kind there is."""
+    """An event loop of the best kind available."""
     chosen = os.environ.get(LOOP_VARIABLE, "")
     if chosen == "uvloop" or (not chosen and find_spec("uvloop") is not None):
         import uvloop
@@ -33,7 +33,7 @@ def new_event_loop() -> asyncio.AbstractEventLoop:
 
 
 def run(main: Coroutine[Any, Any, T]) -> T:
-    """`asyncio.run` on a loop of the best kind there is, in a process that is good at large messages."""
+    """`asyncio.run` on a loop of the best kind available, in a process set up for large messages."""
     keep_freed_memory()
     with asyncio.Runner(loop_factory=new_event_loop) as runner:
         return runner.run(main)

@@ -1,8 +1,8 @@
-"""A network inside one process: for tests and notebooks. Same promises as the real one, and no thread.
+"""A network inside one process, for tests and notebooks. Same promises as the real one, without threads.
 
 Everything is delivered by the loop in the order it was sent, never inside the call that sent it. As over Zenoh, a
 request goes to every server of its key, and a transient-local sender keeps its last messages for receivers that ask for
-them. Keys match exactly, but for receivers whose key ends with the part `*`.
+them. Keys match exactly, except for receivers whose key ends with the part `*`.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class _Receiver(NamedTuple):
 
 
 class Carrier(Protocol):
-    """Takes what is sent from one session to another, and delivers it when it likes, if at all."""
+    """Takes what is sent from one session to another and delivers it at a time of its choice, if at all."""
 
     def carry(self, deliver: Callable[[], object], link: str, *, is_lossy: bool) -> None:
         """Args:
-        link: Who sends, to whom, on what: what is on one link arrives in order.
+        link: Sender, receiver and key: what is on one link arrives in order.
         is_lossy: Whether it may be lost, as publications may.
         """
 
@@ -59,20 +59,20 @@ class Network:
         self.callers: dict[str, list[_Caller]] = {}
         self.reports: dict[str, Callable[[], bytes]] = {}
         self.requests: dict[int, WeakSet[_Request]] = {}
-        """Requests that servers have, by the server's inbox."""
+        """Requests that servers hold, by the server's inbox."""
         self.tokens: dict[str, None] = {}
         self.watchers: list[tuple[str, Callable[[str, bool], None]]] = []
 
     def receivers_of(self, key: str) -> list[_Receiver]:
-        """Who hears what is sent on a key."""
+        """The receivers of what is sent on a key."""
         return [*self.receivers.get(key, ()), *self.receivers.get(_any_of(key), ())]
 
     def senders_to(self, key: str) -> list[_Sender]:
-        """Whose messages a receiver on a key hears."""
+        """The senders whose messages a receiver on a key hears."""
         return [s for k, senders in self.senders.items() if key in (k, _any_of(k)) for s in senders]
 
     def deliver(self, deliver: Callable[[], object], link: str, *, is_lossy: bool = False) -> None:
-        """Have something arrive."""
+        """Let something arrive."""
         if self.carrier is None:
             deliver()
         else:
@@ -306,7 +306,7 @@ class MemorySession:
         return arrival.key
 
     def die(self) -> None:
-        """Be gone from one moment to the next, as a process that is killed: nothing it was asked is answered."""
+        """Vanish at once, like a killed process: nothing it was asked is answered."""
         for declared in reversed(self._declared):
             declared.close()
         self._declared.clear()

@@ -1,7 +1,7 @@
-"""The rendezvous: one router per machine and for all domains, through which sessions find each other.
+"""The rendezvous: one router per machine, for all domains, through which sessions find each other.
 
-It is a second session inside some long-lived graphflow process: whoever binds the port first has it. When that
-process dies the others, whose direct links go on, try to take the port over at once. A Zenoh router that is
+It is a second session inside some long-lived graphflow process: the first to bind the port has it. When that
+process dies, the others, whose direct links go on, try to take over the port at once. A Zenoh router that is
 already there, such as rmw_zenohd, is joined. Anything else on the port is an error that says what it is.
 """
 
@@ -26,7 +26,7 @@ def address(endpoint: str) -> tuple[str, int]:
     """Host and port of `tcp/HOST:PORT`.
 
     Raises:
-        TransportError: It is something else.
+        TransportError: `endpoint` has another form.
     """
     protocol, _, rest = endpoint.partition("/")
     host, _, port = rest.rpartition(":")
@@ -38,10 +38,10 @@ def address(endpoint: str) -> tuple[str, int]:
 
 
 def join() -> zenoh.Session | None:
-    """A client session at the rendezvous, or None when nobody listens there.
+    """A client session at the rendezvous, or None when nothing listens there.
 
     Raises:
-        TransportError: What listens is no Zenoh, does not answer, or belongs to another user.
+        TransportError: What listens is not Zenoh, does not answer, or belongs to another user.
     """
     endpoint = rendezvous_endpoint()
     address(endpoint)
@@ -49,7 +49,7 @@ def join() -> zenoh.Session | None:
     session = _open_client(endpoint)
     if session is None and _is_listening(endpoint):
         if time.monotonic() - began < ANSWER_LIMIT:
-            # Somebody may have bound the port between the two looks: ask again before calling him mute.
+            # A process may have bound the port between the two checks: ask again before calling it mute.
             session = _open_client(endpoint)
         if session is None:
             raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s"))
@@ -57,7 +57,7 @@ def join() -> zenoh.Session | None:
         return None
     try:
         _refuse_strangers(session, endpoint)
-    except BaseException:  # an interrupt too: nothing stays open
+    except BaseException:  # interrupts included: nothing stays open
         close_session(session)
         raise
     return session
@@ -106,7 +106,7 @@ def _user_name(uid: str) -> str:
 
 
 def occupied(endpoint: str, what: str) -> str:
-    """A sentence about whoever listens at an endpoint and is of no use there, and what to do about it."""
+    """A sentence about a process that occupies an endpoint and is of no use there, and what to do about it."""
     host, port = address(endpoint)
     owner = _listener(port)
     return (
@@ -117,7 +117,7 @@ def occupied(endpoint: str, what: str) -> str:
 
 
 def _listener(port: int) -> str:
-    """`process PID (name)` of whoever listens on a TCP port, as far as this user may see it."""
+    """`process PID (name)` of what listens on a TCP port, as far as this user may see it."""
     import psutil
 
     try:
@@ -152,9 +152,9 @@ def host() -> Router | None:
 
 
 def free_endpoint() -> str:
-    """An endpoint on a loopback port that nobody uses now.
+    """An endpoint on a loopback port that is free now.
 
-    Below those that systems give out themselves: when a rendezvous ends, nobody but its successor is to have its port.
+    It is below the ephemeral ports: when a rendezvous ends, only its successor may get its port.
     """
     import random
     import socket
@@ -170,13 +170,13 @@ def free_endpoint() -> str:
 
 
 def establish() -> Router | None:
-    """Make sure that there is a rendezvous: join what is there, else host it. Blocks for some milliseconds.
+    """Make sure that there is a rendezvous: join an existing one, else host it. Blocks for some milliseconds.
 
     Returns:
-        The router, if this process is the rendezvous now, else None.
+        The router if this process is now the rendezvous, else None.
 
     Raises:
-        TransportError: as `join`.
+        TransportError: As for `join`.
     """
     for _ in range(5):
         session = join()

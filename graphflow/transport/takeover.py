@@ -1,4 +1,4 @@
-"""Keeping the rendezvous alive: when its process dies, those that are left bind its port at once."""
+"""Keeping the rendezvous alive: when its process dies, the remaining ones try to bind its port at once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Takeover:
     """This process's part in keeping a rendezvous on the machine.
 
     Args:
-        router: The rendezvous, if this process is it already.
+        router: The rendezvous, if this process already is it.
     """
 
     def __init__(self, router: Router | None) -> None:
@@ -32,12 +32,12 @@ class Takeover:
         self._attempt: asyncio.Future[Router | None] | None = None
         self._watcher: Closable | None = None
         self._gone: set[str] = set()
-        """Sessions whose connection has ended. Zenoh tells of that before it takes a router off its own list."""
+        """Sessions whose connection has ended. Zenoh reports that before it takes a router off its own list."""
         self._warned = False
         self._closed = False
 
     def guard(self, session: ZenohSession) -> None:
-        """From now on, take over when the rendezvous that `session` is connected to dies, or has died already."""
+        """From now on, take over when the rendezvous that `session` is connected to dies or has already died."""
         self._session = session
         self._watcher = session.watch_transports(self._changed)
         self._look()
@@ -59,7 +59,7 @@ class Takeover:
 
     def _look(self) -> None:
         if self._alarm is None and self._attempt is None and self._is_needed():
-            # The jitter keeps all the survivors from binding in the same instant.
+            # The jitter keeps the survivors from all binding at the same instant.
             self._alarm = self._loop.call_later(random.uniform(0, _JITTER), self._try)  # noqa: S311
 
     def _try(self) -> None:
@@ -86,7 +86,7 @@ class Takeover:
         self._try()
 
     async def close(self) -> None:
-        """Stop guarding, and stop being the rendezvous."""
+        """Stop guarding and stop being the rendezvous."""
         self._closed = True
         if self._watcher is not None:
             self._watcher.close()

@@ -3,12 +3,12 @@
 Zenoh calls back on threads of its own. What runs there only appends to an inbox and rings its bell: a call into
 Zenoh, a log line or user code in a callback can stall every other stream of the process.
 
-Data comes through Zenoh's default callback thread, one per subscription, which takes many samples per turn of the
-interpreter's lock; requests, answers and tokens come directly (`indirect=False`), since the default would start a
+Data comes through Zenoh's default callback thread, one per subscription, which takes many samples each time it holds
+the GIL; requests, replies and tokens come directly (`indirect=False`), since the default would start a
 thread per declaration and per call.
 
-Large messages go through shared memory by Zenoh's own doing. Buffers taken from a pool of ours gain nothing at 1 MB and
-a quarter at 6 MB, no latency, and cost a pool in every process and allocations that fail under load.
+Zenoh itself sends large messages through shared memory. Buffers from a pool of ours gain nothing at 1 MB and a quarter
+at 6 MB, no latency, and cost a pool in every process and allocations that fail under load.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from graphflow.transport.config import (
 logger = logging.getLogger("graphflow.transport")
 
 ASK_AGAIN = (0.5, 2.0)
-"""Seconds after the sign of life of a publisher that keeps messages, until it is asked again for them."""
+"""Seconds from the sign of life of a publisher that keeps messages until it is asked for them again."""
 
 
 class _Declared:
@@ -50,21 +50,21 @@ class _Declared:
         for declaration in declarations:
             try:
                 declaration.undeclare()
-            except zenoh.ZError as error:  # the session is closed already
+            except zenoh.ZError as error:  # the session is already closed
                 logger.debug("undeclare: %s", error)
 
 
 class _ZenohSender(_Declared):
-    """A plain publisher, which knows whether anybody listens."""
+    """A plain publisher, which knows whether there are listeners."""
 
     def __init__(self, publisher: Any, bell: Bell, changed: Callable[[], None] | None) -> None:
         self.is_wanted = False
         self._inbox = Inbox(bell, 1, changed) if changed is not None else None
-        # On Zenoh's thread, and next to nothing.
+        # Runs on Zenoh's thread, so it does next to nothing.
         listener = publisher.declare_matching_listener(Callback(self._matching, indirect=False))
         super().__init__(listener, publisher)
         self.put = publisher.put
-        # Those who listened before: the listener may have told of them, and never of their going, by now.
+        # Earlier listeners may have been reported by now, but their leaving never will be.
         if publisher.matching_status.matching:
             self.is_wanted = True
 
@@ -75,13 +75,13 @@ class _ZenohSender(_Declared):
 
     def close(self) -> None:
         if self._inbox is not None:
-            self._inbox.ready = _nothing  # it may have been rung for already
+            self._inbox.ready = _nothing  # it may already have been rung for
         super().close()
         self.is_wanted = False
 
 
 class _KeepingSender(_Declared):
-    """An advanced publisher: it keeps what it sends for those who come later."""
+    """An advanced publisher: it keeps what it sends for late joiners."""
 
     is_wanted = True
 
@@ -91,11 +91,11 @@ class _KeepingSender(_Declared):
 
 
 class _AskingAgain:
-    """Asks publishers that have appeared a second and a third time for what they keep.
+    """Asks publishers that have appeared for what they keep, a second and a third time.
 
-    The subscriber asks once, at the sign of life. Across routers that may come before the way to the publisher is
-    there, and the question ends at once, unanswered: after an outage, what was said meanwhile would be missed for good.
-    A heartbeat that only this session hears makes the subscriber look for whatever it has not had.
+    The subscriber asks once, at the sign of life. Across routers that may come before there is a route to the
+    publisher, and the query ends at once, unanswered: after an outage, what was sent meanwhile would be lost.
+    A heartbeat that only this session hears makes the subscriber look for whatever it has missed.
     """
 
     def __init__(self, session: ZenohSession, key: str, inbox: Inbox) -> None:
@@ -106,7 +106,7 @@ class _AskingAgain:
         self._signs = session.watch(f"{key}/@adv/pub/**", self._changed)
 
     def heard(self, sample: zenoh.Sample) -> None:
-        """A message has come. On Zenoh's thread."""
+        """A message has come. Runs on Zenoh's thread."""
         source = sample.source_info
         if source is not None:
             self._last[f"{source.source_id.zid}/{source.source_id.eid}"] = source.source_sn
@@ -119,11 +119,11 @@ class _AskingAgain:
 
     def _ask(self, token: str) -> None:
         publisher = "/".join(token.split("/")[-3:-1])
-        # Numbers go round, and half of them are ahead: this one surely is, and the publisher answers with what it has.
+        # Numbers wrap around, and half are ahead: this one surely is, so the publisher answers with what it has.
         ahead = (self._last.get(publisher, 0) + (1 << 30)) % (1 << 32)
         try:
             self._raw.put(token, ahead.to_bytes(4, "little"), allowed_destination=zenoh.Locality.SESSION_LOCAL)
-        except zenoh.ZError as error:  # the session is closed already
+        except zenoh.ZError as error:  # the session is already closed
             logger.debug("asking again: %s", error)
 
     def undeclare(self) -> None:
@@ -170,7 +170,7 @@ class _ZenohCaller(_Declared):
         listener = querier.declare_matching_listener(Callback(inbox.put, indirect=False))
         super().__init__(listener, querier)
         self._querier, self._bell = querier, bell
-        # What the listener tells comes later than this, and in order.
+        # What the listener reports comes later than this, and in order.
         self.has_server: bool = querier.matching_status.matching  # type: ignore[attr-defined]
 
     def call(
@@ -213,8 +213,8 @@ class ZenohSession:
     """A node process's session: a peer on loopback that finds the others through the rendezvous.
 
     Args:
-        loop: Where everything is delivered.
-        mode: `peer`, or `client` to have all traffic pass through the rendezvous.
+        loop: The loop that everything is delivered on.
+        mode: `peer`, or `client` to pass all traffic through the rendezvous.
 
     Raises:
         TransportError: Zenoh refused.
@@ -356,7 +356,7 @@ class ZenohSession:
 
 
 def _nothing() -> None:
-    """Nobody is told any more."""
+    """Nothing is delivered any more."""
 
 
 def load_ext() -> Any:
