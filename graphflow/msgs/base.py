@@ -19,7 +19,7 @@ class Message:
     mappings or objects with the same fields for nested messages. Assignment does not check; a value that does not
     fit is reported, by its field's path, when the message is encoded.
 
-    A field may be called anything in small letters, so what every message has beside its fields is kept to a few
+    A field may have any lower-case name, so what every message has besides its fields is kept to a few
     names that no definition is known to use.
     """
 
@@ -43,7 +43,7 @@ class Message:
         """Read a message from CDR. Its arrays are read-only views of `payload`.
 
         Raises:
-            DecodeError: `payload` is no message of this type.
+            DecodeError: `payload` is not a message of this type.
         """
         message: Self = cls.CODEC().decode(payload)
         return message
@@ -65,7 +65,7 @@ class Message:
         return f"{self.SCHEMA.name.replace('/', '.')}({values})"
 
     def __copy__(self) -> Self:
-        # Not by the constructor: a received message can break a bound, and is copied as it is.
+        # Not through the constructor: a received message can break a bound, and is copied as it is.
         copy = object.__new__(type(self))
         copy.__setstate__(self.__getstate__())
         return copy
@@ -105,7 +105,7 @@ class Service(Generic[Request, Response]):
 
 
 class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
-    """A goal as the handler of an action has it.
+    """A goal as the handler of an action gets it.
 
     Attributes:
         request: What the client asked for.
@@ -118,21 +118,21 @@ class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
     @property
     @abstractmethod
     def goal_id(self) -> bytes:
-        """16 bytes, made by the client."""
+        """The goal's id: 16 bytes, made by the client."""
 
     @property
     @abstractmethod
     def is_preempted(self) -> bool:
-        """Whether it is to end because a newer goal has come."""
+        """Whether the goal must end because a newer one has come."""
 
     @property
     @abstractmethod
     def is_cancel_requested(self) -> bool:
-        """Whether the goal is to end; for handlers in threads. On the loop `CancelledError` says it."""
+        """Whether the goal must end; for handlers in threads. On the loop `CancelledError` says so."""
 
     @abstractmethod
     def feedback(self, feedback: Feedback) -> None:
-        """Tell the client how it goes. Never waits."""
+        """Tell the client how the goal is progressing. Never waits."""
 
 
 class Action(Generic[Goal, Result, Feedback]):

@@ -1,7 +1,7 @@
 """Makes Python classes from schemas.
 
 A class's constructor is written for its fields, so that the usual case (floats where floats belong) costs one type
-test a field; everything else goes through `values.convert`.
+test per field; everything else goes through `values.convert`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Classes = Callable[[str], type]
 """Finds the class of `package/kind/Name`."""
 
 _EXACT = {"bool": bool, "float64": float, "string": str}
-"""Types whose values need no further look when their Python type is exactly this and they have no bound."""
+"""Types whose values need no further check when their Python type is exactly this and they have no bound."""
 
 
 def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]) -> type[base.Message]:
@@ -82,7 +82,7 @@ def action_class(action: schema.Action, classes: Classes) -> type[base.Action[An
 
 
 def _constructor(message: Message, nested: Nested) -> Callable[..., None]:
-    # No field can be called like a name in capitals, so none hides what the constructor refers to.
+    # No field can have a name in capitals, so none hides what the constructor refers to.
     names: dict[str, Any] = {"CONVERT": convert, "ABSENT": _ABSENT}
     parameters, lines = [], []
     for i, field in enumerate(message.fields):

@@ -27,10 +27,10 @@ class _InterfaceFinder:
             return None
         if not registry.package_folders(package):
             hint = did_you_mean(package, registry.packages())
-            own = f"one of your own goes into interfaces/{package}/msg/*.msg"
+            own = f"one of your own goes in interfaces/{package}/msg/*.msg"
             raise ModuleNotFoundError(f"there is no interface package {package!r}{hint} ({own})", name=fullname)
         if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
-            # `from package.msg import Nam` looks for a submodule when there is no such attribute: say what there is.
+            # `from package.msg import Nam` looks for a submodule when there is no such attribute: say which exist.
             known = registry.names_in(package, rest[0])
             if rest[1] in known:
                 return None

@@ -1,4 +1,4 @@
-"""Finds interface definitions by name and keeps what has been made of them: schemas, hashes, classes, codecs."""
+"""Finds interface definitions by name and keeps what has been made from them: schemas, hashes, classes, codecs."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from graphflow.wire.typehash import referenced, type_hash
 KINDS = ("msg", "srv", "action")
 BUNDLED = Path(__file__).parent
 _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
-"""Kilted moved turtlesim's interfaces to a package of their own: other names on the wire, the same text."""
+"""Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same text."""
 
 _roots: list[Path] = []
 
 
 def add_root(folder: Path) -> None:
-    """Search `folder`, a project's `interfaces/`, for packages too."""
+    """Also search `folder`, a project's `interfaces/`, for packages."""
     if folder not in _roots:
         _roots.append(folder)
 
@@ -36,7 +36,7 @@ def add_root(folder: Path) -> None:
 def roots() -> Iterator[Path]:
     """Folders of packages: the bundled ones, those added, and every `interfaces/` where Python looks for modules.
 
-    What a wire profile defines otherwise lies in a folder of its name.
+    What a wire profile defines differently is in a folder of its name.
     """
     overlay = BUNDLED / wire_profile()
     if overlay.is_dir():
@@ -50,7 +50,7 @@ def roots() -> Iterator[Path]:
 
 
 def package_folders(package: str) -> list[Path]:
-    """Where definitions of `package` lie; empty when there is no such package."""
+    """The folders with definitions of `package`; empty when there is no such package."""
     name = _SAME_DEFINITIONS.get(package, package)
     if not name.isidentifier():
         return []
@@ -74,7 +74,7 @@ def full_name(text: str) -> str:
     """`package/kind/Name` for `package/Name`, `package/kind/Name` or Python's `package.kind.Name`.
 
     Raises:
-        UnknownInterface: There is none, or the short form fits several kinds.
+        UnknownInterface: There is no such interface, or the short form fits several kinds.
     """
     parts = text.replace(".", "/").split("/")
     if len(parts) == 3:
@@ -82,7 +82,7 @@ def full_name(text: str) -> str:
         return "/".join(parts)
     if len(parts) != 2:
         raise UnknownInterface(
-            f"{text!r} is no interface name; write package/msg/Name, for example std_msgs/msg/String"
+            f"{text!r} is not an interface name; write package/msg/Name, for example std_msgs/msg/String"
         )
     package, name = parts
     found = [kind for kind in KINDS if name in names_in(package, kind)]
@@ -103,7 +103,7 @@ def definition_file(name: str) -> Path:
     """The file that defines `package/kind/Name`.
 
     Raises:
-        UnknownInterface: There is none; the text names the nearest.
+        UnknownInterface: No file does; the text names the nearest.
     """
     package, kind, base = name.split("/")
     if kind in KINDS and base.isidentifier():
@@ -133,10 +133,10 @@ def interface(name: str) -> Interface:
 
 @cache
 def message_schema(name: str) -> Message:
-    """The schema of a message, also of those derived from services and actions (`.../srv/Spawn_Request`).
+    """The schema of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
 
     Raises:
-        UnknownInterface, InterfaceError: as `interface`; also when a type it is made of is wrong, or contains itself.
+        UnknownInterface, InterfaceError: As for `interface`; also when a type inside it is wrong or contains itself.
     """
     message = _part(name)
     _refuse_cycle(message, (name,), set())
@@ -168,7 +168,7 @@ def _part(name: str) -> Message:
 
 
 def service_schema(name: str) -> Service:
-    """The schema of a service, also of the two of an action (`.../action/Fibonacci_SendGoal`)."""
+    """The schema of a service, including the two of an action (`.../action/Fibonacci_SendGoal`)."""
     package, kind, base = name.split("/")
     owner = interface(f"{package}/{kind}/{base.partition('_')[0]}")
     if isinstance(owner, Service):
@@ -177,14 +177,14 @@ def service_schema(name: str) -> Service:
         for service in owner.services:
             if service.name == name:
                 return service
-    raise UnknownInterface(f"{name} is no service")
+    raise UnknownInterface(f"{name} is not a service")
 
 
 def whole_schema(name: str) -> Message:
     """The type that stands for `name` in keys and tokens: a message itself, a service or action as a whole.
 
     Raises:
-        UnknownInterface, InterfaceError: as `interface`.
+        UnknownInterface, InterfaceError: As for `interface`.
     """
     base = name.rpartition("/")[2]
     if name.rpartition("/")[0].endswith("/msg"):
@@ -206,10 +206,10 @@ def hash_of(name: str) -> str:
 
 @cache
 def interface_class(name: str) -> type:
-    """The Python class of `package/kind/Name`, or of a derived message; the one that the wire profile has for it.
+    """The Python class of `package/kind/Name`, or of a derived message; the one that the wire profile uses.
 
     Raises:
-        UnknownInterface, InterfaceError: as `interface`.
+        UnknownInterface, InterfaceError: As for `interface`.
     """
     on_wire = wire_type(name, wire_profile())
     if on_wire != name:
@@ -239,7 +239,7 @@ def has_numeric_arrays(name: str) -> bool:
 
 
 def forget() -> None:
-    """Read every definition anew from here on; classes already made stay as they are. For editors and tests."""
+    """Re-read every definition from here on; classes already made stay as they are. For editors and tests."""
     for memory in (interface, _part, message_schema, hash_of, interface_class, codec):
         memory.cache_clear()
 

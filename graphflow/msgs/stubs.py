@@ -19,7 +19,7 @@ _BUNDLED_HEADER = "# Written by `python -m graphflow.msgs.stubs`; do not edit.\n
 _PROJECT_HEADER = "# Written by `graphflow interface stubs`; do not edit.\n"
 _LINE_LENGTH = 120
 _TIMES = {f"builtin_interfaces/msg/{name}": f"times.{name}" for name in ("Time", "Duration")}
-"""Message types that `graphflow.times` has a counterpart of, with the same fields."""
+"""Message types that have a counterpart in `graphflow.times`, with the same fields."""
 _ARRAYS_FOR = {"bool": "np.bool_", "int": "np.integer", "float": "np.floating | np.integer"}
 """The scalar types of numpy arrays that convert to an array field whose elements are such Python values."""
 
@@ -48,7 +48,7 @@ def project_stubs(interfaces: Path, typings: Path) -> dict[Path, str]:
 
 
 def _stubs(root: Path, out: Path, header: str) -> dict[Path, str]:
-    """Stubs of the packages whose definitions lie in `root` before any other place."""
+    """Stubs of the packages whose definitions are found in `root` before any other place."""
     files = {}
     for package in registry.packages():
         definitions = registry.package_folders(package)[0]
@@ -62,7 +62,7 @@ def _stubs(root: Path, out: Path, header: str) -> dict[Path, str]:
 
 
 def _imports(body: str) -> str:
-    """The imports that `body` needs, in the order the linter wants. Nested types stand behind their package's name."""
+    """The imports that `body` needs, in the linter's order. Nested types are qualified by their package's name."""
     words = set(re.findall(r"\w+", body))
     qualifiers = set(re.findall(r"\b(\w+)\.[A-Z]", body)) - {"np", "npt", "times", "base"}
     ours = [f"from graphflow.msgs.{package} import msg as {package}" for package in qualifiers]
@@ -100,7 +100,7 @@ def _service_messages(service: Service) -> list[str]:
 
 
 def _holder(name: str, base: str, parts: tuple[str, ...], more: tuple[str, ...] = ()) -> str:
-    """A service or action. Without `TypeAlias` a checker takes its parts for variables, and refuses them as types."""
+    """A service or action. Without `TypeAlias` a checker takes its parts for variables and refuses them as types."""
     aliases = [f"    {part}: TypeAlias = {name}_{part}" for part in (*parts, *more)]
     arguments = [f"{name}_{part}" for part in parts]
     head = f"class {name}(base.{base}[{', '.join(arguments)}]):"

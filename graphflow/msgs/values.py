@@ -1,4 +1,4 @@
-"""Values put into messages: checked against the field's type, and converted where nothing is lost by it."""
+"""Values put in messages: checked against the field's type, and converted where nothing is lost."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Nested = Mapping[str, type[base.Message]]
 
 
 def convert(field: Field, value: Any, owner: base.Message) -> Any:
-    """`value` as the field's type wants it.
+    """`value` as the field's type takes it.
 
     Raises:
-        EncodeError: It cannot be; the text begins with `Type.field`.
+        EncodeError: `value` does not fit; the text begins with `Type.field`.
     """
     try:
         return _value(field.type, value, owner.NESTED)

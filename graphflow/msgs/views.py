@@ -34,7 +34,7 @@ def _elements(encoding: str) -> tuple[int, str]:
         return _ENCODINGS[encoding]
     found = _OPENCV.match(encoding)
     if not found:
-        raise DecodeError(f"Image.encoding: {encoding!r} is not known; read Image.data, {', '.join(_ENCODINGS)} are")
+        raise DecodeError(f"Image.encoding: {encoding!r} is not known, only {', '.join(_ENCODINGS)}; read Image.data")
     bits, kind, channels = found.groups()
     return int(channels or 1), f"{_OPENCV_KINDS[kind]}{int(bits) // 8}"
 
@@ -69,7 +69,7 @@ def point_cloud(message: Any) -> NDArray[Any]:
         cloud: `points["x"]`. A view of `data`.
 
     Raises:
-        DecodeError: A field is of no known type or lies outside the point, or `data` is too short.
+        DecodeError: A field has an unknown type or lies outside the point, or `data` is too short.
     """
     import numpy as np
 
@@ -77,7 +77,7 @@ def point_cloud(message: Any) -> NDArray[Any]:
     names, formats, offsets = [], [], []
     for field in message.fields:
         if field.datatype not in _POINT_TYPES:
-            raise DecodeError(f"PointCloud2.fields: {field.name!r} has datatype {field.datatype}, which is none")
+            raise DecodeError(f"PointCloud2.fields: {field.name!r} has datatype {field.datatype}, which does not exist")
         names.append(field.name)
         formats.append(
             (order + _POINT_TYPES[field.datatype], (field.count,))
@@ -121,7 +121,7 @@ def _view(what: str, data: Any, dtype: np.dtype[Any], shape: tuple[int, ...], st
     needed = sum((n - 1) * stride for n, stride in zip(shape, strides, strict=True)) + dtype.itemsize
     if any(stride < inner for stride, inner in zip(strides, strides[1:], strict=False)) or needed > data.nbytes:
         raise DecodeError(
-            f"{what}.data: {shape} elements with steps of {strides} bytes need {needed}, it has {data.nbytes}"
+            f"{what}.data: {shape} elements with steps of {strides} bytes need {needed} bytes, not {data.nbytes}"
         )
     return np.ndarray(shape, dtype, data, strides=strides)
 
@@ -132,4 +132,4 @@ VIEWS: dict[str, Callable[[Any], Any]] = {
     "sensor_msgs/msg/LaserScan": scan,
     "nav_msgs/msg/OccupancyGrid": grid,
 }
-"""What `to_numpy` is, by message type."""
+"""The function behind `to_numpy`, by message type."""

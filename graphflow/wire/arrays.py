@@ -34,7 +34,7 @@ def as_array(value: Any, base: str) -> ndarray[Any, Any]:
     if array.dtype == dtype:
         return np.ascontiguousarray(array).reshape(-1)
     if dtype.kind in "iu" and array.dtype.kind in "fO" and all(type(v) is int for v in value):
-        # No one type of numpy's holds these integers: it took floats or objects, and that loses digits.
+        # No single numpy type holds these integers: numpy chose floats or objects, and that loses digits.
         _check_range(min(value), max(value), base)
         return np.array(value, dtype)
     if array.dtype.kind not in {"b": "b", "i": "iu", "u": "iu", "f": "iuf"}[dtype.kind]:

@@ -1,4 +1,4 @@
-"""The 33 bytes beside every publication, request and response: sequence number, time, sender.
+"""The 33 bytes that go with every publication, request and response: sequence number, time, sender.
 
 Layout: int64 sequence number, int64 source time in ns since 1970, the byte 16, then the 16 bytes of the GID;
 little-endian. Jazzy before 0.2.4 wrote 77 bytes with names, which are not read here.
@@ -21,14 +21,14 @@ _new = tuple.__new__
 
 
 class MessageInfo(NamedTuple):
-    """What comes beside a message."""
+    """What comes with a message."""
 
     sequence: int
-    """Counts from 1 per publisher or client."""
+    """Sequence number, from 1 per publisher or client."""
     source_ns: int
     """When it was sent, nanoseconds since 1970 on the sender's clock."""
     gid: bytes
-    """16 bytes: who sent it, or, beside a response, who asked."""
+    """The GID, 16 bytes: the sender's or, with a response, the client's."""
 
 
 def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:

@@ -35,7 +35,7 @@ LITTLE = 0x0100
 
 
 class Types(NamedTuple):
-    """What the compiler asks about types other than the one at hand."""
+    """What the compiler needs to know about types other than the one at hand."""
 
     schema: Callable[[str], Message]
     message_class: Callable[[str], type]
@@ -86,7 +86,7 @@ class Code:
         self.depth = 1
         self.run: list[Item] = []
         self.position: int | None = HEADER
-        """Where the code stands in the payload, while that is the same for all messages; then None."""
+        """The code's position in the payload, while that is the same for all messages; then None."""
         self._count = 0
 
     def fresh(self, prefix: str) -> str:

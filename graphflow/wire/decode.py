@@ -123,7 +123,7 @@ class Decoder(Code):
 
 
 def _narrow(utf32: bytes, order: Order) -> str:
-    """Code units of UTF-16, each sent as a uint32, as text."""
+    """UTF-16 code units, each sent as a uint32, as text."""
     count = len(utf32) // 4
     units = struct.unpack(f"{order}{count}I", utf32)
     if max(units, default=0) > 0xFFFF:

@@ -54,7 +54,7 @@ class Encoder(Code):
     def single(self, type_: FieldType, expression: str) -> None:
         if type_.base in FORMATS:
             if type_.base == "bool":
-                # struct would take any object for true: what is not True or False is no key, and so no bool.
+                # struct would take any object as true: what is not True or False is not a key, and so not a bool.
                 self.names["BOOL"] = {True: True, False: False}
                 expression = f"BOOL[{expression}]"
             self.number(FORMATS[type_.base], expression)
@@ -135,7 +135,7 @@ class Encoder(Code):
         self.line(f"{items} = {expression}")
         if type_.is_primitive:
             # Their characters or keys would be taken for the strings.
-            self.line(f"if isinstance({items}, (str, dict)): raise TypeError('no sequence')")
+            self.line(f"if isinstance({items}, (str, dict)): raise TypeError('not a sequence')")
         self.check_count(type_, f"len({items})")
         if type_.array != "fixed":
             self.number("I", f"len({items})")
@@ -157,7 +157,7 @@ def _widen(utf16: bytes) -> bytes:
 
 
 def compile_encode_part(message: Message, types: Types) -> Any:
-    """`encode(message, parts, p) -> p`: append to a payload that stands at position p."""
+    """`encode(message, parts, p) -> p`: append to a payload that is at position p."""
     code = Encoder(types)
     code.position = None
     code.message(message, "m")

@@ -40,7 +40,7 @@ def check_interface_name(package: str, name: str) -> None:
     """Refuse a package or type name that ROS 2 would refuse.
 
     Raises:
-        InterfaceError: with the rule.
+        InterfaceError: With the rule.
     """
     if not _PACKAGE_NAME.match(package):
         raise InterfaceError(f"package {package!r}: lower-case letters, digits and single _, beginning with a letter")
@@ -52,7 +52,7 @@ def parse(full_name: str, text: str) -> Interface:
     """Read the definition of `package/msg/Name`, `package/srv/Name` or `package/action/Name`.
 
     Raises:
-        InterfaceError: the first fault, with its line in `text`.
+        InterfaceError: The first fault, with its line in `text`.
     """
     package, kind, name = full_name.split("/")
     check_interface_name(package, name)
@@ -145,7 +145,7 @@ def _member(package: str, line: str) -> Field | Constant:
             f"field name {name!r}: lower-case letters, digits and single _, beginning with a letter, not ending with _"
         )
     if iskeyword(name):
-        raise InterfaceError(f"field name {name!r}: it is a word of Python's, so no attribute can be called that")
+        raise InterfaceError(f"field name {name!r}: it is a Python keyword, so no attribute can have that name")
     return Field(name, type_, _literal(type_, more[0]) if more else None)
 
 
@@ -153,18 +153,18 @@ def parse_type(text: str, package: str) -> FieldType:
     """`float64[3]`, `string<=8`, `Point`, `geometry_msgs/Point[]` as a type; bare names are of `package`.
 
     Raises:
-        InterfaceError: it is none of these.
+        InterfaceError: `text` is none of these.
     """
     m = _TYPE.match(text)
     if not m:
-        raise InterfaceError(f"{text!r} is no type; write for example float64, string<=8, Point or float64[<=3]")
+        raise InterfaceError(f"{text!r} is not a type; write for example float64, string<=8, Point or float64[<=3]")
     base, bound = m["base"], m["bound"]
     if base not in PRIMITIVES:
         base = _type_name(base, package)
     if bound is not None and base not in STRINGS:
         raise InterfaceError(f"{text!r}: only string and wstring take <=N; an array's bound goes inside its brackets")
     if bound is not None and int(bound) == 0:
-        raise InterfaceError(f"{text!r}: a string of at most 0 characters cannot be")
+        raise InterfaceError(f"{text!r}: a string needs a bound of at least 1")
     array = m["array"]
     if array is None:
         return FieldType(base, int(bound or 0))
@@ -178,7 +178,7 @@ def parse_type(text: str, package: str) -> FieldType:
 def _size(digits: str, text: str) -> int:
     size = int(digits)
     if size == 0:
-        raise InterfaceError(f"{text!r}: an array of 0 elements cannot be")
+        raise InterfaceError(f"{text!r}: an array needs at least 1 element")
     return size
 
 
@@ -188,12 +188,12 @@ def _type_name(text: str, package: str) -> str:
         if text in _ALIASES:
             return _ALIASES[text]
         if not _TYPE_NAME.match(text):
-            raise InterfaceError(f"{text!r} is no type{did_you_mean(text, PRIMITIVES)}")
+            raise InterfaceError(f"{text!r} is not a type{did_you_mean(text, PRIMITIVES)}")
         return f"{package}/msg/{text}"
     if len(parts) == 2 or (len(parts) == 3 and parts[1] == "msg"):
         check_interface_name(parts[0], parts[-1])
         return f"{parts[0]}/msg/{parts[-1]}"
-    raise InterfaceError(f"{text!r} is no type; write package/Name")
+    raise InterfaceError(f"{text!r} is not a type; write package/Name")
 
 
 def _constant(type_: FieldType, name: str, text: str) -> Constant:
@@ -217,9 +217,9 @@ def _literal(type_: FieldType, text: str) -> Value:
         raise InterfaceError(f"default {text!r}: an array's default is written [a, b, c]")
     items: list[Value] = [_scalar(type_, item) for item in _split_items(text[1:-1])]
     if type_.array == "fixed" and len(items) != type_.size:
-        raise InterfaceError(f"default {text!r}: {type_} takes {type_.size} values, these are {len(items)}")
+        raise InterfaceError(f"default {text!r}: {type_} takes {type_.size} values, not {len(items)}")
     if type_.array == "bounded" and len(items) > type_.size:
-        raise InterfaceError(f"default {text!r}: {type_} takes at most {type_.size} values, these are {len(items)}")
+        raise InterfaceError(f"default {text!r}: {type_} takes at most {type_.size} values, not {len(items)}")
     return items
 
 
@@ -250,4 +250,4 @@ def _scalar(type_: FieldType, text: str) -> Value:
     except (KeyError, ValueError) as error:
         if isinstance(error, InterfaceError):
             raise
-        raise InterfaceError(f"{text!r} is no value of {base}") from None
+        raise InterfaceError(f"{text!r} is not a value of {base}") from None

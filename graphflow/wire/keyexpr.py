@@ -35,7 +35,7 @@ class DataKey(NamedTuple):
 
 
 def parse_data_key(key: str) -> DataKey | None:
-    """The parts of a key, or None when it is no data key."""
+    """The parts of a key, or None when it is not a data key."""
     parts = key.split("/")
     if len(parts) < 4 or not parts[0].isdecimal():
         return None

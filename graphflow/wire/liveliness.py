@@ -63,7 +63,7 @@ class Entity(_Entity):
 
     @cached_property
     def token(self) -> str:
-        """The token; of a parsed entity, to the letter as it was received, as its GID is the hash of that."""
+        """The token; for a parsed entity exactly as received, since its GID is the hash of that."""
         parts = [
             ADMIN_SPACE,
             str(self.domain),
@@ -94,7 +94,7 @@ def watch_key(domain: int) -> str:
 
 
 def parse_token(token: str) -> Entity | None:
-    """The entity that a token announces, or None when it announces none that is known here."""
+    """The entity that a token announces, or None when it announces none known here."""
     parts = token.split("/")
     if len(parts) < 9 or parts[0] != ADMIN_SPACE or not all(parts):
         return None
@@ -139,7 +139,7 @@ def qos_chunk(qos: Qos) -> str:
 
 
 def parse_qos(chunk: str) -> Qos:
-    """Read a QoS chunk; whatever is missing or not understood takes its default."""
+    """Read a QoS chunk; whatever is missing or not understood gets its default."""
     fields = [part.split(",") for part in chunk.split(":")]
 
     def number(field: int, part: int, default: int) -> int:

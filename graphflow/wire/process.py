@@ -1,4 +1,4 @@
-"""How a process of graphflow shows itself in a domain, and where it answers questions of others.
+"""How a graphflow process shows itself in a domain, and where it answers other processes.
 
 @graphflow/<domain>/proc/<zid>/<uid>/<pid>/<host>    the token of a process
 @graphflow/<domain>/<what>/<zid>                     its answers: `answer_key`
@@ -14,10 +14,10 @@ from graphflow.system import host_name, user_id
 
 
 class ProcessToken(NamedTuple):
-    """What a process tells of itself."""
+    """What a process says about itself."""
 
     zid: str
-    """Of its session."""
+    """The id of its session."""
     user: str
     pid: int
     host: str
@@ -27,14 +27,14 @@ class ProcessToken(NamedTuple):
 
     @property
     def why_silent(self) -> str:
-        """What may keep it from answering, and what to do about it."""
+        """What may keep the process from answering, and what to do about it."""
         if self.host == host_name() and _state(self.pid) in ("T", "t"):
             return f"it is stopped: kill -CONT {self.pid}"
         return "it is stopped, or something holds its interpreter, or it cannot be reached"
 
     @property
     def command(self) -> str:
-        """What it was started as, where this system tells."""
+        """The command that started the process, where this system can tell."""
         try:
             words = Path(f"/proc/{self.pid}/cmdline").read_bytes().split(b"\0") if self.host == host_name() else []
         except OSError:
@@ -43,12 +43,12 @@ class ProcessToken(NamedTuple):
 
 
 def token(domain: int, zid: str) -> str:
-    """This process's own."""
+    """This process's own token."""
     return f"@graphflow/{domain}/proc/{zid}/{user_id()}/{os.getpid()}/{host_name()}"
 
 
 def watch_key(domain: int) -> str:
-    """The key of all of a domain."""
+    """The key that matches all process tokens of a domain."""
     return f"@graphflow/{domain}/proc/**"
 
 
@@ -62,7 +62,7 @@ def answer_key(domain: int, what: str, zid: str = "*") -> str:
 
 
 def parse(text: str) -> ProcessToken | None:
-    """What a token tells; None if it is none."""
+    """Read a token; None if the text is not one."""
     parts = text.split("/")
     if len(parts) != 7 or parts[0] != "@graphflow" or parts[2] != "proc" or not parts[5].isdecimal():
         return None
@@ -70,7 +70,7 @@ def parse(text: str) -> ProcessToken | None:
 
 
 def _state(pid: int) -> str:
-    """The letter that Linux has for what a process does."""
+    """Linux's letter for a process's state."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except (OSError, IndexError):

@@ -1,4 +1,4 @@
-"""Wire profiles: whose definitions stand in keys and tokens, since a few differ between ROS 2's distributions.
+"""Wire profiles: which definitions keys and tokens use, since a few differ between ROS 2's distributions.
 
 | | jazzy | kilted | lyrical |
 |---|---|---|---|
@@ -6,7 +6,7 @@
 | lifecycle_msgs/msg/TransitionEvent | uint64 timestamp | uint64 timestamp | Time stamp |
 | a chunk about buffers in tokens of uint8[] topics | no | no | yes |
 
-Everything else on the wire is the same in all three. Humble has no type hashes at all, and is told by that.
+Everything else on the wire is the same in all three. Humble has no type hashes at all, and is recognised by that.
 
 Source: rcl_interfaces 2.4.3; ros_tutorials 1.9.2; rmw_zenoh_cpp 0.10.
 """
@@ -30,23 +30,23 @@ def wire_profile() -> str:
     """This process's profile: GRAPHFLOW_WIRE, else jazzy.
 
     Raises:
-        GraphflowError: The variable holds something else than a profile's name.
+        GraphflowError: The variable holds something other than a profile's name.
     """
     profile = os.environ.get(VARIABLE, "").strip() or PROFILES[0]
     if profile not in PROFILES:
         hint = did_you_mean(profile, PROFILES)
-        raise GraphflowError(f"{VARIABLE}={profile!r} is no wire profile{hint}; there are {', '.join(PROFILES)}")
+        raise GraphflowError(f"{VARIABLE}={profile!r} is not a wire profile{hint}; there are {', '.join(PROFILES)}")
     return profile
 
 
 def wire_type(name: str, profile: str) -> str:
-    """The name that an interface has on the wire of a profile."""
+    """The name that an interface has on a profile's wire."""
     package, _, rest = name.partition("/")
     return f"turtlesim_msgs/{rest}" if package == "turtlesim" and profile != "jazzy" else name
 
 
 def speakers(entity: Entity) -> tuple[str, ...]:
-    """The profiles that an endpoint with such a token can belong to; empty when that cannot be told."""
+    """The profiles that an endpoint with such a token can belong to; empty when that is unknown."""
     if entity.hash == "TypeHashNotSupported":
         return ("humble",)
     if "/backends:" in entity.token:
@@ -66,6 +66,6 @@ def advice(entity: Entity, profile: str) -> str:
         return "it speaks ROS 2 Humble's wire, which has no type hashes and is not supported"
     theirs = " or ".join(p.capitalize() for p in spoken)
     return (
-        f"it speaks the wire of ROS 2 {theirs}, this process {profile.capitalize()}'s: "
+        f"it speaks the wire of ROS 2 {theirs}, this process speaks {profile.capitalize()}'s: "
         f"start with --wire {spoken[0]}, or set {VARIABLE}={spoken[0]}"
     )

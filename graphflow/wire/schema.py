@@ -1,6 +1,6 @@
 """The shape of an interface: what the codec, the type hash and the message classes are made from.
 
-Source: rosidl's interface definition article; derived types as rosidl_generator_type_description makes them.
+Source: rosidl's interface definition article; derived types as made by rosidl_generator_type_description.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class FieldType(NamedTuple):
     """A primitive's name, or `package/msg/Name`."""
     string_bound: int = 0
     array: str = ""
-    """Empty, `fixed`, `bounded` or `unbounded`."""
+    """The kind of array: empty for none, `fixed`, `bounded` or `unbounded`."""
     size: int = 0
     """N of `[N]` and `[<=N]`."""
 
@@ -100,7 +100,7 @@ class Service(NamedTuple):
 
     @property
     def whole(self) -> Message:
-        """The type whose hash stands in the service's keys and tokens."""
+        """The type whose hash is in the service's keys and tokens."""
         return Message(
             self.name,
             (
@@ -116,7 +116,7 @@ class Service(NamedTuple):
 
 
 class Action(NamedTuple):
-    """An action type, and the services and messages that carry it."""
+    """An action type with the services and messages that carry it."""
 
     name: str
     goal: Message

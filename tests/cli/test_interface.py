@@ -98,9 +98,9 @@ def test_without_comments(own: Path, show: Show) -> None:
             "error: there is no interface package 'geometry_msg'; did you mean 'geometry_msgs'?",
         ),
         ("std_msgs/Heder", "error: package 'std_msgs' has no interface 'Heder'; did you mean 'Header'?"),
-        ("Twist", "error: 'Twist' is no interface name; write package/msg/Name, for example std_msgs/msg/String"),
-        ("a/b/c/d", "error: 'a/b/c/d' is no interface name; write package/msg/Name"),
-        ("../msg/Name", "error: '../msg/Name' is no interface name"),
+        ("Twist", "error: 'Twist' is not an interface name; write package/msg/Name, for example std_msgs/msg/String"),
+        ("a/b/c/d", "error: 'a/b/c/d' is not an interface name; write package/msg/Name"),
+        ("../msg/Name", "error: '../msg/Name' is not an interface name"),
     ],
 )
 def test_an_unknown_type(name: str, message: str, show: Show) -> None:

@@ -18,7 +18,7 @@ def test_a_profile_chooses_definitions(machine: Machine) -> None:
     assert "Time stamp" in machine.run(*event)
     assert "uint64 timestamp" in machine.run("--wire", "kilted", *event)
     machine.env["GRAPHFLOW_WIRE"] = "lyrica"
-    assert "'lyrica' is no wire profile; did you mean 'lyrical'?" in machine.run(*event, code=2)
+    assert "'lyrica' is not a wire profile; did you mean 'lyrical'?" in machine.run(*event, code=2)
 
 
 def test_peers_of_another_profile_are_told_apart(machine: Machine) -> None:

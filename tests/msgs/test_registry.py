@@ -81,16 +81,16 @@ def test_short_names_become_full_ones(text: str, name: str) -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("String", "'String' is no interface name; write package/msg/Name"),
-        ("a/b/c/D", "is no interface name"),
-        ("", "is no interface name"),
+        ("String", "'String' is not an interface name; write package/msg/Name"),
+        ("a/b/c/D", "is not an interface name"),
+        ("", "is not an interface name"),
         ("std_msg/String", "there is no interface package 'std_msg'; did you mean 'std_msgs'"),
         ("std_msgs/Strin", "package 'std_msgs' has no interface 'Strin'; did you mean 'String'"),
         ("std_msgs/msg/Strin", "package 'std_msgs' has no interface 'Strin'; did you mean 'String'"),
         ("std_msgs/srv/String", "package 'std_msgs' has no interface 'String'"),
         ("std_msgs/idl/String", "package 'std_msgs' has no interface 'String'"),
-        ("std_msgs/msg/../String", "is no interface name"),
-        ("../msg/String", "is no interface name"),
+        ("std_msgs/msg/../String", "is not an interface name"),
+        ("../msg/String", "is not an interface name"),
         ("odd_shapes/SameName", "is a msg and a srv; write odd_shapes/msg/SameName"),
     ],
 )
@@ -148,7 +148,7 @@ def test_services_of_services_and_actions() -> None:
         name = f"example_interfaces/action/Fibonacci_{part}"
         assert registry.service_schema(name).name == name
     for name in ("std_msgs/msg/String", "example_interfaces/action/Fibonacci"):
-        with pytest.raises(UnknownInterface, match=f"{name} is no service"):
+        with pytest.raises(UnknownInterface, match=f"{name} is not a service"):
             registry.service_schema(name)
 
 
@@ -167,7 +167,7 @@ def test_a_wrong_definition_is_told_with_its_file(save: Save) -> None:
     for _ in range(2):
         with pytest.raises(InterfaceError) as caught:
             registry.interface_class("reg_wrong/msg/Thing")
-        assert str(caught.value).startswith(f"{file}: reg_wrong/msg/Thing line 2: 'flat64' is no type")
+        assert str(caught.value).startswith(f"{file}: reg_wrong/msg/Thing line 2: 'flat64' is not a type")
     file.write_text("float64 x\nfloat64 y\n", encoding="utf-8")
     assert registry.example("reg_wrong/msg/Thing").y == 0.0
 

@@ -62,7 +62,7 @@ def test_nothing_is_copied() -> None:
     ("image", "text"),
     [
         (picture("jpeg?", 9, bytes(18)), r"Image\.encoding: 'jpeg\?' is not known"),
-        (picture("rgb8", 9, bytes(17)), r"Image.data: \(2, 3, 3\) elements .* need 18, it has 17"),
+        (picture("rgb8", 9, bytes(17)), r"Image.data: \(2, 3, 3\) elements .* need 18 bytes, not 17"),
         (picture("rgb8", 3, bytes(18)), r"Image\.data: .* steps of"),
         (picture("64FC4", 2**31, bytes(18), height=2**31, width=2**31), r"Image\.data: .* need"),
     ],
@@ -118,8 +118,8 @@ def test_a_point_cloud_is_a_structured_array() -> None:
     ("changes", "text"),
     [
         ({"point_step": 8}, "PointCloud2.fields"),
-        ({"data": bytes(31)}, "PointCloud2.data: .* need 32, it has 31"),
-        ({"fields": [PointField(name="x", datatype=77, count=1)]}, "'x' has datatype 77, which is none"),
+        ({"data": bytes(31)}, "PointCloud2.data: .* need 32 bytes, not 31"),
+        ({"fields": [PointField(name="x", datatype=77, count=1)]}, "'x' has datatype 77, which does not exist"),
         ({"fields": [PointField(name="x", datatype=7, count=1)] * 2}, "PointCloud2.fields"),
     ],
 )

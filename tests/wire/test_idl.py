@@ -160,13 +160,13 @@ def test_constants_are_read(line: str, expected: Constant) -> None:
 
 BROKEN = [
     ("float64", "TYPE NAME"),
-    ("flaot64 x", r"no type; did you mean 'float64'"),
-    ("point p", "'point' is no type"),
-    ("float64[3 x", "is no type; write for example"),
-    ("float64[-1] x", "is no type"),
-    ("float64[0] x", "0 elements"),
-    ("float64[<=0] x", "0 elements"),
-    ("string<=0 x", "0 characters"),
+    ("flaot64 x", r"not a type; did you mean 'float64'"),
+    ("point p", "'point' is not a type"),
+    ("float64[3 x", "is not a type; write for example"),
+    ("float64[-1] x", "is not a type"),
+    ("float64[0] x", "at least 1 element"),
+    ("float64[<=0] x", "at least 1 element"),
+    ("string<=0 x", "at least 1"),
     ("int32<=5 x", "only string and wstring take <=N"),
     ("a/b/c/D x", "write package/Name"),
     ("a/srv/D x", "write package/Name"),
@@ -179,18 +179,18 @@ BROKEN = [
     ("float64 x_", "field name 'x_'.*not ending with _"),
     ("float64 x__y", "field name 'x__y'"),
     ("float64 x-y", "field name 'x-y'"),
-    ("float64 from", "word of Python"),
+    ("float64 from", "Python keyword"),
     ("float64 x\nint32 y\nbool x", "'x' is defined twice"),
     ("int32 X=1\nint32 X=1", "'X' is defined twice"),
     ("int32 x=1", "constant name 'x'"),
     ("int32 X_=1", "constant name 'X_'"),
-    ("int32 X=", "'' is no value of int32"),
-    ("int32 X=one", "'one' is no value of int32"),
-    ("int32 X=1.5", "'1.5' is no value of int32"),
+    ("int32 X=", "'' is not a value of int32"),
+    ("int32 X=one", "'one' is not a value of int32"),
+    ("int32 X=1.5", "'1.5' is not a value of int32"),
     ("int8 X=128", "128 does not fit int8: -128 to 127"),
     ("uint8 X=-1", "-1 does not fit uint8: 0 to 255"),
-    ("float64 X=far", "'far' is no value of float64"),
-    ("bool X=maybe", "'maybe' is no value of bool"),
+    ("float64 X=far", "'far' is not a value of float64"),
+    ("bool X=maybe", "'maybe' is not a value of bool"),
     ("int32[] X=[1]", "constant 'X': only numbers, bool and string"),
     ("wstring X=a", "constant 'X': only numbers, bool and string"),
     ("Point X=1", "constant 'X': only numbers, bool and string"),
@@ -199,9 +199,9 @@ BROKEN = [
     ("Point p 5", "only primitive types have defaults"),
     ("Point[] p [5]", "only primitive types have defaults"),
     ("int32[2] a 5", r"written \[a, b, c\]"),
-    ("int32[2] a [1]", "takes 2 values, these are 1"),
-    ("int32[<=2] a [1,2,3]", "at most 2 values, these are 3"),
-    ("int32[] a [1,x]", "'x' is no value of int32"),
+    ("int32[2] a [1]", "takes 2 values, not 1"),
+    ("int32[<=2] a [1,2,3]", "at most 2 values, not 3"),
+    ("int32[] a [1,x]", "'x' is not a value of int32"),
     ("string<=3 s abcd", "longer than string<=3"),
     ("string<=3 s hé€", "longer than string<=3"),
     ('string<=3 s "abcd"', "longer than string<=3"),
@@ -220,7 +220,7 @@ def test_a_broken_rule_is_named_with_its_line(text: str, rule: str) -> None:
 
 def test_lines_are_counted_through_the_sections() -> None:
     """In a service the line is that of the file, and the part is named."""
-    with pytest.raises(InterfaceError, match=r"^pkg/srv/Get_Response line 4: 'flat64' is no type"):
+    with pytest.raises(InterfaceError, match=r"^pkg/srv/Get_Response line 4: 'flat64' is not a type"):
         idl.parse("pkg/srv/Get", "int8 a\n\n---\nflat64 x")
 
 

@@ -40,7 +40,7 @@ def test_a_profile_is_chosen_by_its_name(profile: str, monkeypatch: pytest.Monke
 def test_a_mistyped_profile_is_an_error_that_helps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another word is refused, with the nearest that is right."""
     monkeypatch.setenv("GRAPHFLOW_WIRE", "lyrial")
-    with pytest.raises(GraphflowError, match=r"GRAPHFLOW_WIRE='lyrial' is no wire profile.*lyrical"):
+    with pytest.raises(GraphflowError, match=r"GRAPHFLOW_WIRE='lyrial' is not a wire profile.*lyrical"):
         wire_profile()
 
 
@@ -93,7 +93,7 @@ def test_the_advice_says_what_to_type() -> None:
     """A peer of another profile is answered with the option to start with; one of the same with nothing."""
     peer = entity("turtlesim_msgs/msg/Pose")
     assert advice(peer, "jazzy") == (
-        "it speaks the wire of ROS 2 Kilted or Lyrical, this process Jazzy's: "
+        "it speaks the wire of ROS 2 Kilted or Lyrical, this process speaks Jazzy's: "
         "start with --wire kilted, or set GRAPHFLOW_WIRE=kilted"
     )
     assert advice(peer, "kilted") == ""
