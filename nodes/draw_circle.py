@@ -1,7 +1,7 @@
 """A turtle in a circle, the first exercise of every course: two parameters, a publisher and a timer.
 
-Whoever drives at v metres and turns at w radians a second goes round in a circle of v / w metres radius. The command
-is repeated because turtles, like real robots, stop when nobody has said anything for a second.
+Driving at v metres and turning at w radians a second makes a circle with a radius of v / w metres. The command
+is repeated because turtles, like real robots, stop after a second without one.
 """
 
 import graphflow

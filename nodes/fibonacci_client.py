@@ -8,7 +8,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 class FibonacciClient(Node):
     """Order a sequence, watch it grow, and give up after `patience` seconds."""
 
-    order = Param(10, ge=0, doc="Where the sequence is to end.")
+    order = Param(10, ge=0, doc="Where the sequence ends.")
     patience = Param(60.0, unit="s", gt=0.0, doc="How long to wait for it.")
     fibonacci = ActionClient(Fibonacci, "fibonacci")
 
@@ -21,7 +21,7 @@ class FibonacciClient(Node):
                     async for feedback in goal.feedback():
                         self.log.info("Received feedback: %s", feedback.sequence.tolist())
             except TimeoutError:
-                self.log.info("That takes too long.")
+                self.log.info("This takes too long.")
         try:
             self.log.info("Result: %s", (await goal.result()).sequence.tolist())
         except GoalError as error:

@@ -1,4 +1,4 @@
-"""The action server of every ROS 2 tutorial: a goal that takes its time, feedback on the way, and an end to it.
+"""The action server of every ROS 2 tutorial: a goal that takes its time, feedback on the way, and a result.
 
 Cancelling needs no code here. A goal that is cancelled gets `CancelledError` at its next `await`, and its client gets
 what `goal.partial` held.

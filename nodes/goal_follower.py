@@ -1,7 +1,7 @@
-"""A turtle that is told where to go: services of one's own, and a client in the same node.
+"""A turtle that is told where to go: services of your own, and a client in the same node.
 
-`SetGoal` is defined in `interfaces/turtle_interfaces/srv/SetGoal.srv`; there is nothing to build. Who schedules the
-goals is another node, such as `scheduler.py`, which is called back on arrival.
+`SetGoal` is defined in `interfaces/turtle_interfaces/srv/SetGoal.srv`; there is nothing to build. Another node sets
+the goals, such as `scheduler.py`, which is called back on arrival.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from nodes.position_controller import Point, PositionController
 
 
 class GoalFollower(PositionController):
-    """Drive to the goal that was set, once enabled, and notify whoever wants to know of the arrival."""
+    """Drive to the goal that was set, once enabled, and call `notify_arrival` on arrival."""
 
     notify_arrival = Client(Empty, "notify_arrival")
     next_goal: Point | None = None
@@ -38,7 +38,7 @@ class GoalFollower(PositionController):
         try:
             await self.notify_arrival.call(Empty.Request())
         except CallError as error:
-            self.log.warning("nobody was notified: %s", error)
+            self.log.warning("could not notify of the arrival: %s", error)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from graphflow.msgs.std_msgs.msg import String
 
 
 class Listener(Node):
-    """Write down everything said on `chatter`."""
+    """Log everything published on `chatter`."""
 
     @subscription(String, "chatter")
     async def heard(self, message: String) -> None:

@@ -1,7 +1,7 @@
 """A controller that drives a turtle to a point: a base class for nodes.
 
 A node class inherits the parameters, topics and timers of its parent. This one has everything but a goal; its children
-say where it comes from: `turtle_follower.py` from a topic, `via_point_follower.py` from a list. They may also override
+say where that comes from: `turtle_follower.py` from a topic, `via_point_follower.py` from a list. They may override
 `arrived` and `departed`.
 
 The names are relative. Put the node in a turtle's namespace and `pose` is that turtle's:
@@ -32,9 +32,9 @@ def distance(pose: Pose, goal: Point) -> float:
 
 
 def steer(pose: Pose, goal: Point, *, gain: float, speed: float) -> Twist:
-    """How to move now, to be at the goal later: the more it is to one side, the faster to turn and the slower to drive.
+    """How to move towards the goal: the further it is to one side, the faster to turn and the slower to drive.
 
-    At full speed all the time a turtle that has just missed its goal would circle around it for ever.
+    At constant full speed a turtle that has just missed its goal would circle around it for ever.
     """
     error = math.atan2(goal.y - pose.y, goal.x - pose.x) - pose.theta
     shortest = math.atan2(math.sin(error), math.cos(error))  # never the long way round
@@ -46,7 +46,7 @@ class PositionController(Node):
 
     gain = Param(5.0, unit="1/s", gt=0.0, doc="Turning speed for each radian off course.")
     speed = Param(1.0, unit="m/s", ge=0.0, doc="Forward speed on the way.")
-    tolerance = Param(0.1, unit="m", gt=0.0, doc="How near is there.")
+    tolerance = Param(0.1, unit="m", gt=0.0, doc="How close counts as there.")
     cmd_vel = Publisher(Twist, "cmd_vel")
 
     pose: Pose | None = None
@@ -54,7 +54,7 @@ class PositionController(Node):
     is_there = False
 
     def go_to(self, goal: Point) -> None:
-        """Begin anew with another goal. Reaching it is an arrival, even if it is where the turtle stands."""
+        """Start over with another goal. Reaching it is an arrival, even if the turtle is already there."""
         self.goal, self.is_there = goal, False
 
     @subscription(Pose, "pose")
@@ -79,4 +79,4 @@ class PositionController(Node):
         """Override to do something when the goal is reached."""
 
     async def departed(self) -> None:
-        """Override to do something when it sets off again, because the goal or the turtle was moved."""
+        """Override to do something when the turtle sets off again, because the goal or the turtle was moved."""

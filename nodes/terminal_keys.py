@@ -1,8 +1,8 @@
 """Keys as they are pressed: a terminal's bytes, and the terminal itself.
 
 A terminal sends a letter as itself and an arrow as several bytes, `ESC [ A`, which may arrive in pieces. Normally it
-sends nothing before Return is pressed; `keyboard` changes that for the length of a block. Reading goes by the event
-loop: it says when there is something to read, so nothing blocks and nobody polls.
+sends nothing before Return is pressed; `keyboard` changes that for the length of a block. The event loop says when
+there is something to read, so nothing blocks or polls.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 HANGUP = "hangup"
-"""The key that is pressed last: the terminal is gone."""
+"""Stands in for the last key: the terminal has gone."""
 _NAMES = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
 # ECMA-48, 5.4: a control sequence is ESC [, parameters, intermediates and a final byte. ESC O is what a keypad
 # in application mode sends instead.
@@ -28,8 +28,8 @@ def decode_keys(pressed: bytes) -> tuple[list[str], bytes]:
     """Read keys from what a terminal sent.
 
     Returns:
-        The keys: `up`, `down`, `left`, `right`, `escape`, or the character; keys of no name are left out. And the bytes
-        of a key that is not complete: put them before what comes next.
+        The keys: `up`, `down`, `left`, `right`, `escape`, or the character; nameless keys are left out. And the bytes
+        of an incomplete key: put them before what comes next.
     """
     keys: list[str] = []
     at = 0
@@ -47,15 +47,15 @@ def decode_keys(pressed: bytes) -> tuple[list[str], bytes]:
 
 @contextmanager
 def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
-    """The keys pressed on a terminal, each at once and unseen, for the length of the block.
+    """The keys pressed on a terminal, each at once and without echo, for the length of the block.
 
-    However the block ends, the terminal is afterwards as it was. Ctrl-C stays Ctrl-C.
+    However the block ends, the terminal is then as it was before. Ctrl-C stays Ctrl-C.
 
     Args:
         terminal: Its file descriptor.
 
     Raises:
-        termios.error: It is no terminal.
+        termios.error: `terminal` is not a terminal.
     """
     keys: asyncio.Queue[str] = asyncio.Queue()
     loop = asyncio.get_running_loop()
@@ -81,5 +81,5 @@ def keyboard(terminal: int) -> Iterator[asyncio.Queue[str]]:
         yield keys
     finally:
         loop.remove_reader(terminal)
-        with suppress(termios.error):  # a terminal that is gone needs nothing back
+        with suppress(termios.error):  # a terminal that has gone needs no restoring
             termios.tcsetattr(terminal, termios.TCSADRAIN, before)

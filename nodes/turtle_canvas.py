@@ -1,8 +1,8 @@
-"""What turtles draw on: strokes to show, and pixels to look up a colour by.
+"""What turtles draw on: strokes to show, and pixels to look up colours in.
 
 Strokes are the drawing as lines, few enough to send as one picture. Two rules keep them few however long the turtles
 run: a stroke keeps only the points where it bends, and when all strokes together have more than `MAX_POINTS` points
-the oldest is forgotten. Pixels are the drawing as turtlesim's window has it, 1 MB for ever: they answer what colour
+the oldest is forgotten. Pixels are the drawing as turtlesim's window has it, always 1 MB: they tell what colour
 is under a turtle, and forget nothing.
 
 Positions are metres with the origin at the bottom left and y up; only pixels count from the top.
@@ -22,11 +22,11 @@ PIXELS = 500
 SCALE = 45.0
 """Pixels per metre: a turtle's image is 45 pixels high and stands for one metre."""
 TOLERANCE = 0.002
-"""Metres a stroke may pass beside where the turtle went: a tenth of a pixel."""
+"""Metres by which a stroke may miss where the turtle went: a tenth of a pixel."""
 MAX_POINTS = 10_000
 """Points in all strokes together: less than half a megabyte of memory, and of picture."""
 STROKE_POINTS = 250
-"""Points in one stroke; a longer one goes on in a new stroke, so that the old part can be forgotten alone."""
+"""Points in one stroke; a longer one continues in a new stroke, so that the old part can be forgotten separately."""
 
 Position: TypeAlias = tuple[float, float]
 Colour: TypeAlias = tuple[int, int, int]
@@ -41,9 +41,9 @@ class Pen:
 
 
 class Stroke:
-    """A line of one pen, as few points as it takes to stay within `TOLERANCE` of where the pen went.
+    """A line of one pen, with as few points as it takes to stay within `TOLERANCE` of where the pen went.
 
-    The last point moves with the pen for as long as the way from the point before it is straight. Straight means:
+    The last point moves with the pen for as long as the path from the point before it is straight. Straight means:
     every position lies in a sleeve around the line, and the sleeve's angle only narrows as it gets longer.
     """
 
@@ -87,7 +87,7 @@ class Canvas:
 
     def __init__(self) -> None:
         self.strokes: deque[Stroke] = deque()
-        """Oldest first."""
+        """The strokes, oldest first."""
         self._points = 0
         self._current: dict[str, Stroke] = {}
         self._pixels = np.zeros((PIXELS, PIXELS), np.uint32)
@@ -112,13 +112,13 @@ class Canvas:
         self._current = {who: current for who, current in self._current.items() if current is not stroke}
 
     def colour_at(self, position: Position) -> Colour | None:
-        """The colour drawn at a position; None where there is none."""
+        """The colour drawn at a position; None where nothing is drawn."""
         column, row = (min(max(round(v), 0), PIXELS - 1) for v in to_pixel(position))
         value = int(self._pixels[row, column])
         return (value >> 16 & 255, value >> 8 & 255, value & 255) if value else None
 
     def _paint(self, pen: Pen, start: Position, end: Position) -> None:
-        """Set the pixels that are no further than half a pen's width from the line."""
+        """Set the pixels within half a pen's width of the line."""
         (x0, y0), (x1, y1) = to_pixel(start), to_pixel(end)
         radius = pen.width / 2
         left, right = _span(min(x0, x1) - radius, max(x0, x1) + radius)
@@ -133,7 +133,7 @@ class Canvas:
 
 
 def to_pixel(position: Position) -> Position:
-    """Where a position is in the window: pixels from the left, pixels from the top."""
+    """A position in the window: pixels from the left, pixels from the top."""
     return position[0] * SCALE, PIXELS - 1 - position[1] * SCALE
 
 

@@ -1,4 +1,4 @@
-"""A turtle that is sent somewhere by an action: the drive takes its time, can be watched, and can be called off.
+"""A turtle that an action sends somewhere: the drive takes its time, can be watched and can be cancelled.
 
 The goal's body waits while the timer of `PositionController` does the driving. `GoToGoal` is defined in
 `interfaces/turtle_interfaces/action/GoToGoal.action`.
@@ -16,11 +16,11 @@ from graphflow.msgs.turtlesim.msg import Pose
 from nodes.position_controller import Point, PositionController, distance
 
 SIDE = 11.0
-"""Metres that the turtles' world is wide and high."""
+"""Width and height of the turtles' world, in metres."""
 
 
 class TurtleDriver(PositionController):
-    """Drive to the goal of `go_to_goal`; a newer goal takes the place of an older one."""
+    """Drive to the goal of `go_to_goal`; a newer goal replaces an older one."""
 
     travelled = 0.0
     """Metres since the last goal was set."""

@@ -1,4 +1,4 @@
-"""A picture of the turtles and of what they have drawn, as SVG: any browser shows it, any editor changes it."""
+"""A picture of the turtles and what they have drawn, as SVG: any browser shows it, any editor changes it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COATS = (
     ("#b48ad8", "#6d4596"),
     ("#c9c14b", "#85802a"),
 )
-"""Skin and shell of the first turtle, the second, ...; then from the beginning again."""
+"""Skin and shell of the first turtle, the second, ...; then from the start again."""
 
 BODY = """
 <g fill="{skin}" stroke="#1d2b1f" stroke-width="0.8" stroke-linejoin="round">

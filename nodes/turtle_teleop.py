@@ -1,7 +1,7 @@
-"""A turtle at the arrow keys: a task that waits for something outside the graph.
+"""A turtle driven with the arrow keys: a task that waits for something outside the graph.
 
-Topics, timers and services call a node. A keyboard does not, so a `@task` runs beside them and waits for it. When the
-node stops the task is cancelled, wherever it waits; its `with` block gives the terminal back.
+Topics, timers and services call a node. A keyboard does not, so a `@task` runs alongside them and waits for it. When
+the node stops, the task is cancelled wherever it waits; its `with` block restores the terminal.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Use arrow keys to move the turtle.
 'Q' to quit."""
 
 ARROWS = {"up": (1.0, 0.0), "down": (-1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
-"""How much forwards, and how much to the left."""
+"""How much forwards and how much to the left."""
 
 
 class TurtleTeleop(Node):
@@ -35,7 +35,7 @@ class TurtleTeleop(Node):
     @task
     async def read_keys(self) -> None:
         if sys.stdin is None or not sys.stdin.isatty():
-            self.log.error("there are no arrow keys here, this is no terminal; run %s in one of its own", self.name)
+            self.log.error("no arrow keys here: this is not a terminal; run %s in one of its own", self.name)
             return self.shutdown()
         with keyboard(sys.stdin.fileno()) as keys:
             print(PROMPT, flush=True)

@@ -1,7 +1,7 @@
-"""The world of turtlesim, without a node: turtles, the velocities they were told, the walls around them.
+"""The world of turtlesim, without a node: turtles, their commanded velocities, the walls around them.
 
-A turtle is a unicycle: it moves along its nose and turns on the spot. Time goes in ticks of 16 ms. Whoever owns the
-world calls `step` once a tick and says what time it is, which matters only to old commands: after a second without
+A turtle is a unicycle: it moves along its nose and turns on the spot. Time goes in ticks of 16 ms. The owner of the
+world calls `step` once a tick with the time, which matters only to old commands: after a second without
 a new one a turtle stops. `nodes/turtlesim.py` puts all this on the network.
 """
 
@@ -19,25 +19,25 @@ SIZE = 11.088889122009277
 COMMAND_LIFE_NS = 1_000_000_000
 """How long a velocity command holds."""
 LIMIT = 1e5
-"""No turtle is further away or faster, in metres, radians and seconds."""
+"""No turtle is further away or faster than this, in metres, radians and seconds."""
 
 
 class NameTaken(Exception):
-    """There is a turtle of that name."""
+    """There is already a turtle of that name."""
 
 
 @dataclass
 class Turtle:
-    """Where a turtle is, how it moves and what it draws with. Metres and radians; theta 0 looks along x."""
+    """Where a turtle is, how it moves and what it draws with. Metres and radians; theta 0 points along x."""
 
     name: str
     x: float
     y: float
     theta: float = 0.0
     number: int = 0
-    """Counts the turtles since the last reset; decides what colour it is."""
+    """The turtle's number since the last reset; decides its colour."""
     pen: Pen | None = field(default_factory=Pen)
-    """None while it is lifted."""
+    """The pen; None while it is lifted."""
     forward: float = 0.0
     sideways: float = 0.0
     turning: float = 0.0
@@ -55,13 +55,13 @@ class Turtle:
         """Move with these velocities (m/s, m/s to the left, rad/s) from the next step on.
 
         Raises:
-            ValueError: One is no number, or beyond `LIMIT`.
+            ValueError: A velocity is not a number, or is beyond `LIMIT`.
         """
         check_numbers(forward, sideways, turning)
         self.forward, self.sideways, self.turning, self.commanded_ns = forward, sideways, turning, now_ns
 
     def move(self, seconds: float) -> None:
-        """Follow the velocities for a moment; turning comes first."""
+        """Move by the velocities for a moment; turning comes first."""
         self.theta = normalize(self.theta + self.turning * seconds)
         cos, sin = math.cos(self.theta), math.sin(self.theta)
         self.x += (cos * self.forward - sin * self.sideways) * seconds
@@ -69,7 +69,7 @@ class Turtle:
 
 
 class World:
-    """Turtles by name, and what they have drawn."""
+    """Turtles by name and what they have drawn."""
 
     def __init__(self) -> None:
         self.turtles: dict[str, Turtle] = {}
@@ -88,8 +88,8 @@ class World:
         """Add a turtle.
 
         Raises:
-            NameTaken: There is one of that name.
-            ValueError: A coordinate is no number, or beyond `LIMIT`.
+            NameTaken: There is already one of that name.
+            ValueError: A coordinate is not a number, or is beyond `LIMIT`.
         """
         check_numbers(x, y, theta)
         if name in self.turtles:
@@ -100,10 +100,10 @@ class World:
         return turtle
 
     def kill(self, name: str) -> None:
-        """Take a turtle away. What it drew stays.
+        """Remove a turtle. What it drew stays.
 
         Raises:
-            KeyError: There is none of that name.
+            KeyError: There is no turtle of that name.
         """
         del self.turtles[name]
 
@@ -111,7 +111,7 @@ class World:
         """Let one tick pass for a turtle.
 
         Returns:
-            None, or where it would be now were it not for a wall.
+            None, or where it would be now but for a wall.
         """
         if now_ns - turtle.commanded_ns > COMMAND_LIFE_NS:
             turtle.forward = turtle.sideways = turtle.turning = 0.0
@@ -123,10 +123,10 @@ class World:
         return None if turtle.position == beyond else beyond
 
     def teleport(self, turtle: Turtle, x: float, y: float, theta: float) -> None:
-        """Put a turtle elsewhere; its pen draws the straight line there.
+        """Put a turtle elsewhere; its pen draws a straight line there.
 
         Raises:
-            ValueError: A coordinate is no number, or beyond `LIMIT`.
+            ValueError: A coordinate is not a number, or is beyond `LIMIT`.
         """
         check_numbers(x, y, theta)
         before = turtle.position
@@ -134,7 +134,7 @@ class World:
         self._draw(turtle, before)
 
     def jump(self, turtle: Turtle, distance: float, turn: float) -> None:
-        """Turn a turtle, then put it `distance` ahead. Errors as `teleport`."""
+        """Turn a turtle, then put it `distance` ahead. Errors as for `teleport`."""
         check_numbers(distance, turn)
         theta = turtle.theta + turn
         x, y = turtle.x + distance * math.cos(theta), turtle.y + distance * math.sin(theta)
@@ -150,12 +150,14 @@ class World:
 
 
 def check_numbers(*values: float) -> None:
-    """Raise ValueError unless a turtle can live with these numbers."""
+    """Raise ValueError unless a turtle can have these numbers."""
     for value in values:
         if not abs(value) < LIMIT:  # nor is that true of a NaN
-            raise ValueError(f"{value} is nothing a turtle can do: give a number between {-LIMIT:g} and {LIMIT:g}")
+            raise ValueError(
+                f"{value} is not something a turtle can do: give a number between {-LIMIT:g} and {LIMIT:g}"
+            )
 
 
 def normalize(angle: float) -> float:
-    """The same angle from -pi up to, but not, pi."""
+    """The same angle, from -pi up to but not including pi."""
     return angle - math.tau * math.floor((angle + math.pi) / math.tau)

@@ -1,10 +1,10 @@
 """The turtle simulator of every ROS 2 course: names that come and go with the turtles.
 
 A node that knows its topics and services in advance declares them on its class. This one cannot: each turtle has
-topics and services of its own, so they are made when it hatches, with the `create_*` methods on which declarations
-rest too, and closed when it is killed. What turtles do is in `turtle_world.py`, which knows nothing of nodes.
+topics and services of its own, so they are made when it hatches, with the `create_*` methods that declarations
+use too, and closed when it is killed. What turtles do is in `turtle_world.py`, which knows nothing about nodes.
 
-There is no window. Ask for a picture, an SVG file in the answer's `message`, whenever you want one:
+There is no window. Ask for a picture, an SVG file in the response's `message`, whenever you want one:
 
     graphflow service call /turtlesim/snapshot std_srvs/srv/Trigger
 
@@ -28,9 +28,9 @@ from nodes.turtle_picture import svg
 from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
 
 TURNING_SPEED = 1.0
-"""Of `rotate_absolute`, in rad/s."""
+"""Turning speed of `rotate_absolute`, in rad/s."""
 CLOSE_ENOUGH = 0.02
-"""Radians from where `rotate_absolute` is to end."""
+"""Radians from the goal within which `rotate_absolute` ends."""
 
 
 class TurtleSim(Node):
@@ -120,9 +120,9 @@ class TurtleSim(Node):
         """Add a turtle and its topics and services.
 
         Raises:
-            NameTaken: There is one of that name.
-            InvalidName: No topic can be called that.
-            ValueError: A coordinate is not one.
+            NameTaken: There is already one of that name.
+            InvalidName: The name is not legal in a topic.
+            ValueError: A coordinate is not legal.
         """
         turtle = self.world.spawn(name, x, y, theta)
         try:
@@ -140,7 +140,7 @@ class TurtleSim(Node):
         self.log.info("Spawning turtle [%s] at x=[%f], y=[%f], theta=[%f]", turtle.name, *turtle.position, turtle.theta)
 
     def remove(self, name: str) -> None:
-        """Take a turtle away, its topics and services too."""
+        """Remove a turtle with its topics and services."""
         self.reins.pop(name).close()
         self.world.kill(name)
 
@@ -176,12 +176,12 @@ class Reins:
         self.pose, self.color = pose, color
 
     def close(self) -> None:
-        """Take them off the network."""
+        """Withdraw them from the network."""
         for endpoint in self.endpoints:
             endpoint.close()
 
     def publish(self) -> None:
-        """Say where the turtle is, and what colour is under it."""
+        """Publish where the turtle is and what colour is under it."""
         t = self.turtle
         self.pose.publish(Pose(x=t.x, y=t.y, theta=t.theta, linear_velocity=t.speed, angular_velocity=t.turning))
         r, g, b = self.node.world.canvas.colour_at(t.position) or self.node.background
@@ -206,16 +206,16 @@ class Reins:
         return goal.partial
 
     def stand_still(self) -> None:
-        """End whatever command there is."""
+        """End the current command, if any."""
         self.turtle.command(0.0, 0.0, 0.0, self.node.clock.monotonic_ns())
 
     def rotate(self) -> None:
-        """Turn towards the goal, if there is one, and see whether it is reached."""
+        """Turn towards the goal, if there is one, and check whether it is reached."""
         if self.rotation is None or self.rotation.ended.done():
             return
         goal, turtle = self.rotation.goal, self.turtle
         remaining = normalize(goal.request.theta - turtle.theta)
-        # The way back, as turtlesim has it: negative for a turn to the left.
+        # The way back, as in turtlesim: negative for a turn to the left.
         goal.partial = RotateAbsolute.Result(delta=normalize(self.rotation.start - turtle.theta))
         goal.feedback(RotateAbsolute.Feedback(remaining=remaining))
         if abs(remaining) < CLOSE_ENOUGH:

@@ -1,6 +1,6 @@
 """A turtle on a round trip: list parameters, and a check of parameters that belong together.
 
-A parameter's own limits stand in its declaration. What several must fulfil together is checked when the node is made;
+A parameter's own limits are in its declaration. What several must meet together is checked when the node is made;
 `read_only` keeps it true from then on.
 """
 
@@ -13,7 +13,7 @@ from nodes.position_controller import Point, PositionController
 
 
 class ViaPointFollower(PositionController):
-    """Visit the points (via_x[0], via_y[0]), (via_x[1], via_y[1]), ... and begin again."""
+    """Visit the points (via_x[0], via_y[0]), (via_x[1], via_y[1]), ... and start over."""
 
     via_x = Param([2.0, 5.0, 8.0, 1.0, 9.0, 2.0], unit="m", doc="The points' x.", read_only=True)
     via_y = Param([1.0, 9.0, 1.0, 6.0, 6.0, 1.0], unit="m", doc="The points' y.", read_only=True)
@@ -22,7 +22,7 @@ class ViaPointFollower(PositionController):
         super().__init__(name, **options)
         if not len(self.via_x) == len(self.via_y) > 0:
             raise ParameterError(
-                f"via_x has {len(self.via_x)} numbers and via_y {len(self.via_y)}: give as many of both, at least one"
+                f"via_x has {len(self.via_x)} numbers and via_y {len(self.via_y)}: give as many of each, at least one"
             )
         self.points = cycle(map(Point, self.via_x, self.via_y))
         self.go_to(next(self.points))

@@ -1,9 +1,9 @@
-"""Exercise 4, as one writes it first: a follower that notifies its arrival, and a scheduler that answers with the next.
+"""Exercise 4, a first attempt: a follower that reports its arrival, and a scheduler that responds with the next goal.
 
 The scheduler's handler of `notify_arrival` sets the next goal and enables the follower *before* it answers. What that
 does to a follower that clears `enabled` *after* its call depends on its groups: without any it is a race (the enabling
-is undone, the turtle stops at the second point), in one group a deadlock across two nodes. Whoever clears `enabled`
-before the call, as `CarefulFollower` does, and lets the services run meanwhile, has neither.
+is undone, the turtle stops at the second point), in one group a deadlock across two nodes. A follower that clears
+`enabled` before the call, as `CarefulFollower` does, and lets the services run meanwhile, has neither.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Follower(PositionController):
 
 
 class CarefulFollower(Follower):
-    """Is done with the old goal before it tells anybody."""
+    """Is done with the old goal before it notifies anyone."""
 
     async def arrived(self) -> None:
         if self.enabled:

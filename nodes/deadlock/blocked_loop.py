@@ -1,4 +1,4 @@
-"""A handler that waits for an answer without `await`: the event loop stands still, and with it whoever could answer."""
+"""A handler that waits for a response without `await`: the event loop stands still, and so does what could respond."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 
 
 class Blocker(Node):
-    """Calls as in a script, from line to line."""
+    """Calls as in a script, line by line."""
 
     adder = Client(AddTwoInts, "~/add")
 

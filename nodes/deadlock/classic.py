@@ -1,7 +1,7 @@
-"""ROS 2's classic: the service is another node's, but its answer needs a slot of the group that waits for it.
+"""ROS 2's classic: the service is another node's, but its response needs a slot of the group that waits for it.
 
-In ROS 2 a client belongs to a group as everything does, so this happens to whoever changes nothing. In graphflow,
-answers need no slot unless a client is put into a group, as here.
+In ROS 2 a client belongs to a group like everything else, so this happens by default. In graphflow,
+responses need no slot unless a client is put in a group, as here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Adder(Node):
 
 
 class Asker(Node):
-    """Holds the group's only slot while the answer waits for it."""
+    """Holds the group's only slot while the response waits for it."""
 
     everything = Group(1)
     adder = Client(AddTwoInts, "add_two_ints", group=everything)

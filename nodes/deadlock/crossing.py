@@ -1,4 +1,4 @@
-"""Two nodes that ask each other, each while it holds the slot in which it could answer: neither alone is wrong."""
+"""Two nodes that call each other, each while holding the slot it would answer in: neither alone is wrong."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from graphflow.msgs.std_srvs.srv import Trigger
 
 
 class Neighbour(Node):
-    """Asks the other one, once a second, whether it is well."""
+    """Asks the other node how it is, once a second."""
 
     default_group = Group(1)
     other = Client(Trigger, "other")
 
     @timer(1.0)
     async def greet(self) -> None:
-        await self.clock.sleep(0.1)  # so that both are at it together
+        await self.clock.sleep(0.1)  # so that both call at the same time
         response = await self.other.call(Trigger.Request())
         self.log.info("the other one says: %s", response.message)
 

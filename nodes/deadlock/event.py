@@ -11,7 +11,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 
 
 class Patient(Node):
-    """Takes goals that end when the time has come, and a clock that cannot say so."""
+    """Accepts goals that end when the time has come, and has a clock that cannot say so."""
 
     everything = Group(1)
     goals = ActionClient(Fibonacci, "~/wait")

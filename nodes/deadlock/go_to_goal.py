@@ -1,7 +1,7 @@
-"""Go-to-goal as the course writes it first: the goal's body looks, until it is there, at a pose that nobody can set.
+"""The course's first go-to-goal: until it is there, the goal's body looks at a pose that nothing can set.
 
 `BlockingDriver` waits by sleeping in a `def`, `AsyncDriver` by sleeping in an `async def`. What then stands still
-depends on the groups that the graph file puts their handlers into.
+depends on the groups that the graph file puts their handlers in.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ GOAL = (8.0, 5.544445)
 
 
 class Driver(Node):
-    """Drives straight on until the goal is near, and sends itself there at the start."""
+    """Drives straight ahead until the goal is near, and sends itself there at the start."""
 
     node_name = "driver"
     cmd_vel = Publisher(Twist, "cmd_vel")
@@ -44,7 +44,7 @@ class Driver(Node):
 
 
 class BlockingDriver(Driver):
-    """Sleeps without letting go of anything."""
+    """Sleeps without releasing anything."""
 
     @action(GoToGoal, "go_to_goal")
     def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:
@@ -56,7 +56,7 @@ class BlockingDriver(Driver):
 
 
 class AsyncDriver(Driver):
-    """Lets go of the loop while it sleeps, but not of its group."""
+    """Releases the loop while it sleeps, but not its group."""
 
     @action(GoToGoal, "go_to_goal")
     async def execute(self, goal: GoToGoal.Handle) -> GoToGoal.Result:

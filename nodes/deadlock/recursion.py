@@ -1,4 +1,4 @@
-"""A service that calls itself: a group with two slots bears a depth of two, and no more."""
+"""A service that calls itself: a group with two slots allows a depth of two and no more."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 class Factorial(Node):
     """Multiplies by asking for the factorial of one less."""
 
-    depth = Param(3, ge=0, doc="Whose factorial is wanted.")
+    depth = Param(3, ge=0, doc="The number whose factorial is wanted.")
     answers = Group(2)
     itself = Client(AddTwoInts, "~/factorial")
 

@@ -35,7 +35,7 @@ async def test_impatience_cancels(graph: Graph, caplog: pytest.LogCaptureFixture
     await graph.start(FibonacciServer(), FibonacciClient(order=40, patience=2.5))
     await graph.clock.advance(3.0)
 
-    assert caplog.messages[-2:] == ["That takes too long.", "No result: the goal of /fibonacci was cancelled"]
+    assert caplog.messages[-2:] == ["This takes too long.", "No result: the goal of /fibonacci was cancelled"]
 
 
 @pytest.mark.parametrize("order", [-1, 47])
