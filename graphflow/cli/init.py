@@ -97,9 +97,7 @@ def init(name: str) -> None:
     folder = Path(name)
     word = folder.name
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", word):
-        raise UsageFault(
-            f"{word!r}: a project's name has only lower-case letters, digits and single underscores, as in my_lab"
-        )
+        raise UsageFault(f"{word!r}: a project's name has only lower-case letters, digits and single _, as in my_lab")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
     for path, text in _FILES.items():

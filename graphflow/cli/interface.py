@@ -37,9 +37,7 @@ def show(type_name: str, no_comments: bool) -> None:
 
 
 @interface.command()
-@click.option(
-    "--output", "-o", "folder", default="typings", show_default=True, help="Folder in the project to write to."
-)
+@click.option("--output", "-o", "folder", default="typings", show_default=True, help="Folder, in the project.")
 def stubs(folder: str) -> int:
     """Write what editors and type checkers read about the project's own types. Repeat when a definition changes."""
     from graphflow.graph.project import project_root, shown

@@ -24,9 +24,7 @@ from graphflow.names import did_you_mean
 
 def _encrypted(text: str) -> str:
     if not endpoint(text).startswith("tls/"):
-        raise ValueError(
-            f"{text}: anyone who reaches this port could drive the robot; write tls/ and give certificates"
-        )
+        raise ValueError(f"{text}: anyone reaching this port could drive the robot; write tls/ and give certificates")
     return text
 
 

@@ -237,9 +237,7 @@ def action(
         if not (hook is None or isinstance(hook, bool) or inspect.isfunction(hook)):
             raise DeclarationError(f"{place}: @action: {word}= takes a method defined above it, not {hook!r}")
     if not cleanup_timeout > 0:
-        raise DeclarationError(
-            f"{place}: cleanup_timeout must be a number of seconds, more than 0, not {cleanup_timeout!r}"
-        )
+        raise DeclarationError(f"{place}: cleanup_timeout must be more than 0 seconds, not {cleanup_timeout!r}")
     options = ActionOptions(policy, accept, cancellable, on_client_loss, cleanup_timeout)
     handler = Handler("action", place, group, thread, type, name, action=options)
     return lambda fn: _mark(fn, handler, range(2, 3))

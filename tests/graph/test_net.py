@@ -44,7 +44,7 @@ def test_every_mistake_is_told_with_its_place(folder: Path) -> None:
         "listen: tcp/0.0.0.0:7448\nalow: []\ntls: {ca: ca.pem, certificate: own.pem, kee: own.key}\nallow: [turtle1]\n"
     )
     assert sorted(problems(folder, text)) == [
-        "1:9: tcp/0.0.0.0:7448: anyone who reaches this port could drive the robot; write tls/ and give certificates",
+        "1:9: tcp/0.0.0.0:7448: anyone reaching this port could drive the robot; write tls/ and give certificates",
         "2:1: unknown key 'alow'; did you mean 'allow'?",
         "3:41: unknown key 'kee'; did you mean 'key'?",
         "3:6: the key 'key' is missing",
