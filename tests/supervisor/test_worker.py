@@ -16,7 +16,7 @@ from graphflow.errors import GraphflowError, Place
 from graphflow.graph.plan import PlannedNode, Rule, Setting
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.supervisor import worker
-from graphflow.supervisor.worker import PIPE_BUF, PipeReport, SocketReport, _one_line, make_node
+from graphflow.supervisor.worker import PIPE_BUF, PipeReporter, SocketReporter, _one_line, make_node
 from graphflow.testing import Graph
 from nodes.talker import Talker
 from tests.conftest import Machine
@@ -99,7 +99,7 @@ def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
 def test_a_report_keeps_in_one_piece() -> None:
     """A pipe that many write to mixes lines that are longer: an error is cut, the rest is not."""
     read, write = os.pipe()
-    report = PipeReport(write)
+    report = PipeReporter(write)
     report.tell(event="ready", process="/a", node="/a")
     report.tell(event="failed", process="/a", error="x" * 10_000)
     os.close(write)
@@ -127,7 +127,7 @@ def until_it_has_listened() -> None:
 def test_a_worker_that_is_asked_to_stop(ends: list[int]) -> None:
     """It shows its token first; a line asks it to stop; when the line ends, so does it, at once."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        report = SocketReport(server.getsockname()[1], "secret", "/a")
+        report = SocketReporter(server.getsockname()[1], "secret", "/a")
         stopped = threading.Event()
         report.on_stop(stopped.set)
         connection, _ = server.accept()
@@ -148,7 +148,7 @@ def test_a_worker_that_is_asked_to_stop(ends: list[int]) -> None:
 def test_a_worker_that_was_asked_before_it_could_stop(ends: list[int]) -> None:
     """It stops as soon as it can."""
     with socket.create_server(("127.0.0.1", 0)) as server:
-        report = SocketReport(server.getsockname()[1], "secret", "/a")
+        report = SocketReporter(server.getsockname()[1], "secret", "/a")
         connection, _ = server.accept()
         with connection:
             connection.sendall(b'{"do": "stop"}\n')
