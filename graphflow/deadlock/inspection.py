@@ -63,7 +63,7 @@ class Inspection:
             try:
                 wanted = json.loads(request.payload)
                 answer = self._move(str(wanted["node"]), str(wanted["handler"]), str(wanted["group"]))
-            except (ValueError, KeyError, TypeError, GraphflowError) as error:
+            except (ValueError, KeyError, TypeError, RecursionError, GraphflowError) as error:
                 request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             else:
                 request.reply(json.dumps(answer).encode(), attachment.pack(0, 0, bytes(16)))

@@ -1,0 +1,165 @@
+"""What a process answers when it is asked for its waits and groups, or told to look, or to move a handler."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+
+from graphflow import Group, Node, service, subscription, timer
+from graphflow.deadlock.inspection import groups_of
+from graphflow.errors import RemoteError
+from graphflow.machines.wait_graph_json import from_json
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.runtime.node import core_of
+from graphflow.testing import Graph
+from graphflow.testing.clock import settle
+from graphflow.transport.base import Answer
+from graphflow.wire.process import GROUPS, LOOK, WAITS, answer_key
+from tests.deadlock.cast import say
+
+
+class Arm(Node):
+    """Has a group with two handlers, and a handler in none."""
+
+    node_name = "arm"
+    motion = Group(2, "drop_new", thread=False)
+
+    @subscription(String, "go", group=motion)
+    async def go(self, _: String) -> None:
+        await self.clock.sleep(100.0)
+
+    @service(Empty, "land", group=motion)
+    async def land(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+    @timer(1.0)
+    async def tick(self) -> None:
+        """Be quick."""
+
+
+async def start(graph: Graph) -> Arm:
+    node = Arm()
+    await graph.start(node)
+    return node
+
+
+def report(graph: Graph, node: Node, what: str) -> bytes:
+    """What a node's process answers."""
+    return graph.network.reports[answer_key(0, what, node.context.session.zid)]()
+
+
+async def ask(graph: Graph, node: Node, payload: bytes) -> Answer:
+    """Have a handler moved, as `graphflow groups` does."""
+    answers: list[Answer | None] = []
+    session = graph.network.session(asyncio.get_running_loop())
+    key = answer_key(0, GROUPS, node.context.session.zid)
+    session.open_caller(key, lambda: None).call(payload, b"", answers.append)
+    await settle()
+    [answer, end] = answers
+    assert answer is not None
+    assert end is None
+    return answer
+
+
+def wanted(**changes: object) -> bytes:
+    return json.dumps({"node": "/arm", "handler": "tick", "group": "motion", **changes}).encode()
+
+
+async def test_groups_and_their_handlers(graph: Graph) -> None:
+    """Each group with its limit and its handlers, and at the end the handlers of none; graphflow's own are left out."""
+    node = await start(graph)
+    await say(graph, "/go", "/go", "/go")
+    motion, rest = groups_of(core_of(node))
+
+    assert {key: value for key, value in motion.items() if key != "handlers"} == {
+        "name": "motion",
+        "limit": 2,
+        "when_full": "drop_new",
+        "thread": False,
+    }
+    assert motion["handlers"] == [
+        {"handler": "go", "kind": "subscription", "running": 2, "waiting": 0, "runs": 2, "errors": 0},
+        {"handler": "land", "kind": "service", "running": 0, "waiting": 0, "runs": 0, "errors": 0},
+    ]
+    assert (rest["name"], [each["handler"] for each in rest["handlers"]]) == ("", ["tick"])
+
+
+async def test_the_waits_of_a_process(graph: Graph) -> None:
+    """They are a picture that others can read, with all that is known of the process besides."""
+    node = await start(graph)
+    await say(graph, "/go")
+    told = json.loads(report(graph, node, WAITS))
+
+    [activity] = from_json(told).activities.values()
+    assert activity.label == "subscription go"
+    assert told["process"] == node.context.session.zid
+    assert told["nodes"] == {"/arm": groups_of(core_of(node))}
+    assert (told["reports"], told["stalls"]) == ([], [])
+    assert (told["blocked_for"], told["late"], told["longest"]) == (0.0, 0, 0.0)
+
+
+async def test_to_look_when_told(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It looks for deadlocks, and answers nothing."""
+    node = await start(graph)
+    looks: list[str] = []
+    monkeypatch.setattr(node.context.search, "look_now", lambda: looks.append("look"))
+
+    assert report(graph, node, LOOK) == b""
+    assert looks == ["look"]
+
+
+async def test_a_handler_that_is_moved(graph: Graph) -> None:
+    """It takes the other group's slots from then on; the answer has the groups as they are now."""
+    node = await start(graph)
+    answer = await ask(graph, node, wanted())
+
+    assert not answer.is_error
+    groups: list[dict[str, Any]] = json.loads(answer.payload)["groups"]
+    assert [each["handler"] for each in groups[0]["handlers"]] == ["go", "land", "tick"]
+    [tick] = [runner for runner in core_of(node).runners if runner.spec.handler == "tick"]
+    assert tick.group is core_of(node).groups.by_name["motion"]
+
+    await ask(graph, node, wanted(group="fresh"))
+    assert tick.group is core_of(node).groups.by_name["fresh"]
+    await ask(graph, node, wanted(group="none"))
+    assert tick.group is None
+
+
+@pytest.mark.parametrize(
+    ("payload", "kind", "words"),
+    [
+        (wanted(node="/leg"), "InvalidName", "there is no node /leg in this process"),
+        (wanted(handler="tock"), "InvalidName", "/arm has no handler 'tock'; did you mean 'tick'?"),
+        (wanted(handler="unheard_of"), "InvalidName", "/arm has no handler 'unheard_of'; there is go, land, tick"),
+        (wanted(group="two words"), "DeclarationError", "'two words' is no name for a group"),
+        (b"nonsense", "JSONDecodeError", ""),
+        (b"[]", "TypeError", ""),
+        (b'{"node": "/arm"}', "KeyError", "handler"),
+        (b"\xff", "UnicodeDecodeError", ""),
+        pytest.param(b"[" * 100_000, "RecursionError", "", id="too deep"),
+    ],
+)
+async def test_what_cannot_be_done(graph: Graph, payload: bytes, kind: str, words: str) -> None:
+    """The error is answered, and nothing has been moved."""
+    node = await start(graph)
+    before = groups_of(core_of(node))
+    answer = await ask(graph, node, payload)
+
+    assert answer.is_error
+    error = RemoteError.from_payload(answer.payload, "")
+    assert error.type == kind
+    assert words in str(error)
+    assert groups_of(core_of(node)) == before
+
+
+async def test_closing_it(graph: Graph) -> None:
+    """Nobody answers any more."""
+    node = await start(graph)
+    node.context._inspection.close()
+
+    assert graph.network.reports == {}
+    assert not any(graph.network.servers.get(answer_key(0, GROUPS, node.context.session.zid), []))
