@@ -1,4 +1,4 @@
-"""Groups that are kept for long, and processes that do not answer: said once, with what is to be done."""
+"""Groups that are kept for long: said once, with what is to be done."""
 
 from __future__ import annotations
 
@@ -95,40 +95,6 @@ async def test_a_deadlock_is_not_told_twice(graph: Graph, caplog: Caplog) -> Non
 
     assert len(reports(caplog)) == 1
     assert warnings(caplog) == []
-
-
-class Tower(Node):
-    node_name = "tower"
-
-    @service(Empty, "land")
-    async def on_land(self, request: Empty.Request) -> Empty.Response:
-        await self.clock.sleep(100.0)
-        return Empty.Response()
-
-
-class Caller(Node):
-    land = Client(Empty, "land")
-
-    @subscription(String, "go")
-    async def ask(self, _: String) -> None:
-        await self.land.call(Empty.Request(), timeout=None)  # asks
-
-
-async def test_a_process_that_does_not_answer(graph: Graph, caplog: Caplog) -> None:
-    """Who waits for it is told within two seconds and a half; and that it answers again."""
-    server = Tower()
-    await graph.start(server, Caller("caller"))
-    context = server.context
-    context.session.announce(process.token(context.domain, context.session.zid))
-    context._inspection.close()
-    await say(graph, "/go")
-    await graph.clock.advance(2.5)
-
-    [text] = warnings(caplog)
-    assert text.startswith(f"NODE UNRESPONSIVE: /tower (process {os.getpid()}) has not answered for 1.")
-    assert "subscription ask of /caller waits for /land   (test_stalls.py:" in text
-    await graph.clock.advance(20.0)
-    assert len(warnings(caplog)) == 1
 
 
 @pytest.mark.parametrize("text", ["", "a/b", "@graphflow/0/proc/z/0/x/host", "@graphflow/0/other/z/0/1/host"])

@@ -1,0 +1,110 @@
+"""Which code is the user's own, and what of an error or a stack points at it."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import sysconfig
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Any
+
+import pytest
+
+import graphflow
+from graphflow import names
+from graphflow.deadlock.user_code import innermost, is_users, place_in, users_part
+
+STDLIB = Path(sysconfig.get_path("stdlib"))
+OURS = Path(graphflow.__file__).parent
+
+
+@pytest.mark.parametrize(
+    ("file", "is_own"),
+    [
+        (__file__, True),
+        ("/home/me/arm.py", True),
+        ("<string>", True),
+        (str(STDLIB / "site-packages" / "numpy" / "core.py"), True),
+        (str(STDLIB / "asyncio" / "tasks.py"), False),
+        (str(OURS / "runtime" / "node.py"), False),
+        ("<frozen importlib._bootstrap>", False),
+    ],
+)
+def test_whose_file_it_is(file: str, is_own: bool) -> None:
+    """Neither graphflow's nor Python's own; installed packages count as the user's."""
+    assert is_users(file) is is_own
+
+
+def frames_inside() -> list[FrameType]:
+    """The stack, the outermost first, of a function that the standard library calls."""
+    found: list[FrameType] = []
+
+    def called(_: object) -> str:
+        frame: FrameType | None = sys._getframe()
+        while frame is not None:
+            found.insert(0, frame)
+            frame = frame.f_back
+        return ""
+
+    re.sub("a", called, "a")
+    return found
+
+
+def test_the_innermost_line_of_the_users() -> None:
+    """It is the last of the frames that is in a file of the user's."""
+    frames = frames_inside()
+    library = [frame for frame in frames if not is_users(frame.f_code.co_filename)]
+    assert library
+
+    assert innermost(frames) is frames[-1]
+    assert innermost([*frames, library[0]]) is frames[-1]
+    assert innermost(library) is None
+    assert innermost([]) is None
+
+
+def raised_in_the_library() -> Exception:
+    """An error that Python's own code raises when this file calls it."""
+    try:
+        json.loads("nonsense")
+    except ValueError as error:
+        return error
+    raise AssertionError
+
+
+def test_the_place_of_an_error() -> None:
+    """It is the last of the user's own lines that it passed through; an error that was never raised has none."""
+    line = raised_in_the_library.__code__.co_firstlineno + 3
+
+    assert place_in(raised_in_the_library()) == f"{__file__}:{line}"
+    assert place_in(ValueError()) == ""
+
+
+def names_that_fail() -> Iterator[str]:
+    raise ValueError
+    yield "not reached"
+
+
+def traceback_of(choices: Iterable[Any]) -> TracebackType | None:
+    """Where an error passed through that begins in graphflow, with these."""
+    with pytest.raises((ValueError, TypeError)) as caught:
+        names.did_you_mean("word", choices)
+    error = caught.value
+    assert error.__traceback__ is not None
+    error.__traceback__ = error.__traceback__.tb_next  # as where graphflow was not called by this test
+    found = users_part(error)
+    assert (found is error.__traceback__) is (found is None or found.tb_frame.f_code.co_filename == names.__file__)
+    return found
+
+
+def test_the_users_part_of_a_traceback() -> None:
+    """The frames of graphflow with which it begins are left out; what is graphflow's alone is left whole."""
+    called, alone = traceback_of(names_that_fail()), traceback_of([object(), object()])
+
+    assert called is not None
+    assert called.tb_frame.f_code is names_that_fail.__code__
+    assert alone is not None
+    assert alone.tb_frame.f_code is names.did_you_mean.__code__
+    assert users_part(ValueError()) is None

@@ -1,0 +1,133 @@
+"""The watch over an event loop: one that idles is left alone, one that is busy is rung, one that is stuck is told.
+
+A test blocks the loop itself, until the watching thread has done what it waits for.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from graphflow.deadlock import watchdog as module
+from graphflow.deadlock.watchdog import Watchdog
+
+LIMIT = 30.0
+"""Seconds that the watching thread gets to do anything."""
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Everything happens a hundred times as soon."""
+    monkeypatch.setattr(module, "LOOK_EVERY", 0.005)
+    monkeypatch.setattr(module, "ANSWER_WITHIN", 0.001)
+    monkeypatch.setattr(module, "REPORT_AFTER", 0.01)
+
+
+class Watched:
+    """The loop of a test under watch."""
+
+    def __init__(self) -> None:
+        self.seen = threading.Semaphore(0)
+        self.watchdog = Watchdog(asyncio.get_running_loop(), self.seen.release)
+
+    def block(self, times: int) -> None:
+        """Keep the loop until so many calls have told that it is blocked."""
+        for _ in range(times):
+            assert self.seen.acquire(timeout=LIMIT)
+
+
+@pytest.fixture
+def watched(graphflow_runner: asyncio.Runner) -> Iterator[Watched]:
+    async def made() -> Watched:
+        return Watched()
+
+    it = graphflow_runner.run(made())
+    yield it
+    it.watchdog.close()
+
+
+async def until(condition: Callable[[], bool]) -> None:
+    """Let the loop go on until the watching thread has come so far."""
+    while not condition():
+        await asyncio.sleep(0)
+
+
+async def test_a_blocked_loop(graphflow_runner: asyncio.Runner, watched: Watched) -> None:
+    """It is told again and again while it lasts, is late once, and is known for as long as it was."""
+    watchdog = watched.watchdog
+    watchdog.start()
+    watched.block(times=3)
+    assert watchdog.is_blocked
+    assert watchdog.blocked_for > module.ANSWER_WITHIN
+    await until(lambda: watchdog.late > 0)
+
+    assert watchdog.longest > 3 * module.ANSWER_WITHIN
+    await until(lambda: not watchdog.is_blocked)
+
+
+async def test_the_report_of_a_blocked_loop(
+    graphflow_runner: asyncio.Runner, watched: Watched, caplog: pytest.LogCaptureFixture
+) -> None:
+    """After a while the stack is told, with the line that blocks it, once; and then that it goes on."""
+
+    def told() -> list[str]:
+        return [r.getMessage() for r in caplog.records if r.levelno >= logging.WARNING and "event loop" in r.message]
+
+    watched.watchdog.start()
+    while not told():
+        watched.block(times=1)  # here
+    watched.block(times=5)
+    await until(lambda: len(told()) > 1)
+
+    first, second, *_ = told()
+    assert first.startswith("the event loop is blocked since 0.")
+    assert "await self.offload(...)" in first
+    assert "watched.block(times=1)  # here" in first
+    assert second.startswith("the event loop goes on after ")
+
+
+async def test_what_counts_as_busy(graphflow_runner: asyncio.Runner, watched: Watched) -> None:
+    """A loop whose thread is anywhere but in its selector; one that only waits is left alone."""
+    is_busy = watched.watchdog._is_busy
+
+    def until_it_idles() -> str:
+        while is_busy():
+            """Look again."""
+        return "idle"
+
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(is_busy).result(LIMIT)  # this line keeps it
+    assert await asyncio.to_thread(until_it_idles) == "idle"
+
+
+async def test_before_it_looks(graphflow_runner: asyncio.Runner, watched: Watched) -> None:
+    """A loop that was never rung is not blocked."""
+    assert (watched.watchdog.blocked_for, watched.watchdog.is_blocked) == (0.0, False)
+    assert (watched.watchdog.late, watched.watchdog.longest) == (0, 0.0)
+
+
+def test_a_loop_that_does_not_run() -> None:
+    """Whoever runs it has stopped, and may go on later: it is not busy; one that is closed cannot be rung."""
+    loop = asyncio.new_event_loop()
+    told: list[object] = []
+    watchdog = Watchdog(loop, lambda: told.append(None))
+
+    assert not watchdog._is_busy()
+    loop.close()
+    watchdog._ring_and_wait()
+    assert (told, watchdog.is_blocked, watchdog.late) == ([], False, 0)
+
+
+async def test_closing_it(graphflow_runner: asyncio.Runner, watched: Watched) -> None:
+    """The watching thread ends, also while the loop is blocked."""
+    watched.watchdog.start()
+    watched.block(times=1)
+    watched.watchdog.close()
+    watched.watchdog._thread.join(LIMIT)
+
+    assert not watched.watchdog._thread.is_alive()
