@@ -7,6 +7,7 @@ from asyncio import AbstractEventLoop
 from collections import deque
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
 from graphflow.executor.groups import Groups, HandlerGroup
@@ -22,7 +23,7 @@ class Actor:
     """A node."""
 
     full_name: str = "/robot"
-    instance: object = None
+    instance: object = field(default_factory=SimpleNamespace)
     runners: list[Runner] = field(default_factory=list)
     tasks: set[asyncio.Task[Any]] = field(default_factory=set)
     groups: Groups = field(default_factory=lambda: Groups({}, None, {}))
@@ -55,7 +56,7 @@ class Stage:
 
     def actor(self, instance: object = None, name: str = "/robot") -> Actor:
         """A node of this process."""
-        made = Actor(name, instance)
+        made = Actor(name) if instance is None else Actor(name, instance)
         self.actors.append(made)
         return made
 
