@@ -270,10 +270,11 @@ class _Question:
         for use in self._source.foreign(name):
             if use.kind in ("assigned", "changed") or (known and use.kind not in ("read", "part")):
                 raise Unknown
+        for use in (*self._source.foreign(name), *self._source.uses(name)):
+            if isinstance(value, CONTAINERS) and use.kind == "part" and use.name:  # its `append`, for others to call
+                raise Unknown
         for use in self._source.uses(name):
             if known and (use.kind in ("given", "invoked") or not _is_new(use, _CONTAINER_MAKERS)):
-                raise Unknown
-            if isinstance(value, CONTAINERS) and use.kind == "part" and use.name:  # its `append`, for others to call
                 raise Unknown
             if isinstance(value, (*arrays(), Message)) and _has_second_name(use, value):
                 raise Unknown

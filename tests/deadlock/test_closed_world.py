@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import textwrap
 from typing import Any
 
 import pytest
@@ -45,11 +46,15 @@ class N:
 
 
 class Scene:
-    """A node whose `on_go` waits, with handlers, a timer and a task, all that its source names as one."""
+    """A node whose `on_go` waits, with handlers, a timer and a task, all that its source names as one.
+
+    Args:
+        body: Methods; and behind two empty lines, what stands beside the class.
+    """
 
     def __init__(self, written: Written, body: str) -> None:
-        lines = "\n".join(f"    {line}" if line else "" for line in body.strip("\n").splitlines())
-        self.node: Any = written(TEXT.replace("{body}", lines)).N()
+        inside, _, beside = body.partition("\n\n\n")
+        self.node: Any = written(TEXT.replace("{body}", textwrap.indent(inside, "    ")) + beside).N()
         self.stage = Stage()
         self.actor: Actor = self.stage.actor(self.node)
         for name in ("on_go", "on_arrive", "on_leave"):
@@ -147,7 +152,7 @@ async def test_who_sets_an_event(
         pytest.param("def note(self): self.arrived.set()", id="a method that nobody is seen to call"),
         pytest.param("def check(self): self.arrived.set()", id="a hook"),
         pytest.param(f"{ARRIVE}\ndef on_leave(self): keep(self.on_arrive)", id="the handler is given away"),
-        pytest.param(f"{ARRIVE}\n\ndef outside(n):\n    n.arrived.set()", id="another object's"),
+        pytest.param(f"{ARRIVE}\n\n\ndef outside(n):\n    n.arrived.set()", id="another object's"),
     ],
 )
 async def test_waits_of_which_nothing_is_known(graphflow_runner: asyncio.Runner, written: Written, body: str) -> None:
@@ -160,7 +165,7 @@ async def test_waits_of_which_nothing_is_known(graphflow_runner: asyncio.Runner,
     [
         ("def on_arrive(self): self.there = True", True),
         ("def on_arrive(self): self.there = False", False),
-        ("def on_arrive(self):\n    self.there = True\ndef outside(n):\n    n.there = True", False),
+        ("def on_arrive(self):\n    self.there = True\n\n\ndef outside(n):\n    n.there = True", False),
         ("def on_arrive(self): keep(lambda: setattr(self, 'there', True))", False),
         ("def on_arrive(self): self.note()\ndef note(self): self.there = True", True),
     ],
@@ -202,6 +207,8 @@ async def test_a_container_that_others_know(graphflow_runner: asyncio.Runner, wr
 
     assert await Scene(written, f"{poll}\n{fills}").found() is not None
     assert await Scene(written, f"{poll}\n{fills}\ndef on_leave(self): keep({value})").found() is None
+    elsewhere = f"\n\n\nclass Other:\n    def go(self, n): keep({value.replace('self', 'n')})"
+    assert await Scene(written, f"{poll}\n{fills}{elsewhere}").found() is None
 
 
 @pytest.mark.parametrize(("is_bounded", "what"), [(False, "self.arrived"), (True, "self.there")])

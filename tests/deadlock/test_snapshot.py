@@ -306,7 +306,7 @@ async def test_times(
             async with scene.stage.clock.timeout(limit):
                 await scene.add(7, deadline_ns)
 
-    await scene.view_of(body)
+    await begin(scene.stage.handler(scene.actor, "on_go", lambda _: body()), "message")
     await scene.stage.clock.advance(2.0)
     [view] = scene.snapshot.take().activities.values()
 

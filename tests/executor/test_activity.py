@@ -384,6 +384,27 @@ async def test_cancelled_at_each_of_its_awaits(graphflow_runner: asyncio.Runner)
         assert run.done()
 
 
+async def test_what_is_said_of_cancellations(graphflow_runner: asyncio.Runner) -> None:
+    """Each that was asked for counts, until it is taken back or the activity has ended."""
+
+    async def body() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            await asyncio.Event().wait()
+
+    run, _ = activity(body())
+    await begin(run)
+    assert (run.cancelling(), run.uncancel()) == (0, 0)
+    assert run.cancel()
+    await settle()
+    assert (run.cancelling(), run.uncancel(), run.cancelling()) == (1, 0, 0)
+    assert run.cancel()
+    await settle()
+    assert run.done()
+    assert not run.cancel()
+
+
 async def test_cancelled_in_its_finally(graphflow_runner: asyncio.Runner) -> None:
     """A second cancellation interrupts the cleanup at its await."""
     log: list[str] = []
