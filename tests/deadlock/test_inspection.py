@@ -14,7 +14,7 @@ from graphflow.errors import RemoteError
 from graphflow.machines.wait_graph_json import from_json
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
-from graphflow.runtime.node import core_of
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.clock import settle
 from graphflow.transport.base import Answer

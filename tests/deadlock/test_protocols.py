@@ -7,10 +7,11 @@ import inspect
 
 import pytest
 
-from graphflow.deadlock.protocols import Process, Subject
+from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.search import Search
 from graphflow.machines.wait_graph import FREE
-from graphflow.runtime.node import Node, core_of
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node import Node
 from graphflow.testing import Graph
 from tests.deadlock.stage import Stage, begin
 
@@ -25,12 +26,12 @@ async def test_what_the_runtime_has(graph: Graph) -> None:
     node = Node("n")
     await graph.start(node)
     subject: Subject = core_of(node)
-    process: Process = node.context
+    process: Surroundings = node.context
 
     assert len(names_of(Subject)) == 7
-    assert len(names_of(Process)) == 9
+    assert len(names_of(Surroundings)) == 9
     assert [name for name in names_of(Subject) if not hasattr(subject, name)] == []
-    assert [name for name in names_of(Process) if not hasattr(process, name)] == []
+    assert [name for name in names_of(Surroundings) if not hasattr(process, name)] == []
     assert list(process.nodes) == [subject]
 
 
