@@ -135,7 +135,7 @@ async def test_a_handler_that_is_moved(graph: Graph) -> None:
         (wanted(node="/leg"), "InvalidName", "there is no node /leg in this process"),
         (wanted(handler="tock"), "InvalidName", "/arm has no handler 'tock'; did you mean 'tick'?"),
         (wanted(handler="unheard_of"), "InvalidName", "/arm has no handler 'unheard_of'; there is go, land, tick"),
-        (wanted(group="two words"), "DeclarationError", "'two words' is no name for a group"),
+        (wanted(group="two words"), "DeclarationError", "'two words' is not a group name"),
         (b"nonsense", "JSONDecodeError", ""),
         (b"[]", "TypeError", ""),
         (b'{"node": "/arm"}', "KeyError", "handler"),

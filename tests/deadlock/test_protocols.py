@@ -26,13 +26,13 @@ async def test_what_the_runtime_has(graph: Graph) -> None:
     node = Node("n")
     await graph.start(node)
     subject: Subject = core_of(node)
-    process: Surroundings = node.context
+    surroundings: Surroundings = node.context
 
     assert len(names_of(Subject)) == 7
     assert len(names_of(Surroundings)) == 9
     assert [name for name in names_of(Subject) if not hasattr(subject, name)] == []
-    assert [name for name in names_of(Surroundings) if not hasattr(process, name)] == []
-    assert list(process.nodes) == [subject]
+    assert [name for name in names_of(Surroundings) if not hasattr(surroundings, name)] == []
+    assert list(surroundings.nodes) == [subject]
 
 
 async def test_what_is_enough(graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture) -> None:

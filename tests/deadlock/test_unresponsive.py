@@ -122,7 +122,7 @@ async def test_silence_between_two_questions(graphflow_runner: asyncio.Runner, c
     [text] = warnings(caplog)
     assert text.startswith(
         f"NODE UNRESPONSIVE: /tower (process {os.getpid()}) has not answered for 1.0 s, "
-        "and subscription ask of /caller waits for /land   (since 0.00 s): it is stopped, or something holds"
+        "and subscription ask of /caller waits for /land   (for 0.00 s): it is stopped, or something holds"
     )
     await scene.ask("abc")
     assert warnings(caplog)[1:] == [f"/tower (process {os.getpid()}) answers again"]

@@ -85,7 +85,7 @@ async def test_the_report_of_a_blocked_loop(
     await until(lambda: len(told()) > 1)
 
     first, second, *_ = told()
-    assert first.startswith("the event loop is blocked since 0.")
+    assert first.startswith("the event loop has been blocked for 0.")
     assert "await self.offload(...)" in first
     assert "watched.block(times=1)  # here" in first
     assert second.startswith("the event loop goes on after ")
