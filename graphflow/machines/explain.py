@@ -38,8 +38,8 @@ def stall(
         dropped: How many items each queue had dropped before.
     """
     who = " and ".join(title(a) + "".join(f" ({place})" for place in _place(a)) for a in holders)
-    slots = f"have kept all {len(holders)} slots of group '{group.name}' of {group.node}"
-    kept = slots if len(holders) > 1 else f"has kept {_slot(group)}"
+    slots = f"have held all {len(holders)} slots of group '{group.name}' of {group.node}"
+    kept = slots if len(holders) > 1 else f"has held {_slot(group)}"
     lines = [f"STALL: {who} {kept} for more than {seconds:.1f} s"]
     for queue in waiting:
         lost = queue.dropped - dropped.get(queue.id, 0)

@@ -30,7 +30,7 @@ def test_a_name_is_a_bundled_graph(
     monkeypatch.chdir(tmp_path)
     found = find_graph(name)
     assert found == PROJECT / "graphs" / f"{name.removesuffix('.yaml')}.yaml"
-    assert capsys.readouterr().err == f"{name}: the one that comes with graphflow, {found}\n"
+    assert capsys.readouterr().err == f"{name}: using the one that comes with graphflow, {found}\n"
 
 
 def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -107,7 +107,7 @@ def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> N
 
     text = machine.look("param", "load", "/robot", str(tmp_path / "p.yaml"))
     assert "Set parameter title successful" in text
-    assert "Parameter fixed is read-only, and has this value" in text
+    assert "Parameter fixed is read-only and already has this value" in text
     assert machine.look("param", "dump", "/robot") == DUMP
 
 

@@ -40,7 +40,7 @@ def test_call(standing: Machine) -> None:
     ("words", "code", "told"),
     [
         ([ADD], 2, f"error: TYPE is missing; {ADD} is a {TYPE}: graphflow service call {ADD} {TYPE}"),
-        (["/office/clerk/ad"], 1, f"nobody offers the service /office/clerk/ad; did you mean '{ADD}'?"),
+        (["/office/clerk/ad"], 1, f"no node offers the service /office/clerk/ad; did you mean '{ADD}'?"),
         ([ADD, "std_srvs/srv/Trigger"], 2, f"error: {ADD} is a {TYPE}, not a std_srvs/srv/Trigger"),
         ([ADD, TYPE, "{a: -1}"], 1, f"the handler of {ADD} raised ValueError: no debts"),
         ([ADD, TYPE, "{a: x}"], 2, "AddTwoInts_Request.a: expected int64, got 'x'"),
@@ -56,8 +56,8 @@ def test_a_call_that_fails(standing: Machine, words: list[str], code: int, told:
 
 def test_a_service_is_waited_for(standing: Machine) -> None:
     """Who offers nothing yet may do so soon: it says that it waits, until the time is over."""
-    text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=4)
-    assert text.startswith("waiting for service to become available...\nerror: nobody offers the service")
+    text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=1)
+    assert text.startswith("waiting for service to become available...\nerror: no node offers the service")
 
 
 def test_a_call_that_is_repeated(standing: Machine) -> None:

@@ -97,12 +97,12 @@ def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
         (
             {"event": "exited", "unexpected": True, "nodes": ["/a", "/b"], "pid": 5, "how": "SIGKILL", "error": "",
              "log": "a.log"},
-            "error: /a, /b has died, process 5, SIGKILL\n  its log: a.log\n",
+            "error: /a, /b died, process 5, SIGKILL\n  its log: a.log\n",
         ),
         (
             {"event": "exited", "unexpected": True, "nodes": ["/a"], "pid": 5, "how": "exit code 70", "error": "no way",
              "log": "a.log"},
-            "error: /a has died, process 5, exit code 70: no way\n  its log: a.log\n",
+            "error: /a died, process 5, exit code 70: no way\n  its log: a.log\n",
         ),
     ],
 )  # fmt: skip

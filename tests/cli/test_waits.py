@@ -25,13 +25,13 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
     up = lab.up(ring_of("ab"))
     wait_for_all(up, at_it("ab"))
     assert run("doctor") == "2 nodes, nothing wrong\n"
-    assert "timer ask of /a, holds 'work': runs" in run("waits")
+    assert "timer ask of /a, holds 'work': running" in run("waits")
 
     lab.open_gates("a", "b")
     wait_for_ring(up, "ab")
     shown = run("waits")
     for name, other in ("ab", "ba"):
-        assert f"! timer ask of /{name}, holds 'work': waits for the answer of /{other}/answer since " in shown
+        assert f"! timer ask of /{name}, holds 'work': waiting for the response of /{other}/answer, " in shown
         assert f"service answer of /{name} is queued for group 'work', held by timer ask of /{name}: 1 wait" in shown
     assert shown.count(f"ring.py:{line_of('stuck: Member')} in toil") == 4  # two waits, and two in the report
     assert "DEADLOCK: 2 callbacks wait for each other in a ring" in shown
@@ -43,7 +43,7 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
 
     run("groups", "move", "/b", "answer", "answers")
     up.wait_for("has cleared")
-    assert run("waits") == "nobody waits\n"
+    assert run("waits") == "nothing is waiting\n"
     assert run("doctor") == "2 nodes, nothing wrong\n"
     assert up.end() == 0
 
@@ -67,7 +67,7 @@ STANDING_FAULT = "/office/minutes: the publisher of /office/clerk offers less th
 
 def test_a_graph_in_which_nobody_waits(standing: Machine) -> None:
     """It is said, and for programs every list is empty."""
-    assert standing.look("waits") == "nobody waits\n"
+    assert standing.look("waits") == "nothing is waiting\n"
     found = json.loads(standing.look("waits", "--json"))
     assert found == {"activities": [], "queued": [], "deadlocks": [], "stalls": [], "unresponsive": []}
 

@@ -229,7 +229,7 @@ class Report(NamedTuple):
 
 FORESEEN = re.compile("Mishap|TaskGroup")
 """Errors that are meant to happen."""
-STUMBLED = re.compile("LIKELY DEADLOCK|the search for deadlocks|a picture of waits that cannot be read")
+STUMBLED = re.compile("LIKELY DEADLOCK|the search for deadlocks|a snapshot of waits that cannot be read")
 """What is not meant to be said, at whatever level."""
 
 

@@ -290,7 +290,7 @@ async def test_awaiting_something_foreign_is_an_error_there(graphflow_runner: as
             return str(error)
         return "?"
 
-    assert await outcome(body) == "activity awaited 'something', which is nothing asyncio knows"
+    assert await outcome(body) == "activity awaited 'something', which asyncio cannot await"
 
 
 async def test_awaiting_what_belongs_to_another_loop(graphflow_runner: asyncio.Runner) -> None:

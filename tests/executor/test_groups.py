@@ -263,7 +263,7 @@ def test_what_a_graph_file_changes(change: GroupChange, limit: int | None, when_
 
 def test_a_handler_in_two_groups() -> None:
     """It can be in one."""
-    with pytest.raises(DeclarationError, match="on_go is put into two groups, 'motion' and 'sense'"):
+    with pytest.raises(DeclarationError, match="on_go is put in two groups, 'motion' and 'sense'"):
         groups(motion=GroupChange(("on_go",)), sense=GroupChange(("on_go",)))
 
 
@@ -272,7 +272,7 @@ def test_a_handler_that_there_is_not() -> None:
     made, _ = groups(motion=GroupChange(("on_goo",)))
     made.place("on_go", None)
 
-    with pytest.raises(DeclarationError, match=r"group 'motion' names 'on_goo', which is no handler .*on_go"):
+    with pytest.raises(DeclarationError, match=r"group 'motion' names 'on_goo', which is not a handler .*on_go"):
         made.refuse_strays()
     made.place("on_goo", None)
     made.refuse_strays()
@@ -296,5 +296,5 @@ def test_a_group_by_its_name() -> None:
     assert made.named("motion") is made.by_name["motion"]
     assert made.named("fresh") is made.named("fresh") is made.by_name["fresh"]
     assert made.named(NO_GROUP) is None
-    with pytest.raises(DeclarationError, match="'two words' is no name for a group"):
+    with pytest.raises(DeclarationError, match="'two words' is not a group name"):
         made.named("two words")

@@ -357,10 +357,10 @@ steps:
 """.replace("5,", "'5',")
     ) == [
         "2:3: '/a-b' is not a node name: 'a-b' may have only letters, digits and _, and may not begin with a digit",
-        "3:28: parameter 'p' has no value; an empty text is ''",
-        "3:37: parameter 'q.r' has no value; an empty text is ''",
+        "3:28: parameter 'p' has no value; an empty string is ''",
+        "3:37: parameter 'q.r' has no value; an empty string is ''",
         "4:30: '/5' is not a namespace: '5' may have only letters, digits and _, and may not begin with a digit",
-        "5:3: there are two nodes /c; the other is in line 3",
+        "5:3: there are two nodes /c; the other is on line 3",
         "7:13: 'x y' is not a topic or service name: 'x y' may have only letters, digits and _, and may not begin with "
         "a digit",
         "8:28: after: there is no node or step 'ss'; did you mean 's'?",

@@ -105,7 +105,7 @@ def wait_for_ring(up: Program, names: str) -> None:
     line = f"{at('stuck: Member')}toil, since "
     for name, other in zip(names, names[1:] + names[0], strict=True):
         up.wait_for(
-            f"timer ask of /{name} holds group 'work' and waits for the answer of service /{other}/answer   {line}"
+            f"timer ask of /{name} holds group 'work' and waits for the response of service /{other}/answer   {line}"
         )
         up.wait_for(f"service answer of /{other} waits for group 'work' of /{other}, which timer ask of /{other} holds")
     up.wait_for("release the slot while waiting, in ring.py:")

@@ -83,7 +83,7 @@ WRITTEN = {
     "a call from a thread": Written(
         "advice/call_from_thread.py",
         in_ring(2),
-        "timer move of /arm holds group 'serial_port' and waits for the answer of service /safety/check",
+        "timer move of /arm holds group 'serial_port' and waits for the response of service /safety/check",
         "move",
         "/arm: {concurrency: {position_group: [position]}}",
         "[arm]: moved to 0.5",
@@ -101,7 +101,7 @@ WRITTEN = {
     "helpers, in one process": Written(
         "advice/nested_calls.py",
         in_ring(2),
-        "timer launch of /rocket holds group 'default_group' and waits for the answer of service /tower/clear",
+        "timer launch of /rocket holds group 'default_group' and waits for the response of service /tower/clear",
         "ask_tower",
         "/rocket: {concurrency: {status_group: [status]}}",
         "[rocket]: lift-off",
@@ -120,7 +120,7 @@ WRITTEN = {
     "services of one name": Written(
         "advice/same_name.py",
         in_ring(2),
-        "timer look_around of /arm holds group 'default_group' and waits for the answer of service /camera/status",
+        "timer look_around of /arm holds group 'default_group' and waits for the response of service /camera/status",
         "look_around",
         "/arm: {concurrency: {status_group: [status]}}",
         "[arm]: all well",
@@ -191,6 +191,6 @@ def test_the_line_of_a_lock(lab: Lab) -> None:
     up = lab.up({"/bank": "class: nodes.student:Bank", "/auditor": "class: nodes.student:Auditor"})
     up.wait_for(in_ring(3, "LIKELY DEADLOCK"))
     up.wait_for("service balance of /bank waits for self.vault   (student.py:")
-    up.wait_for(f"leave self.vault before what is awaited in student.py:{line_of('stuck', 'advice/lock.py')}")
+    up.wait_for(f"leave self.vault before the await in student.py:{line_of('stuck', 'advice/lock.py')}")
     assert up.end() == 0
     assert "concurrency:" not in up.text

@@ -210,7 +210,10 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     up = machine.start("up", str(FOLDER / "arrival_broken.yaml"))
     up.wait_for("DEADLOCK: 2 callbacks")
     shown = machine.look("waits")
-    assert "! timer control of /turtle1/follower, holds 'all': waits for the answer of /turtle1/notify_arrival" in shown
+    assert (
+        "! timer control of /turtle1/follower, holds 'all': waiting for the response of /turtle1/notify_arrival"
+        in shown
+    )
     assert "service set_goal of /turtle1/follower is queued for group 'all', held by timer control" in shown
     assert "DEADLOCK: 2 callbacks wait for each other in a ring" in machine.look("doctor", code=1)
     assert "all  (limit 1)\n    set_goal  service  1 runs, 1 waiting" in machine.look("groups", "/turtle1/follower")
@@ -220,7 +223,7 @@ def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     assert "  /turtle1/follower: {concurrency: {goals: [set_goal, enable]}}" in told
     up.wait_for("the deadlock of")
     up.wait_for("has cleared")
-    machine.until(lambda: machine.look("waits") == "nobody waits\n", "the waits are over")
+    machine.until(lambda: machine.look("waits") == "nothing is waiting\n", "the waits are over")
     assert "nothing wrong" in machine.look("doctor")
     assert "did you mean 'enable'?" in machine.look("groups", "move", "/turtle1/follower", "enabl", "x", code=2)
     assert up.end() == 0

@@ -38,7 +38,7 @@ def test_a_member_that_is_cancelled(lab: Lab) -> None:
 
     lab.call("/a/give_up")
     wait_for_all(up, [*answered("ab"), "has cleared"])
-    assert lab.machine.look("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nothing is waiting\n"
     assert up.end() == 0
     assert len(reports(up.text)) == 1
 
@@ -69,7 +69,7 @@ def test_kill_minus_9_of_a_member(lab: Lab, is_reporter: bool) -> None:
     os.kill(lab.pids()[f"/{dead}"], signal.SIGKILL)
     wait_for_all(up, [f"[{before}]: ServerLost: the server of /{dead}/answer went away", *answered(last)])
     up.wait_for("has cleared")
-    assert lab.machine.look("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nothing is waiting\n"
     assert "nothing wrong" in lab.machine.look("doctor")
     assert up.end() == 1
     assert len(reports(up.text)) == 1
@@ -87,7 +87,7 @@ def test_a_stopped_process_is_no_member(lab: Lab) -> None:
     told = lab.machine.look("doctor", code=1)
     assert told == f"NODE UNRESPONSIVE: /b (process {pid}) did not answer: it is stopped: kill -CONT {pid}\n"
     up.wait_for(f"NODE UNRESPONSIVE: /b (process {pid}) has not answered for 1.")
-    assert "  timer ask of /a, holds 'work': waits for the answer of /b/answer" in lab.machine.look("waits")
+    assert "  timer ask of /a, holds 'work': waiting for the response of /b/answer" in lab.machine.look("waits")
     assert reports(up.text) == []
 
     os.kill(pid, signal.SIGCONT)
@@ -131,12 +131,12 @@ def let_go(lab: Lab) -> None:
 def test_a_loop_that_is_held(lab: Lab) -> None:
     """The watchdog tells it, with the line; who waits for that process is in no deadlock (row 22)."""
     up = hold(lab, "Sleepy")
-    up.wait_for("[graphflow]: the event loop is blocked since 1.")
+    up.wait_for("[graphflow]: the event loop has been blocked for 1.")
     up.wait_for(f'ring.py", line {line_of("held: Sleepy")}, in hold')
 
     let_go(lab)
     wait_for_all(up, [*answered("a"), "the event loop goes on after"])
-    assert "/b: the event loop was late 1 times, by " in lab.machine.look("doctor")
+    assert "/b: the event loop was late once, by " in lab.machine.look("doctor")
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -144,8 +144,8 @@ def test_a_loop_that_is_held(lab: Lab) -> None:
 def test_the_doctor_sees_a_loop_that_is_held(lab: Lab) -> None:
     """What the log tells, `doctor` tells too."""
     up = hold(lab, "Sleepy")
-    up.wait_for("[graphflow]: the event loop is blocked since 1.")
-    assert "/b: the event loop is blocked since " in lab.machine.look("doctor", code=1)
+    up.wait_for("[graphflow]: the event loop has been blocked for 1.")
+    assert "/b: the event loop has been blocked for " in lab.machine.look("doctor", code=1)
     let_go(lab)
 
 
@@ -161,8 +161,8 @@ def test_an_interpreter_that_is_held(lab: Lab) -> None:
     up.wait_for(f'ring.py", line {line_of("held: Greedy")} in hold')
 
     let_go(lab)
-    wait_for_all(up, [*answered("a"), "nothing of this process could run for "])
-    assert lab.machine.look("waits") == "nobody waits\n"
+    wait_for_all(up, [*answered("a"), "nothing in this process could run for "])
+    assert lab.machine.look("waits") == "nothing is waiting\n"
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -175,10 +175,10 @@ def test_a_ring_through_the_result_of_an_action(lab: Lab) -> None:
     lab.open_gates("a")
     up.wait_for("DEADLOCK: 2 callbacks wait for each other in a ring")
     up.wait_for(f"group 'work' and waits for the result of action /order   {at('stuck: Customer')}toil")
-    up.wait_for(f"action deliver of /b waits for the answer of service /a/answer   {at('stuck: Courier')}deliver")
+    up.wait_for(f"action deliver of /b waits for the response of service /a/answer   {at('stuck: Courier')}deliver")
 
     lab.call("/a/give_up")
     wait_for_all(up, ["[a]: cancelled", "has cleared"])
-    assert lab.machine.look("waits") == "nobody waits\n"
+    assert lab.machine.look("waits") == "nothing is waiting\n"
     assert up.end() == 0
     assert len(reports(up.text)) == 1

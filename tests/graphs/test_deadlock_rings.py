@@ -95,8 +95,8 @@ def test_a_chain_that_comes_back_to_its_caller_is_reported(lab: Lab) -> None:
     wait_for_all(up, at_it("a"))
     lab.open_gates("a")
     up.wait_for("DEADLOCK: 2 callbacks wait for each other in a ring")
-    up.wait_for(f"service answer of /b waits for the answer of service /a/answer   {at('stuck: Echo')}answer")
-    up.wait_for(f"holds group 'work' and waits for the answer of service /b/answer   {at('stuck: Member')}toil")
+    up.wait_for(f"service answer of /b waits for the response of service /a/answer   {at('stuck: Echo')}answer")
+    up.wait_for(f"holds group 'work' and waits for the response of service /b/answer   {at('stuck: Member')}toil")
     assert up.end() == 0
     assert len(reports(up.text)) == 1
 
@@ -108,7 +108,7 @@ def test_what_takes_long_lives(lab: Lab) -> None:
     lab.open_gates("a", "b")
     wait_for_all(up, ["[slow]: serves", "[a]: asks", "[b]: asks"])
     shown = lab.machine.look("waits")
-    assert "  timer ask of /a, holds 'work': waits for the answer of /slow/answer" in shown
+    assert "  timer ask of /a, holds 'work': waiting for the response of /slow/answer" in shown
     assert "!" not in shown
     assert lab.machine.look("doctor") == "3 nodes, nothing wrong\n"
 
@@ -122,10 +122,10 @@ def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     """It is told, shown and found by the blocked process itself; a thread of its own ends it (row 17)."""
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
     up.wait_for("DEADLOCK: one callback waits for itself")
-    up.wait_for("timer ask of /a blocks the event loop and waits for the answer of service /b/answer   (ring.py:")
+    up.wait_for("timer ask of /a blocks the event loop and waits for the response of service /b/answer   (ring.py:")
     up.wait_for(f"{at('stuck: Blocker')}ask, since ")
     up.wait_for(line := "/a: {concurrency: {blocking: {handlers: [ask], thread: true}}}")
-    assert "! timer ask of /a: waits for the answer of /b/answer" in lab.machine.look("waits")
+    assert "! timer ask of /a: waiting for the response of /b/answer" in lab.machine.look("waits")
     told = lab.machine.look("groups", "move", "/a", "answer", "answers", "--timeout", "0.2", code=4)
     assert "its event loop may be blocked" in told
     end_at_once(up)
@@ -140,7 +140,7 @@ def test_a_call_that_blocks_the_loop_it_needs_is_one_report(lab: Lab) -> None:
     """It is told once, though the other process finds it, too (rows 17, 29)."""
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
     up.wait_for("DEADLOCK: ")
-    up.wait_for("[graphflow]: the event loop is blocked since 1.")
+    up.wait_for("[graphflow]: the event loop has been blocked for 1.")
     assert "DEADLOCK: " in lab.machine.look("doctor", code=1)
     end_at_once(up)
     assert len(reports(up.text)) == 1

@@ -90,7 +90,7 @@ def test_rows() -> None:
     assert first == {
         "activity": "timer ask of /a",
         "holds": "work",
-        "waits_for": "the answer of /b/answer",
+        "waits_for": "the response of /b/answer",
         "since": 2.0,
         "left": 4.0,
         "place": "x.py:3:1 in ask",
@@ -140,8 +140,8 @@ GRAPH = WaitGraph({"s": SERVER}, {"g": GroupView("g", "work", "/s")})
 @pytest.mark.parametrize(
     ("condition", "text"),
     [
-        (Call("c:2", "/add"), "the answer of /add"),
-        (Call("c:1", "/add"), "the answer of /add (service add of /s is at it)"),
+        (Call("c:2", "/add"), "the response of /add"),
+        (Call("c:1", "/add"), "the response of /add (which service add of /s is handling)"),
         (Call("goal:1", "/drive"), "the goal of /drive"),
         (Call("goal:1", ""), "the end of a goal"),
         (Slot("g", 1), "a slot of group 'work'"),

@@ -30,7 +30,7 @@ class Robot(View):
 
     def service_type(self, name: str) -> str:
         if not name.startswith("/robot/"):
-            raise CallError(f"nobody offers the service {name}")
+            raise CallError(f"no node offers the service {name}")
         return ""
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:

@@ -103,7 +103,7 @@ def test_a_node_that_is_not_there(view: View, client: Client) -> None:
 def test_the_type_of_a_service(view: View) -> None:
     """As its server announces it; the nearest name when there is none."""
     assert view.service_type(ADD) == TYPE
-    with pytest.raises(ServiceUnavailable, match=f"^nobody offers the service /office/ad; did you mean '{ADD}'"):
+    with pytest.raises(ServiceUnavailable, match=f"^no node offers the service /office/ad; did you mean '{ADD}'"):
         view.service_type("/office/ad")
 
 
@@ -121,7 +121,7 @@ def test_waiting_for_a_service(view: View, client: Client, monkeypatch: pytest.M
     monkeypatch.setattr(time, "sleep", sleep)
     view.wait_for_service(ADD, 100.0)
     assert len(looks) == 3
-    with pytest.raises(ServiceUnavailable, match="nobody offers"):
+    with pytest.raises(ServiceUnavailable, match="no node offers"):
         view.wait_for_service("/other", -1.0)
 
 
@@ -154,7 +154,7 @@ def test_a_call_that_fails(
     ("other", "text"),
     [
         (server(type_="std_srvs/srv/Trigger"), f"{ADD} is a std_srvs/srv/Trigger, not a {TYPE}"),
-        (server(hash_="RIHS01_0"), f"{ADD}: the server's {TYPE} has another definition than the one here"),
+        (server(hash_="RIHS01_0"), f"{ADD}: the server's {TYPE} has a different definition from the one here"),
     ],
 )
 def test_why_there_was_no_answer(view: View, client: Client, other: Entity, text: str) -> None:
@@ -181,7 +181,7 @@ def test_processes_and_owners(view: View) -> None:
     assert set(view.processes()) == {"z1", "z2"}
     assert str(view.processes()["z2"]) == "process 12 on elsewhere"
     assert view.owner("/office/clerk").startswith("process ")
-    assert view.owner("/ros") == "session z9, not of graphflow"
+    assert view.owner("/ros") == "session z9, not a graphflow process"
 
 
 def test_names_that_are_taken(client: Client) -> None:
@@ -192,7 +192,10 @@ def test_names_that_are_taken(client: Client) -> None:
         refuse_taken_names(["/ros", "/a", "/office/clerk"], 7, "call it otherwise")
     text = str(caught.value)
     assert text.startswith("already in domain 7: /office/clerk (process ")
-    assert "; /ros (session z9, not of graphflow). Stop what runs there, call it otherwise, or take another" in text
+    assert (
+        "; /ros (session z9, not a graphflow process). Stop what runs there, call it otherwise, or choose another"
+        in text
+    )
 
 
 @pytest.mark.parametrize("code", [3, 1])

@@ -56,8 +56,8 @@ def test_a_whole_report() -> None:
     """A headline, two lines for each member, and every change that would end it."""
     assert report(TICK, MOTION, ADD) == [
         "DEADLOCK: one callback waits for itself",
-        "  timer tick of /arm holds group 'motion' and waits for the answer of service /add"
-        "   (arm.py:12 in tick, since 0.25 s, times out in 7.8 s)",
+        "  timer tick of /arm holds group 'motion' and waits for the response of service /add"
+        "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)",
         "    -> service add of /arm waits for group 'motion' of /arm, which timer tick of /arm holds",
         "Any one of these ends it:",
         "  give add a group of its own, in the graph file",
@@ -78,9 +78,9 @@ def test_a_ring_and_who_is_behind_it() -> None:
     lines = report(one, two, behind, MOTION)
 
     assert lines[0] == "DEADLOCK: 2 callbacks wait for each other in a ring; 1 more waits for them"
-    assert lines[2] == "    -> which task run of /arm is to give"
-    assert lines[4] == "    -> which timer tick of /arm is to give (back to the first)"
-    assert lines[5] == "  behind them: timer look of /arm   (arm.py:12 in tick, since 0.25 s, times out in 7.8 s)"
+    assert lines[2] == "    -> which task run of /arm must give"
+    assert lines[4] == "    -> which timer tick of /arm must give (back to the first)"
+    assert lines[5] == "  behind them: timer look of /arm   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"
 
 
 @pytest.mark.parametrize(
@@ -116,9 +116,9 @@ def test_headlines(deadlock: Deadlock, words: str) -> None:
 @pytest.mark.parametrize(
     ("via", "words"),
     [
-        (Call("c", "/add"), "the answer of service /add"),
+        (Call("c", "/add"), "the response of service /add"),
         (Call("goal:01", "/turn"), "the result of action /turn"),
-        (Slot("g", 3), "its slot, to come back to its group"),
+        (Slot("g", 3), "its slot, to return to its group"),
         (SetBy("self.arrived", ()), "self.arrived"),
         (FREE, "its event loop"),
         (Join("b"), "another task"),
@@ -133,10 +133,10 @@ def test_what_is_wanted(via: Condition, words: str) -> None:
 @pytest.mark.parametrize(
     ("activity", "words"),
     [
-        (TICK, "   (arm.py:12 in tick, since 0.25 s, times out in 7.8 s)"),
-        (replace(TICK, left=None), "   (arm.py:12 in tick, since 0.25 s)"),
-        (replace(TICK, left=-0.1), "   (arm.py:12 in tick, since 0.25 s, times out in 0.0 s)"),
-        (replace(TICK, place=Place(""), left=None), "   (since 0.25 s)"),
+        (TICK, "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"),
+        (replace(TICK, left=None), "   (arm.py:12 in tick, for 0.25 s)"),
+        (replace(TICK, left=-0.1), "   (arm.py:12 in tick, for 0.25 s, times out in 0.0 s)"),
+        (replace(TICK, place=Place(""), left=None), "   (for 0.25 s)"),
     ],
 )
 def test_where_it_waits(activity: ActivityView, words: str) -> None:
@@ -181,7 +181,7 @@ def test_something_that_a_handler_sets() -> None:
 
     assert lines[0].startswith("LIKELY DEADLOCK: ")
     assert lines[2] == (
-        "    -> subscription on_scan of /arm sets it, and needs group 'motion' of /arm, "
+        "    -> subscription on_scan of /arm sets it and needs group 'motion' of /arm, "
         "which timer tick of /arm holds; 3 queued, 2 dropped meanwhile"
     )
     assert any(line.startswith("  give on_scan a group of its own") for line in lines)
@@ -196,18 +196,20 @@ def test_a_lock_that_is_held() -> None:
     lines = report(replace(TICK, id="a", wait=held, age=9.0), other, MOTION)
 
     assert lines[2] == "    -> which task run of /arm holds"
-    assert "  leave self.lock before what is awaited in b.py:7" in lines
+    assert "  leave self.lock before the await in b.py:7" in lines
 
 
 def test_a_blocked_loop() -> None:
     """Nothing arrives; to await, or to have the handler block a thread, ends it."""
     lines = report(replace(TICK, is_async=False), MOTION, ADD, blocked="tick")
 
-    assert lines[1].startswith("  timer tick of /arm holds group 'motion', blocks the event loop and waits for the ans")
+    assert lines[1].startswith(
+        "  timer tick of /arm holds group 'motion', blocks the event loop and waits for the resp"
+    )
     assert lines[2] == "    -> nothing can arrive while the event loop is blocked by timer tick of /arm"
     assert lines[4:] == [
         "  await the call in arm.py:12",
-        "  let tick block a thread, in the graph file",
+        "  let tick run in a thread, in the graph file",
         "      /arm: {concurrency: {blocking: {handlers: [tick], thread: true}}}",
         "    or in the class: thread=True where tick is declared",
     ]
@@ -244,8 +246,8 @@ def fixes(activity: ActivityView, group: GroupView, queue: QueueView) -> list[st
             ADD,
             [
                 "  give add a group of its own",
-                "  allow more runs, if its handlers share no state: Group(2, thread=True) where the group of /arm is "
-                "made that is called motion here",
+                "  allow more runs, if its handlers share no state: Group(2, thread=True) where /arm makes the "
+                "group called motion here",
                 "  release",
             ],
             id="a group that is made while the node runs",
@@ -261,31 +263,28 @@ def fixes(activity: ActivityView, group: GroupView, queue: QueueView) -> list[st
             TICK,
             MOTION,
             replace(ADD, label="reply add"),
-            ["  let replies pass: declare the client of add without group=", "  allow more", "  release"],
+            ["  let replies through: declare the client of add without group=", "  allow more", "  release"],
             id="an answer that finds no slot",
         ),
         pytest.param(
             replace(TICK, label="service add"),
             replace(MOTION, name=""),
             ADD,
-            [
-                "  let several runs of add be under way: add_group = Group(None), and group=add_group where it is "
-                "declared"
-            ],
+            ["  let several runs of add overlap: add_group = Group(None), and group=add_group where it is declared"],
             id="a handler alone",
         ),
         pytest.param(
             replace(TICK, label="service add"),
             replace(MOTION, name=""),
             replace(ADD, is_declared=False),
-            ["  let several runs of add be under way: group=Group(None) where it is made"],
+            ["  let several runs of add overlap: group=Group(None) where it is made"],
             id="a handler alone that is made while the node runs",
         ),
         pytest.param(
             replace(TICK, label="action add"),
             replace(MOTION, name=""),
             replace(ADD, label="action add"),
-            ["  let several goals be under way: policy='parallel' where add is declared"],
+            ["  let several goals run at a time: policy='parallel' where add is declared"],
             id="an action alone",
         ),
     ],
@@ -321,7 +320,7 @@ def test_a_call_that_cannot_succeed() -> None:
     lines = hopeless("/add", ADD, [TICK], seen).splitlines()
     assert lines[0] == (
         "/add can never answer: service add of /arm waits for group 'motion' of /arm, held by timer tick of /arm"
-        "   (arm.py:12 in tick, since 0.25 s, times out in 7.8 s), which waits for this very call"
+        "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s), which waits for this very call"
     )
     assert lines[1:3] == ["Any one of these ends it:", "  give add a group of its own, in the graph file"]
     assert lines[-1] == "  release the slot while waiting, in arm.py:12: async with self.group.released(): ..."
@@ -337,11 +336,11 @@ def test_a_call_that_cannot_succeed_and_nobody_holds() -> None:
 
 
 def test_a_stall() -> None:
-    """Who has kept the group, who waits and what it has lost since; and a group for one that is not the holder's."""
+    """Who has held the group, who waits and what it has lost since; and a group for one that is not the holder's."""
     waiting = [replace(ADD, id="own", label="timer tick", waiting=1), replace(ADD, waiting=4, dropped=7)]
 
     assert stall(MOTION, [TICK], waiting, {"q": 5}, 5.0).splitlines() == [
-        "STALL: timer tick of /arm (arm.py:12 in tick) has kept group 'motion' of /arm for more than 5.0 s",
+        "STALL: timer tick of /arm (arm.py:12 in tick) has held group 'motion' of /arm for more than 5.0 s",
         "  timer tick of /arm waits for it: 1 queued, 0 dropped meanwhile",
         "  service add of /arm waits for it: 4 queued, 2 dropped meanwhile",
         "If that is too long:",
@@ -357,7 +356,7 @@ def test_a_stall_of_several_slots() -> None:
     waiting = [replace(ADD, label="timer tick")]
 
     assert stall(replace(MOTION, limit=2), [TICK, look], waiting, {}, 5.0).splitlines() == [
-        "STALL: timer tick of /arm (arm.py:12 in tick) and timer look of /arm have kept all 2 slots of group 'motion' "
+        "STALL: timer tick of /arm (arm.py:12 in tick) and timer look of /arm have held all 2 slots of group 'motion' "
         "of /arm for more than 5.0 s",
         "  timer tick of /arm waits for it: 1 queued, 0 dropped meanwhile",
     ]

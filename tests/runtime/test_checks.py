@@ -65,7 +65,7 @@ WRONG: list[tuple[Any, str]] = [
         lambda: checks.check_group("io", Group, "X", HERE),
         "X: group= takes a Group, not 'io'; declare one",
     ),
-    (lambda: checks.check_on_error("ignore", HERE), "on_error is one of budget, log, end, not 'ignore'"),
+    (lambda: checks.check_on_error("ignore", HERE), "on_error must be one of budget, log, end, not 'ignore'"),
 ]
 
 

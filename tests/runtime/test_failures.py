@@ -39,7 +39,7 @@ async def test_an_error_budget_that_is_spent_ends_the_node(graph: Graph) -> None
     assert core_of(node).failure is None
     await graph.clock.advance(0.1)
 
-    with pytest.raises(TooManyErrors, match=r"21 errors of handlers within 10 s, the last in failing: ValueError: aga"):
+    with pytest.raises(TooManyErrors, match=r"21 handler errors within 10 s, the last in failing: ValueError: aga"):
         await node.wait_ended()
 
 

@@ -158,8 +158,8 @@ async def test_set_parameters_one_by_one(graph: Graph) -> None:
         "parameter 'fixed' is read-only",
         "there is no parameter 'cuont'; did you mean 'count'?",
         "",
-        "parameter 'title' belongs to the node and cannot be deleted; those with dynamic typing can",
-        "42 is no parameter type",
+        "parameter 'title' belongs to the node and cannot be deleted; only those with dynamic typing can",
+        "42 is not a parameter type",
     ]
     assert (node.rate, node.count, node.fixed, node.title) == (5.0, 4, True, "hello")
 

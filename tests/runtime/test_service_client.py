@@ -37,7 +37,7 @@ async def test_a_service_nobody_offers(graph: Graph) -> None:
     with pytest.raises(ServiceUnavailable) as caught:
         await call
     assert str(caught.value) == (
-        "nobody offers the service /ad [example_interfaces/srv/AddTwoInts]; did you mean '/add'?"
+        "no node offers the service /ad [example_interfaces/srv/AddTwoInts]; did you mean '/add'?"
     )
 
 
@@ -274,7 +274,7 @@ async def test_waiting_for_a_server_in_vain(graph: Graph) -> None:
 
     await graph.clock.advance(0.1)
 
-    with pytest.raises(ServiceUnavailable, match="nobody offers the service /add"):
+    with pytest.raises(ServiceUnavailable, match="no node offers the service /add"):
         await waiting
 
 

@@ -75,5 +75,5 @@ async def test_introspection_is_off_by_default_and_can_be_switched(graph: Graph)
     server.configure_introspection("off")
     await graph.call(AddTwoInts, "/add", AddTwoInts.Request())
     assert len(tap) == 2
-    with pytest.raises(ValueError, match="introspection is off, metadata or contents, not 'on'"):
+    with pytest.raises(ValueError, match="introspection must be off, metadata or contents, not 'on'"):
         server.configure_introspection("on")  # type: ignore[arg-type]

@@ -23,7 +23,7 @@ from tests.supervisor.running import nothing_is_left, write
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("call", "expected"),
-    [("/fails", "OSError: the disk is full"), ("/nowhere, type: std_srvs/srv/Trigger", "nobody offers the service")],
+    [("/fails", "OSError: the disk is full"), ("/nowhere, type: std_srvs/srv/Trigger", "no node offers the service")],
 )
 def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: str, expected: str) -> None:
     """The step and the reason are told, everything is stopped again, the exit code is 1."""
