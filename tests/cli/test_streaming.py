@@ -35,6 +35,9 @@ def test_a_reader_goes_on_where_it_was(tmp_path: Path, capsys: pytest.CaptureFix
     assert capsys.readouterr().out == "a    | three\nlong | four\n"
     reader.show()
     assert capsys.readouterr().out == ""
+    append(a, "five\n")
+    reader.show()
+    assert capsys.readouterr().out == "a    | five\n"
 
 
 @pytest.mark.parametrize(("last", "shown"), [(2, ["2", "3"]), (9, ["1", "2", "3"]), (0, [])])

@@ -97,10 +97,10 @@ async def test_requests(pair: tuple[socket.socket, socket.socket]) -> None:
 
 
 async def test_a_request_to_nobody(pair: tuple[socket.socket, socket.socket]) -> None:
-    """It raises nothing: that the other end is gone is told soon."""
+    """It raises nothing: that nobody reads any more is told soon."""
     mine, other = pair
     lines = (listener := Listener()).listen(mine)
-    other.close()
+    other.shutdown(socket.SHUT_RD)
     lines.send(do="spawn")
     assert not listener.lost.is_set()
     await listener.lost.wait()
