@@ -19,11 +19,11 @@ GraphflowError
 |-- GoalError                 a goal ended without success
 |   |-- GoalRejected          the server did not accept it
 |   |-- GoalAborted           the server gave up on it; carries its result
-|   |-- GoalCanceled          somebody cancelled it; carries its partial result
-|   `-- GoalLost              the server went away: nobody knows how it ended
+|   |-- GoalCanceled          a client cancelled it; carries its partial result
+|   `-- GoalLost              the server went away: how it ended is unknown
 |-- LoopBlockedError          a blocking call was made on the event loop
 `-- CallError                 a call ended without a response
-    |-- ServiceUnavailable    nobody serves that name
+    |-- ServiceUnavailable    no node offers that name
     |-- ServerLost            the server went away during the call
     |-- CallTimeout           the deadline passed
     |-- ServerBusy            the server's queue is full

@@ -93,7 +93,7 @@ class Qos:
 def incompatible(offered: Qos, requested: Qos) -> list[str]:
     """The policies by which DDS would keep a publisher from a subscription that asks for more than it offers.
 
-    rmw_zenoh and graphflow deliver all the same; a graph that is to run on every middleware has none of these.
+    rmw_zenoh and graphflow deliver all the same; a graph meant for every middleware must have none of these.
 
     Source: OMG DDS 1.4, 2.2.3; rmw_dds_common qos_profile_check_compatible.
     """

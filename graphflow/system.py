@@ -32,7 +32,7 @@ def detached() -> dict[str, Any]:
 
 
 def host_name() -> str:
-    """This machine's name, as it stands in tokens."""
+    """This machine's name as used in tokens."""
     import platform  # importing it takes a tenth of a listing's time
 
     return re.sub(r"[^\w.-]", "_", platform.node())

@@ -45,7 +45,7 @@ class Function(NamedTuple):
 
     syntax: FunctionNode
     method: str
-    """The method that it is or is inside of."""
+    """The method that it is, or that contains it."""
 
 
 @dataclass(frozen=True, slots=True)

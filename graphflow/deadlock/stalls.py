@@ -40,7 +40,7 @@ class Stalls:
         return [kept.text for kept in list(self._by_group.values()) if kept.text]
 
     def look(self, graph: WaitGraph, dead: set[str], now_ns: int) -> float | None:
-        """Report what there is to report.
+        """Report new stalls, and those that are over.
 
         Args:
             dead: Activities that are in a reported deadlock.

@@ -96,7 +96,7 @@ class Watchdog:
             self.longest = max(self.longest, took)
         if self._reported:
             self._reported = False
-            logger.warning("the event loop goes on after %.1f s", took)
+            logger.warning("the event loop runs again after %.1f s", took)
 
     def _stack(self) -> str:
         frame = sys._current_frames().get(self._loop_thread)

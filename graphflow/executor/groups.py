@@ -66,7 +66,7 @@ class HandlerGroup(GroupState[Member]):
                 await self.planner.call(request)      # others of the group may run meanwhile
 
         State that the group protects may have changed when the block ends. A handler that is cancelled in the block
-        also waits for its slot before it goes on to its clean-up, as `asyncio.Condition.wait` does.
+        also waits for its slot before it proceeds to its cleanup, as `asyncio.Condition.wait` does.
 
         Raises:
             RuntimeError: The caller is not a handler of this group, or is a task that a handler has started.

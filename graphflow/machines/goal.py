@@ -11,7 +11,7 @@ A goal is in one *phase* at a time; to clients each phase shows as one of ROS 2'
     PREEMPTED   EXECUTING    the server ends it for a newer goal; its body cleans up
     REJECTED, SUCCEEDED, CANCELED, ABORTED                it is over
 
-`STEPS` says, for each phase and each event, which phase follows and what the server is to do. What only some servers
+`STEPS` says, for each phase and each event, which phase follows and what the server must do. What only some servers
 do, by their `GoalRules`, is left out by `step`. A goal that is over stays as it is, whatever comes late. One that a
 client has cancelled ends as its body decides; what the server ends by itself ends as ABORTED.
 
@@ -144,7 +144,7 @@ class Step:
     """What follows from an event.
 
     Attributes:
-        through: The state that ROS 2 has between the old and the new one; clients are told of it too.
+        through: The state that ROS 2 has between the old and the new one, reported to clients too.
     """
 
     phase: Phase

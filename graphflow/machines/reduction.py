@@ -31,7 +31,7 @@ from graphflow.machines.wait_graph import (
 )
 
 Lacking = tuple[str, ...]
-"""Activities that must go on, or groups that must get a free slot, before something can happen: at least one of them.
+"""Activities that must proceed, or groups that must get a free slot, before something can happen: at least one of them.
 Empty: it may happen now."""
 
 

@@ -43,8 +43,8 @@ class Node:
         remap: Rules, first match wins; as objects or as text `from:=to`.
         overrides: Parameter values from outside with where they were written, for graph files and command lines.
         concurrency: Groups that differ from what the class declares, by name, for graph files.
-        start_parameter_services, enable_rosout, enable_logger_service: False for a tool whose parameters, log and log
-            levels nobody needs.
+        start_parameter_services, enable_rosout, enable_logger_service: False for a tool that needs no parameter
+            services, no /rosout or no log level services.
         **params: Parameter values by name.
 
     Raises:
