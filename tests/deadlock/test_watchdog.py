@@ -88,7 +88,7 @@ async def test_the_report_of_a_blocked_loop(
     assert first.startswith("the event loop has been blocked for 0.")
     assert "await self.offload(...)" in first
     assert "watched.block(times=1)  # here" in first
-    assert second.startswith("the event loop goes on after ")
+    assert second.startswith("the event loop runs again after ")
 
 
 async def test_what_counts_as_busy(graphflow_runner: asyncio.Runner, watched: Watched) -> None:

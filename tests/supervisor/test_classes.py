@@ -51,7 +51,7 @@ def test_a_class_by_its_path(project: Path) -> None:
     ("class_path", "problem"),
     [
         ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
-        ("machines.robot:Wheel", "machines.robot:Wheel is no node class: it does not derive from graphflow.Node"),
+        ("machines.robot:Wheel", "machines.robot:Wheel is not a node class: it does not derive from graphflow.Node"),
         (
             "machines.nowhere:Robot",
             "cannot import machines.nowhere: there is no module 'machines.nowhere'; "
