@@ -123,7 +123,7 @@ def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
     up.wait_for("DEADLOCK: one callback waits for itself")
     up.wait_for("timer ask of /a blocks the event loop and waits for the response of service /b/answer   (ring.py:")
-    up.wait_for(f"{at('stuck: Blocker')}ask, since ")
+    up.wait_for(f"{at('stuck: Blocker')}ask, for ")
     up.wait_for(line := "/a: {concurrency: {blocking: {handlers: [ask], thread: true}}}")
     assert "! timer ask of /a: waiting for the response of /b/answer" in lab.machine.look("waits")
     told = lab.machine.look("groups", "move", "/a", "answer", "answers", "--timeout", "0.2", code=4)
