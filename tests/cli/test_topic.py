@@ -104,5 +104,5 @@ def test_pub_once(standing: Machine) -> None:
 
 def test_without_a_graph(machine: Machine) -> None:
     """Where nothing runs, to look ends with 3."""
-    assert "error: nothing is running: nobody answers at tcp/" in machine.look("topic", "list", code=3)
+    assert "error: nothing is running: nothing answers at tcp/" in machine.look("topic", "list", code=3)
     assert "error: nothing is running" in machine.look("topic", "echo", "/chatter", code=3)

@@ -84,7 +84,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: action(Fibonacci, "x", on_client_loss=anything("weep")), "on_client_loss must be one of continue, cancel"),
     (lambda: action(Fibonacci, "x", accept=anything("all")), "@action: accept= takes a method defined above"),
     (lambda: action(Fibonacci, "x", cancellable=anything(1)), "@action: cancellable= takes a method"),
-    (lambda: action(Fibonacci, "x", cleanup_timeout=0.0), "cleanup_timeout must be a number of seconds, more"),
+    (lambda: action(Fibonacci, "x", cleanup_timeout=0.0), "cleanup_timeout must be more than 0 seconds, not 0.0"),
     (lambda: action(Fibonacci, "x", thread=True)(of_two), "of_two: thread=True is for `def`, an `async def` runs"),
 ]
 # fmt: on

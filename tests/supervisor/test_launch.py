@@ -28,7 +28,7 @@ def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> No
 
     text = machine.run("up", file, cwd=project, code=1)
 
-    assert "graph lab is running already" in text
+    assert "graph lab is already running" in text
     assert "graphflow down --graph lab" in text
     assert set(rows(machine)) == {"/a", "/b"}
     machine.look("down")
@@ -144,9 +144,9 @@ def test_a_supervisor_that_dies(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("text", "code", "told"),
     [
-        ("nodes: {/a: {class: nodes.lab:God}}\n", 2, "did you mean 'Good'?\n1 problem, nothing was started\n"),
-        ("nods: {}\nnodes: {/a: {}}\n", 2, "2 problems, nothing was started\n"),
-        ("nodes: {/a: {class: nodes.lab:Good}}\ndomain: no\n", 2, "1 problem, nothing was started\n"),
+        ("nodes: {/a: {class: nodes.lab:God}}\n", 2, "did you mean 'Good'?\n1 problem; nothing was started\n"),
+        ("nods: {}\nnodes: {/a: {}}\n", 2, "2 problems; nothing was started\n"),
+        ("nodes: {/a: {class: nodes.lab:Good}}\ndomain: no\n", 2, "1 problem; nothing was started\n"),
     ],
 )
 def test_a_wrong_file_is_refused(machine: Machine, project: Path, text: str, code: int, told: str) -> None:

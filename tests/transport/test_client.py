@@ -87,6 +87,6 @@ def test_a_command_says_when_nothing_is_running(port: int) -> None:
 def test_a_command_that_reaches_out_says_where_it_looked(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Here and there, if it was told to look there; it ends with code 3 too."""
     monkeypatch.setenv("GRAPHFLOW_CONNECT", rendezvous.free_endpoint())
-    with pytest.raises(SupervisorError, match="nor where --connect or --net point to") as caught:
+    with pytest.raises(SupervisorError, match="nor where --connect or --net points") as caught:
         Client()
     assert caught.value.exit_code == 3
