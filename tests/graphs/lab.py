@@ -54,7 +54,9 @@ class Lab:
         return up
 
     def pids(self) -> dict[str, int]:
-        return {row["node"]: row["pid"] for row in json.loads(self.machine.look("ps", "--json"))}
+        # By a process, which takes a while: those who did not report a ring find it in that time, too, and only then
+        # can tell of its end when the one who did report it has died. Nothing shows when they have.
+        return {row["node"]: row["pid"] for row in json.loads(self.machine.run("ps", "--json"))}
 
     def call(self, service: str) -> None:
         assert "success=True" in self.machine.look("service", "call", service, "std_srvs/srv/Trigger")
