@@ -135,7 +135,7 @@ def test_a_loop_that_is_held(lab: Lab) -> None:
     up.wait_for(f'ring.py", line {line_of("held: Sleepy")}, in hold')
 
     let_go(lab)
-    wait_for_all(up, [*answered("a"), "the event loop goes on after"])
+    wait_for_all(up, [*answered("a"), "the event loop runs again after"])
     assert "/b: the event loop was late once, by " in lab.machine.look("doctor")
     assert up.end() == 0
     assert reports(up.text) == []
