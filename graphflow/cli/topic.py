@@ -149,7 +149,7 @@ def _described(e: Entity, cache: GraphCache) -> str:
 @click.option("--no-arr", is_flag=True, help="Leave out the elements of arrays.")
 @click.option("--no-str", is_flag=True, help="Leave out the text of strings.")
 @click.option("-f", "--full-length", is_flag=True, help="Show long arrays and strings in full.")
-@click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Or cut here.")
+@click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Length to keep.")
 @click.option("-i", "--include-message-info", is_flag=True, help="Also show sequence number, time and sender.")
 @click.option("--no-lost-messages", is_flag=True, help="Do not report messages lost on the way.")
 @qos_options

@@ -25,7 +25,7 @@ def _read(view: View) -> found.ConcurrencyReport:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def waits(as_json: bool) -> None:
-    """Show who holds a slot, who waits for what, and where."""
+    """Show which handlers hold slots, what they wait for, and where."""
     with View(domain_id()) as view:
         read = _read(view)
         unresponsive = found.unresponsive(read, view)
