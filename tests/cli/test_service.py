@@ -56,7 +56,7 @@ def test_a_call_that_fails(standing: Machine, words: list[str], code: int, told:
 
 def test_a_service_is_waited_for(standing: Machine) -> None:
     """Who offers nothing yet may do so soon: it says that it waits, until the time is over."""
-    text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=1)
+    text = standing.look("service", "call", "/office/clerk/ad", TYPE, "{}", "--timeout", "0.01", code=4)
     assert text.startswith("waiting for service to become available...\nerror: no node offers the service")
 
 
