@@ -1,0 +1,50 @@
+"""The way in: Ctrl-C is quiet from the first moment on."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import graphflow
+
+INTERRUPTED = "import os, signal; os.kill(os.getpid(), signal.SIGINT); print('goes on')"
+
+
+def run(code: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60)
+
+
+def test_ctrl_c_while_commands_are_imported() -> None:
+    """It ends the process at once, with exit code 0 and without a traceback."""
+    done = run(f"import graphflow.cli.entry; {INTERRUPTED}")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_without_it_there_is_a_traceback() -> None:
+    """The test above could fail."""
+    done = run(INTERRUPTED)
+    assert done.returncode != 0
+    assert "KeyboardInterrupt" in done.stderr
+
+
+def test_who_ignores_ctrl_c_goes_on_ignoring_it() -> None:
+    """As what a shell has put in the background."""
+    done = run(
+        f"import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); import graphflow.cli.entry; {INTERRUPTED}"
+    )
+    assert (done.returncode, done.stdout) == (0, "goes on\n")
+
+
+def test_a_command_has_pythons_own_handler() -> None:
+    """Once it runs, Ctrl-C is a KeyboardInterrupt again, which each verb answers in its way."""
+    code = "import signal, graphflow.cli.main as m; m.main = lambda: print(signal.getsignal(signal.SIGINT).__name__)"
+    done = run(f"import graphflow.cli.entry; {code}; graphflow.cli.entry.main()")
+    assert done.stdout == "default_int_handler\n"
+
+
+def test_the_package_is_a_command() -> None:
+    """`python -m graphflow` is `graphflow`."""
+    done = subprocess.run(
+        [sys.executable, "-m", "graphflow", "--version"], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert graphflow.__version__ in done.stdout
