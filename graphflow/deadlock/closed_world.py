@@ -354,7 +354,8 @@ def _is_new(use: Use, makers: set[str]) -> bool:
     if use.kind != "assigned" or use.value is None:
         return True
     if isinstance(use.value, ast.Call):
-        return ast.unparse(use.value.func).split(".")[-1] in makers
+        maker = use.value.func.value if isinstance(use.value.func, ast.Subscript) else use.value.func  # Queue[str]()
+        return ast.unparse(maker).split(".")[-1] in makers
     made = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp, ast.Constant, ast.BinOp)
     return isinstance(use.value, made)
 

@@ -103,7 +103,7 @@ def _string(text: str) -> str:
         and not any(c in text for c in '"\\#{}[],&*|>%@`')
         and ": " not in text
         and not text.endswith(":")
-        and text[0] not in "!?-'"
+        and text[0] not in "!?-':"
         and isinstance(read(text), str)
     )
     if plain_safe or text == "...":

@@ -288,11 +288,6 @@ def _tell_notes(note: Callable[[str], None]) -> None:
         logging.getLogger(name).addHandler(Notes(logging.INFO))
 
 
-if __name__ == "__main__":
-    report = os.dup(1)
-    sys.exit(_Launch(json.load(sys.stdin), report).supervise())
-
-
 def _make_starter(keep: tuple[int, ...]) -> Starter:
     """A starter of the kind that this system uses. Must be made while this process has one thread.
 
@@ -306,3 +301,8 @@ def _make_starter(keep: tuple[int, ...]) -> Starter:
     from graphflow.supervisor.forking import ForkingStarter
 
     return ForkingStarter(keep)
+
+
+if __name__ == "__main__":
+    report = os.dup(1)
+    sys.exit(_Launch(json.load(sys.stdin), report).supervise())

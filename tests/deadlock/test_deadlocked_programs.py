@@ -153,7 +153,7 @@ class Eater(Robot):
 
     def __init__(self) -> None:
         super().__init__()
-        self.words: asyncio.Queue[String] = asyncio.Queue()
+        self.words = asyncio.Queue[String]()
 
     async def go(self, _: String) -> None:
         await self.words.get()  # stuck: Eater
