@@ -10,6 +10,7 @@ import json
 import re
 import shutil
 import signal
+import subprocess
 from pathlib import Path
 
 from tests.conftest import PROGRAMS, Machine, Program
@@ -125,6 +126,10 @@ def reporter(up: Program) -> str:
     return found[1]
 
 
+PATIENCE = 0.7
+"""Seconds that the processes of a graph get to end by themselves."""
+
+
 def reports(*texts: str) -> list[str]:
     """The headlines of the deadlocks that were told."""
     return [headline for text in texts for headline in re.findall(r"\[graphflow\]: ((?:LIKELY )?DEADLOCK: .*)", text)]
@@ -140,7 +145,11 @@ def seconds_to_report(text: str) -> float:
 
 
 def end_at_once(up: Program) -> None:
-    """End a graph of which a process is blocked and would be waited for."""
+    """End a graph of which a process may be blocked, without waiting for that as long as `up` does."""
     up.process.send_signal(signal.SIGINT)
     up.wait_for("stopping (Ctrl-C)")
-    assert up.end() == 0
+    try:
+        code = up.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        code = up.end()  # a second Ctrl-C kills
+    assert code == 0

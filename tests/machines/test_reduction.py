@@ -44,7 +44,7 @@ from tests.machines.tiny_graph import (
     stuck_for_ever,
 )
 
-CASES = count(few=150, full=1000)
+CASES = count(few=100, full=1000)
 """Tiny graphs that are tried."""
 
 

@@ -59,7 +59,7 @@ from graphflow.times import NANOSECONDS
 from tests.cases import cases, count, limit
 from tests.machines.rcl_goals import NEXT
 
-CASES = count(few=40, full=180)
+CASES = count(few=30, full=180)
 """Programs that are tried."""
 CLEANUP = 2.0537
 """Seconds that cancelled bodies get. Nothing that they do takes just as long."""

@@ -19,7 +19,10 @@ from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
+from tests.cases import count
 from tests.runtime.cast import Log, pair
+
+PREEMPTIONS = count(few=250, full=1000)
 
 
 def at_work(server: Node) -> ActionServer[Any, Any, Any]:
@@ -176,11 +179,11 @@ async def test_policies(
     assert server.most == most
 
 
-async def test_a_thousand_preemptions_never_run_two_bodies(graph: Graph) -> None:
+async def test_many_preemptions_never_run_two_bodies(graph: Graph) -> None:
     """However quickly new goals come."""
     server, asker = await pair(graph, Recorder("preempt", group=Group(None)))
     goals = []
-    for n in range(1000):
+    for n in range(PREEMPTIONS):
         goals.append(await asker.order(n))
         if n % 7 == 0:
             await graph.settle()
