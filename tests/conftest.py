@@ -44,9 +44,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """With `-n auto`, more than two workers a core: tests of real processes wait more than they work."""
+    """With `-n auto`, two workers a core: tests of real processes wait more than they work."""
     config.option.dist = "worksteal"  # a few tests take long, and thousands a moment
-    return 1 + 2 * (os.cpu_count() or 1)
+    return 2 * (os.cpu_count() or 1)
 
 
 class Program:

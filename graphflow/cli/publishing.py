@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
 from graphflow.msgs.base import Message
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.node import Node
+from graphflow.runtime.topics import TopicPublisher
+from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
+
+REACH_LIMIT = 2.0
+"""Seconds that the way to an announced subscription may take."""
 
 
 @dataclass
@@ -45,6 +51,8 @@ async def _publish(node: Node, topic: str, message: Message, options: PubOptions
     if not await _wait_for_subscriptions(node, topic, needed, options.max_wait_time_secs):
         output.error(f"{topic}: fewer than {needed} subscriptions after {options.max_wait_time_secs:g} s")
         return exits.TIMEOUT
+    if needed:
+        await _wait_until_reached(node, publisher)
     output.data("publisher: beginning loop")
     async for n in node.clock.every(hz=options.rate):
         if options.print_every and n % options.print_every == 0:
@@ -69,3 +77,10 @@ async def _wait_for_subscriptions(node: Node, topic: str, needed: int, limit: fl
     except TimeoutError:
         return False
     return True
+
+
+async def _wait_until_reached(node: Node, publisher: TopicPublisher[Any]) -> None:
+    """Wait, not for long, until what is published reaches somebody: a subscription is announced before the way is."""
+    until_ns = node.clock.monotonic_ns() + to_ns(REACH_LIMIT)
+    while not publisher.is_wanted and node.clock.monotonic_ns() < until_ns:
+        await node.clock.sleep(0.01)

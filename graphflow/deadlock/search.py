@@ -47,6 +47,8 @@ TASKS_EVERY = 2.0
 """Seconds between two looks at tasks, whose waits are not announced, while nothing else waits."""
 PULL_LIMIT = 0.5
 """Seconds that other processes have to answer."""
+FORGET_AFTER = 1.5
+"""Seconds that a deadlock which another process reports is remembered when its waits here are over."""
 GONE_AFTER = 0.5
 """Seconds from the first sign that a process is going until all of it has gone."""
 
@@ -100,6 +102,8 @@ class Search:
         """Activities last found to be dead with the help of other processes."""
         self._foreign: dict[Ring, Foreign] = {}
         """If the process that must report them goes, another one has to say that they are over."""
+        self._loosened: dict[Ring, int] = {}
+        """Of those: when its waits here were first seen to be over, in nanoseconds."""
         self._is_watching = False
         self._behind: dict[Ring, set[str]] = {}
         """What was reported to wait for a deadlock, by deadlock of any process."""
@@ -175,15 +179,15 @@ class Search:
         self._take_back(graph, dead, {mine})
         if any(report.processes != {mine} for report in self.reports.values()):
             self._ask(self._look_again)
+        self._forget_foreign(graph)
         waiting = {(a.id, a.wait) for a in graph.activities.values() if a.wait is not FREE}
         if not waiting and not any(q.waiting for q in graph.queues.values()):
             self.is_armed = not self.is_on
             self._last.clear()
             self._behind.clear()
-            self._foreign.clear()
             self._stall(graph, set())
-            if any(node.tasks for node in self._process.nodes):
-                self._schedule(TASKS_EVERY)
+            if self._foreign or any(node.tasks for node in self._process.nodes):
+                self._schedule(FORGET_AFTER if self._foreign else TASKS_EVERY)
             return
         young = [a.age for a in graph.activities.values() if a.wait is not FREE and not _is_old(a)]
         found = explained(graph, dead)
@@ -263,7 +267,6 @@ class Search:
 
     def _conclude(self, before: WaitGraph, now: WaitGraph) -> None:
         self._dead = deadlocked(now, before)
-        self._foreign = {ring: foreign for ring, foreign in self._foreign.items() if ring <= self._dead}
         for deadlock in explained(now, self._dead):
             self._tell(deadlock, now)
         if self.reports:  # to see when they are over
@@ -339,17 +342,27 @@ class Search:
             if not ring <= dead:  # otherwise they are in another, which is reported now
                 logger.warning("the deadlock of %s has cleared", report.who)
 
+    def _forget_foreign(self, graph: WaitGraph) -> None:
+        """Forget deadlocks that others report and whose waits here have been over for a while: they have cleared.
+
+        Not at once: the process that was to say so may have gone, and its calls end before its tokens do.
+        """
+        now_ns, known = self._process.clock.monotonic_ns(), graph.activities
+        for ring, foreign in list(self._foreign.items()):
+            if all(name in known and known[name].wait == wait for name, wait in foreign.waits):
+                self._loosened.pop(ring, None)
+            elif now_ns - self._loosened.setdefault(ring, now_ns) >= to_ns(0.999 * FORGET_AFTER):
+                del self._foreign[ring], self._loosened[ring]
+
     def _changed(self, change: GraphChange) -> None:
         """A process that must report a deadlock may be going, and the deadlock with it."""
         if change.alive:
             return
         leaving = {ring for ring, foreign in self._foreign.items() if foreign.reporter == change.entity.zid}
         for ring in leaving:
-            foreign, known = self._foreign.pop(ring), self.snapshot.take().activities
-            # What waits for the process has been told that it has gone, and has not gone on yet.
-            if all(name in known and known[name].wait in (wait, FREE) for name, wait in foreign.waits):
-                clock = self._process.clock
-                clock.call_at(clock.monotonic_ns() + to_ns(GONE_AFTER), partial(self._say_gone, ring, foreign))
+            foreign, clock = self._foreign.pop(ring), self._process.clock
+            self._loosened.pop(ring, None)
+            clock.call_at(clock.monotonic_ns() + to_ns(GONE_AFTER), partial(self._say_gone, ring, foreign))
 
     def _say_gone(self, ring: Ring, foreign: Foreign) -> None:
         there = {entity.zid for entity in self._process.cache}
