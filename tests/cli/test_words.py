@@ -19,6 +19,7 @@ from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.values import from_plain
+from tests.cases import count
 
 CIRCLE = "{linear: {x: 2.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 1.8}}"
 FLAGS, VALUED = frozenset({"-1", "--once"}), frozenset({"-r", "--rate", "-t"})
@@ -166,7 +167,7 @@ def test_values_that_are_no_message(words: list[str], message: str) -> None:
     assert message in str(caught.value)
 
 
-@settings(derandomize=True, max_examples=300, deadline=None)
+@settings(derandomize=True, max_examples=count(few=75, full=300), deadline=None)
 @given(st.lists(st.sampled_from(["-1", "-r", "5", "{a:", "-2}", "[", "]", "x", "--", "--no", "--rate=3", "'", "-r5"])))
 def test_no_word_is_lost(words: list[str]) -> None:
     """Splitting moves words, and never makes, changes or drops one; only separators are its own."""

@@ -14,6 +14,7 @@ from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
 from graphflow.graph.plan import Plan, Rule, Setting
 from graphflow.graph.resolve import find_cycle, load, resolve
+from tests.cases import count
 
 ENV = {"USER": "ada"}
 
@@ -400,7 +401,7 @@ def test_rings(edges: dict[str, list[str]], ring: list[str]) -> None:
     assert find_cycle(edges) == ring
 
 
-@settings(derandomize=True, max_examples=200, deadline=None)
+@settings(derandomize=True, max_examples=count(few=50, full=200), deadline=None)
 @given(st.dictionaries(st.sampled_from("abcdef"), st.lists(st.sampled_from("abcdef"), max_size=4)))
 def test_a_ring_is_one(edges: dict[str, list[str]]) -> None:
     """What is found is a ring of the edges, and nothing is found only where repeated removal of leaves ends."""
@@ -482,7 +483,7 @@ def written(value: Any, path: source.Path = ()) -> source.Source:
     return found
 
 
-@settings(derandomize=True, max_examples=600, deadline=None)
+@settings(derandomize=True, max_examples=count(few=150, full=600), deadline=None)
 @given(FILES | TREES, st.lists(WORDS, max_size=2))
 def test_any_tree_is_a_plan_or_a_list_of_problems(tree: Any, given: list[str]) -> None:
     """No content of a file leads to another error than GraphFileError, and a plan survives JSON."""

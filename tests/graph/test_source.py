@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from graphflow.errors import GraphFileError, GraphflowError, Place
 from graphflow.graph import source
 from graphflow.graph.source import MAX_BYTES, MAX_DEPTH, MAX_VALUES, parse_value, read, read_file, scalar
+from tests.cases import count
 
 
 def refused(text: str) -> str:
@@ -266,14 +267,14 @@ VALUES = st.recursive(
 )
 
 
-@settings(derandomize=True, max_examples=150, deadline=None)
+@settings(derandomize=True, max_examples=count(few=37, full=150), deadline=None)
 @given(VALUES)
 def test_json_is_yaml(value: Any) -> None:
     """What JSON can write, the reader reads as the same data."""
     assert read(json.dumps(value), "f.yaml").data == json.loads(json.dumps(value))
 
 
-@settings(derandomize=True, max_examples=300, deadline=None)
+@settings(derandomize=True, max_examples=count(few=75, full=300), deadline=None)
 @given(st.text(alphabet="ab01.:-,#&*!|>%@'\"{}[]?~ \n\t$()é\0", max_size=40))
 def test_no_text_breaks_the_reader(text: str) -> None:
     """Any text is data or a GraphFileError, and every value and key of the data has a place."""

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import graphflow
 from graphflow.graph.substitutions import MAX_DEPTH, SubstitutionError, Substitutions
+from tests.cases import count
 
 ARGS: dict[str, Any] = {
     "name": "turtle2",
@@ -148,7 +149,7 @@ def test_arguments_asked_for_are_noted() -> None:
     assert substitutions.used == {"name", "which", "gain"}
 
 
-@settings(derandomize=True, max_examples=300, deadline=None)
+@settings(derandomize=True, max_examples=count(few=75, full=300), deadline=None)
 @given(
     st.lists(st.sampled_from(["$(", "$", "(", ")", "var ", "env ", "name", "USER", "dirname", " ", "x"]), max_size=12)
 )

@@ -14,6 +14,7 @@ from graphflow.graph.source import read
 from graphflow.introspect.echo import block, csv, flow, plain, scalar, truncated
 from graphflow.msgs.geometry_msgs.msg import Pose, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterEvent, ParameterValue
+from tests.cases import count
 
 
 def test_plain_is_made_of_dicts_lists_and_scalars() -> None:
@@ -142,7 +143,7 @@ DATA = st.recursive(
 )
 
 
-@settings(derandomize=True, max_examples=400, deadline=None)
+@settings(derandomize=True, max_examples=count(few=100, full=400), deadline=None)
 @given(st.dictionaries(FIELDS, DATA, min_size=1, max_size=4))
 def test_what_is_printed_reads_back_as_the_same_data(data: dict[str, Any]) -> None:
     """Block and flow style are YAML: whatever a message holds, a program gets it back."""
@@ -150,7 +151,7 @@ def test_what_is_printed_reads_back_as_the_same_data(data: dict[str, Any]) -> No
     assert read(flow(data), "flow").data == data
 
 
-@settings(derandomize=True, max_examples=200, deadline=None)
+@settings(derandomize=True, max_examples=count(few=50, full=200), deadline=None)
 @given(TEXTS.filter(lambda text: text != "..."))
 def test_a_text_alone_reads_back(text: str) -> None:
     """One string field by itself, as `--field` prints it, is YAML, too."""

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from graphflow.machines.group import GroupState
+from tests.cases import count
 
 
 def test_slots_are_given_until_the_limit() -> None:
@@ -147,7 +148,7 @@ class Schedules(RuleBasedStateMachine):
 
 
 TestSchedules = Schedules.TestCase
-TestSchedules.settings = settings(max_examples=100, stateful_step_count=30, deadline=None)
+TestSchedules.settings = settings(max_examples=count(few=25, full=100), stateful_step_count=30, deadline=None)
 
 
 @given(

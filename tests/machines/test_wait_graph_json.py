@@ -25,6 +25,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
 )
 from graphflow.machines.wait_graph_json import DEEPEST, VERSION, from_json, to_json
+from tests.cases import count
 
 TEXT = st.text(max_size=5)
 TEXTS = st.lists(TEXT, max_size=3).map(tuple)
@@ -111,7 +112,7 @@ def damaged(draw: st.DrawFn) -> Any:
         return data
 
 
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(deadline=None, derandomize=True, max_examples=count(few=125, full=500))
 @given(damaged() | JUNK | JUNK.map(one))
 @example(one(["call", "id"]))
 @example(one(["set", "self.arrived", []]))
