@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, Phase, settings
@@ -31,3 +33,9 @@ def cases(number: int) -> settings:
 def limit(number: int) -> pytest.MarkDecorator:
     """The time that so many cases may take."""
     return pytest.mark.timeout(120 + number // 5)
+
+
+def some(names: Iterable[str], *always: str) -> list[Any]:
+    """Parameters of a slow test: `always` these, the others with `--cases full`, as in CI."""
+    skipped = pytest.mark.skipif(_WANTED == "few", reason="one of several slow ones; CI tries all: --cases full")
+    return [pytest.param(name, marks=() if name in always else skipped) for name in names]

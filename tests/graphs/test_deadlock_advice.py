@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.cases import some
 from tests.conftest import PROGRAMS, Program
 from tests.graphs.lab import Lab, end_at_once, line_of, reports, wait_for_all
 
@@ -138,7 +139,7 @@ WRITTEN = {
 }
 
 
-@pytest.mark.parametrize("name", WRITTEN)
+@pytest.mark.parametrize("name", some(WRITTEN, "an event", "a sleep on the loop", "an action and a pose"))
 def test_advice_that_is_followed(lab: Lab, name: str) -> None:
     """The report names the line, and with what it says to write the graph goes on."""
     case = WRITTEN[name]
