@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 
 import pytest
@@ -14,6 +15,9 @@ PAGE = (PROJECT / "docs" / "architecture.md").read_text(encoding="utf-8")
 NOT_YET = {"tui", "bag"}
 """Rooms that the table of rooms has a place for, and nothing in."""
 FILES = sorted(set(re.findall(r"`([a-z_]+/[a-z_/]+\.py)`", PAGE)))
+
+LIMITS = re.findall(r"^\| ([\d.]+) \| .*: `([A-Z_]+)` \| `([a-z_/]+\.py)` \|$", PAGE, re.MULTILINE)
+assert len(LIMITS) == 6, "the table of limits is not read"
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -34,6 +38,13 @@ def test_every_room_is_in_the_picture() -> None:
 def test_the_life_of_a_goal_is_that_of_the_table() -> None:
     """Every phase is in it."""
     assert all(phase.name in PAGE for phase in Phase if phase is not Phase.REJECTED)
+
+
+@pytest.mark.parametrize(("seconds", "name", "file"), LIMITS)
+def test_every_limit_has_its_value(seconds: str, name: str, file: str) -> None:
+    """In the file that the page names."""
+    module = importlib.import_module(f"graphflow.{file.removesuffix('.py').replace('/', '.')}")
+    assert getattr(module, name) == float(seconds)
 
 
 def test_every_row_that_a_test_cites_is_there() -> None:
