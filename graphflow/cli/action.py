@@ -123,7 +123,9 @@ def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedbac
         there = view.cache.actions().get(full)
         if type_name is None:
             types = _types(view, full)
-            raise UsageFault(f"TYPE is missing; {full} is a {types[0]}: graphflow action send_goal {full} {types[0]}")
+            raise UsageFault(
+                f"TYPE is missing; {full} is of type {types[0]}: graphflow action send_goal {full} {types[0]}"
+            )
     wanted = registry.full_name(type_name)
     actual = agree(wanted, there[0], full) if there else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values))

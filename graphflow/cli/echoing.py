@@ -139,7 +139,7 @@ def _field_path(text: str, type_name: str) -> list[str | int]:
         parts.append(word)
         if index:
             if not type_.array:
-                raise UsageFault(f"{at} is a {type_} and has no elements")
+                raise UsageFault(f"{at} is of type {type_} and has no elements")
             type_, at = type_._replace(array="", size=0), f"{at}[{index}]"
             parts.append(int(index))
     return parts
@@ -150,7 +150,7 @@ def _field_type(type_: FieldType, at: str, word: str) -> FieldType:
     if type_.array:
         raise UsageFault(f"{at} is a list; say which element, as in {at}[0]")
     if type_.is_primitive:
-        raise UsageFault(f"{at} is a {type_} and has no field {word!r}")
+        raise UsageFault(f"{at} is of type {type_} and has no field {word!r}")
     fields = {f.name: f.type for f in registry.message_schema(type_.base).fields}
     if word not in fields:
         raise UsageFault(f"{type_.base} has no field {word!r}{did_you_mean(word, fields)}")

@@ -59,7 +59,7 @@ def call(
     if type_name is None:
         with View(domain_id()) as view:
             actual = view.service_type(full)
-        raise UsageFault(f"TYPE is missing; {full} is a {actual}: graphflow service call {full} {actual}")
+        raise UsageFault(f"TYPE is missing; {full} is of type {actual}: graphflow service call {full} {actual}")
     wanted = registry.full_name(type_name)
     values_read = message_values(values)
     with View(domain_id()) as view:

@@ -27,6 +27,6 @@ def agree(given: str, actual: str, name: str) -> str:
 
     # turtlesim and turtlesim_msgs hold the same types under two names.
     if registry.definition_file(given) == registry.definition_file(actual):
-        output.talk(f"note: {name} is a {actual}; using that")
+        output.talk(f"note: {name} is of type {actual}; using that")
         return actual
-    raise UsageFault(f"{name} is a {actual}, not a {given}")
+    raise UsageFault(f"{name} is of type {actual}, not {given}")

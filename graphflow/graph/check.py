@@ -136,7 +136,7 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
                 rule = next((r for r in node.remaps if names.full(r.replacement) == name), None)
                 yield Problem(
                     rule.place if rule else node.class_place,
-                    f"{kind} {name} is a {type_} for {owner}, but a {endpoint.type} for {node.name}",
+                    f"{kind} {name} is of type {type_} for {owner}, but {endpoint.type} for {node.name}",
                 )
 
 

@@ -155,7 +155,7 @@ class View:
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:
         for server in self.cache.endpoints(Kind.SERVICE, name):
             if server.type != type_name:
-                return f"{name} is a {server.type}, not a {type_name}"
+                return f"{name} is of type {server.type}, not {type_name}"
             if server.hash != hash_:
                 return f"{name}: the server's {type_name} has a different definition from the one here"
         return f"{name}: the server went away before it answered"

@@ -221,7 +221,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         actions = self.host.context.cache.actions()
         offered = [type_ for type_ in actions.get(self.name, ()) if type_ != self.type.NAME]
         if offered:
-            return f"action {self.name} is a {offered[0]}, not a {self.type.NAME}"
+            return f"action {self.name} is of type {offered[0]}, not {self.type.NAME}"
         near = did_you_mean(self.name, [name for name in actions if name != self.name])
         return f"no node offers the action {self.name} [{self.type.NAME}]{near}"
 

@@ -203,6 +203,11 @@ class ClientLine:
         self._sender = switchboard.open_sender("ask", server.zid, str(server.eid), self._changed)
         self._changed()
 
+    @property
+    def is_heard(self) -> bool:
+        """Whether the server listens, which only graphflow's do: it is sure before the line is open."""
+        return self._sender.is_wanted
+
     def _changed(self) -> None:
         if not self._sender.is_wanted:
             self.is_open = False

@@ -148,7 +148,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         if self.name in services:
             offered = [e.type for e in self.host.context.cache.endpoints(Kind.SERVICE, self.name)]
             if offered and self.type_name not in offered:
-                return f"service {self.name} is a {offered[0]}, not a {self.type_name}"
+                return f"service {self.name} is of type {offered[0]}, not {self.type_name}"
         if self.host.serves(self.name):
             return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
         offers = {e.name for e in self.host.context.cache.endpoints(Kind.SERVICE)}
@@ -243,11 +243,13 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         self, sequence: int, payload: bytes, beside: bytes, chain: bytes, arrived: Callable[[Answer | None], None]
     ) -> Callable[[], None]:
         """Send a request; returns a function that gives up the response."""
-        if self._line is not None and self._line.is_open and len(self.matched) == 1:
-            return self._line.call(sequence, payload, beside + chain, arrived)
+        line = self._line if len(self.matched) == 1 else None
+        if line is not None and line.is_open:
+            return line.call(sequence, payload, beside + chain, arrived)
         assert self._caller is not None
-        # Servers other than this process's own may not understand what follows the attachment.
-        return self._caller.call(payload, beside + chain if self._is_own() else beside, arrived)
+        # Servers other than graphflow's may not understand what follows the attachment.
+        is_understood = self._is_own() or (line is not None and line.is_heard)
+        return self._caller.call(payload, beside + chain if is_understood else beside, arrived)
 
     def _queued(self, answered: Callable[[Answer | None], None], call: str) -> Callable[[Answer | None], None]:
         """Make responses wait for a slot of the client's group."""

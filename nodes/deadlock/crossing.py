@@ -15,7 +15,7 @@ class Neighbour(Node):
 
     @timer(1.0)
     async def greet(self) -> None:
-        await self.clock.sleep(0.1)  # so that both call at the same time
+        await self.clock.sleep(0.6)  # more than half a period: so both are at it when they call
         response = await self.other.call(Trigger.Request())
         self.log.info("the other one says: %s", response.message)
 

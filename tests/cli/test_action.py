@@ -53,9 +53,12 @@ def test_info(standing: Machine) -> None:
         ("find example_interfaces/action/Fibonaci", "did you mean 'Fibonacci'?"),
         (
             "send_goal /fibonacci",
-            f"TYPE is missing; /fibonacci is a {TYPE}: graphflow action send_goal /fibonacci {TYPE}",
+            f"TYPE is missing; /fibonacci is of type {TYPE}: graphflow action send_goal /fibonacci {TYPE}",
         ),
-        ("send_goal /fibonacci turtlesim/action/RotateAbsolute", f"/fibonacci is a {TYPE}, not a turtlesim/action/Rot"),
+        (
+            "send_goal /fibonacci turtlesim/action/RotateAbsolute",
+            f"/fibonacci is of type {TYPE}, not turtlesim/action/Rot",
+        ),
         (f"send_goal /fibonacci {TYPE} {{ordr: 1}}", "did you mean 'order'?"),
     ],
 )

@@ -107,8 +107,8 @@ def test_paths(text: str, type_name: str, path: list[str | int]) -> None:
     [
         ("liner.x", "geometry_msgs/msg/Twist has no field 'liner'; did you mean 'linear'?"),
         ("linear.w", "geometry_msgs/msg/Vector3 has no field 'w'; there is x, y, z"),
-        ("linear.x.y", "linear.x is a float64 and has no field 'y'"),
-        ("linear[0]", "linear is a geometry_msgs/msg/Vector3 and has no elements"),
+        ("linear.x.y", "linear.x is of type float64 and has no field 'y'"),
+        ("linear[0]", "linear is of type geometry_msgs/msg/Vector3 and has no elements"),
         ("[0]", "write FIELD.FIELD or FIELD[0]"),
         ("linear[a]", "write FIELD.FIELD or FIELD[0]"),
         ("linear..x", "write FIELD.FIELD or FIELD[0]"),

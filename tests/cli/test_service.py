@@ -39,9 +39,9 @@ def test_call(standing: Machine) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [
-        ([ADD], 2, f"error: TYPE is missing; {ADD} is a {TYPE}: graphflow service call {ADD} {TYPE}"),
+        ([ADD], 2, f"error: TYPE is missing; {ADD} is of type {TYPE}: graphflow service call {ADD} {TYPE}"),
         (["/office/clerk/ad"], 1, f"no node offers the service /office/clerk/ad; did you mean '{ADD}'?"),
-        ([ADD, "std_srvs/srv/Trigger"], 2, f"error: {ADD} is a {TYPE}, not a std_srvs/srv/Trigger"),
+        ([ADD, "std_srvs/srv/Trigger"], 2, f"error: {ADD} is of type {TYPE}, not std_srvs/srv/Trigger"),
         ([ADD, TYPE, "{a: -1}"], 1, f"the handler of {ADD} raised ValueError: no debts"),
         ([ADD, TYPE, "{a: x}"], 2, "AddTwoInts_Request.a: expected int64, got 'x'"),
         ([ADD, TYPE, "{c: 1}"], 2, "c"),

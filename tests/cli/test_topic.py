@@ -84,8 +84,16 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
         ("topic info /chater", 1, "error: Unknown topic '/chater'; did you mean '/chatter'?"),
         ("topic echo /chater", 1, "topic /chater does not appear to be published yet; did you mean '/chatter'?"),
         ("topic echo /chater", 1, "to wait for it, give its type: graphflow topic echo /chater TYPE"),
-        ("topic echo /chatter std_msgs/msg/Int32", 2, "error: /chatter is a std_msgs/msg/String, not a std_msgs/msg/"),
-        ("topic pub /chatter std_msgs/msg/Int32 data: 1", 2, "/chatter is a std_msgs/msg/String, not a std_msgs/msg/I"),
+        (
+            "topic echo /chatter std_msgs/msg/Int32",
+            2,
+            "error: /chatter is of type std_msgs/msg/String, not std_msgs/msg/",
+        ),
+        (
+            "topic pub /chatter std_msgs/msg/Int32 data: 1",
+            2,
+            "/chatter is of type std_msgs/msg/String, not std_msgs/msg/I",
+        ),
         ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
         ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "did you mean 'String'?"),
     ],

@@ -20,12 +20,12 @@ def test_the_same_type(capsys: pytest.CaptureFixture[str]) -> None:
 def test_one_definition_under_two_names(capsys: pytest.CaptureFixture[str]) -> None:
     """The graph's name is taken, which is said."""
     assert agree("turtlesim_msgs/msg/Pose", "turtlesim/msg/Pose", "/turtle1/pose") == "turtlesim/msg/Pose"
-    assert capsys.readouterr() == ("", "note: /turtle1/pose is a turtlesim/msg/Pose; using that\n")
+    assert capsys.readouterr() == ("", "note: /turtle1/pose is of type turtlesim/msg/Pose; using that\n")
 
 
 def test_two_types() -> None:
     """It is wrong usage, and the right one is named."""
-    with pytest.raises(UsageFault, match=r"^/chatter is a std_msgs/msg/String, not a std_msgs/msg/Int32$"):
+    with pytest.raises(UsageFault, match=r"^/chatter is of type std_msgs/msg/String, not std_msgs/msg/Int32$"):
         agree("std_msgs/msg/Int32", "std_msgs/msg/String", "/chatter")
 
 

@@ -260,10 +260,10 @@ def test_the_types_word_comes_first() -> None:
         (
             "goal: cmd_vel",
             "4:13",
-            "topic /cmd_vel is a geometry_msgs/msg/Twist for /b, but a turtlesim/msg/Pose for /b",
+            "topic /cmd_vel is of type geometry_msgs/msg/Twist for /b, but turtlesim/msg/Pose for /b",
         ),
-        ("goal: /c", "4:13", "topic /c is a std_msgs/msg/String for /a, but a turtlesim/msg/Pose for /b"),
-        ("spawn: /s", "4:13", "service /s is a std_srvs/srv/Empty for /a, but a turtlesim/srv/Spawn for /b"),
+        ("goal: /c", "4:13", "topic /c is of type std_msgs/msg/String for /a, but turtlesim/msg/Pose for /b"),
+        ("spawn: /s", "4:13", "service /s is of type std_srvs/srv/Empty for /a, but turtlesim/srv/Spawn for /b"),
     ],
 )
 def test_one_name_with_two_types(remap: str, place: str, problem: str) -> None:

@@ -68,7 +68,7 @@ def test_turtlesim(machine: Machine) -> None:
     assert "did you mean '/turtlesim'?" in machine.look("param", "get", "/turtelsim", "background_r", code=1)
     assert "did you mean 'background_r'?" in machine.look("param", "get", "/turtlesim", "backgroundr", code=1)
 
-    assert "/spawn is a turtlesim/srv/Spawn" in machine.look("service", "call", "/spawn", code=2)
+    assert "/spawn is of type turtlesim/srv/Spawn" in machine.look("service", "call", "/spawn", code=2)
     assert "did you mean '/spawn'?" in machine.look("service", "call", "/spwan", code=1)
     spawned = machine.look(
         "service", "call", "/spawn", "turtlesim_msgs/srv/Spawn", "{x: 2, y: 2, theta: 0.2, name: ''}"

@@ -153,7 +153,7 @@ def test_a_call_that_fails(
 @pytest.mark.parametrize(
     ("other", "text"),
     [
-        (server(type_="std_srvs/srv/Trigger"), f"{ADD} is a std_srvs/srv/Trigger, not a {TYPE}"),
+        (server(type_="std_srvs/srv/Trigger"), f"{ADD} is of type std_srvs/srv/Trigger, not {TYPE}"),
         (server(hash_="RIHS01_0"), f"{ADD}: the server's {TYPE} has a different definition from the one here"),
     ],
 )

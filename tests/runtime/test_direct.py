@@ -103,6 +103,31 @@ async def test_a_call_under_way_outlives_the_coming_of_another_server(graph: Gra
     assert (await answer).sum == 5
 
 
+@pytest.mark.parametrize("is_heard", [True, False])
+async def test_a_query_carries_a_chain_to_graphflow_alone(
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, is_heard: bool
+) -> None:
+    """Who listens for lines understands chains, even when its word that it is heard has yet to come."""
+    await graph.start(Adder())
+    node, client, _ = await asker(graph)
+    line, caller, carried = client._line, client._caller, []
+    assert line is not None
+    assert caller is not None
+    really_call = caller.call
+
+    def call(payload: Any, beside: bytes, answered: Any) -> Any:
+        carried.append(beside[attachment.SIZE :])
+        return really_call(payload, beside[: attachment.SIZE], answered)
+
+    line.is_open = False
+    monkeypatch.setattr(caller, "call", call)
+    monkeypatch.setattr(client, "_is_own", lambda: False)
+    monkeypatch.setattr(type(line), "is_heard", is_heard)
+    monkeypatch.setattr(node.context.search, "chain", lambda call: b"chain")
+    assert (await client.call(REQUEST)).sum == 5
+    assert carried == [b"chain" if is_heard else b""]
+
+
 async def test_a_server_of_another_kind_gets_queries(graph: Graph) -> None:
     """A ROS 2 server knows nothing of lines."""
     _, client, queries = await asker(graph)

@@ -50,7 +50,7 @@ async def test_a_service_of_another_type(graph: Graph) -> None:
 
     with pytest.raises(ServiceUnavailable) as caught:
         await call
-    assert str(caught.value) == "service /add is a example_interfaces/srv/AddTwoInts, not a std_srvs/srv/Trigger"
+    assert str(caught.value) == "service /add is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Trigger"
 
 
 async def test_a_call_does_not_wait_longer_for_discovery_than_for_its_answer(graph: Graph) -> None:
