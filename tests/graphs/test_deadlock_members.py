@@ -1,6 +1,6 @@
 """Members of a ring that leave, die or stand still.
 
-The numbers of rows are those of the matrix of the concurrency design.
+The numbers of rows are those of docs/architecture.md, "What the search must tell apart".
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Rings of real processes that wait for each other over Zenoh: what is told of them, once, and what ends them.
 
-The numbers of rows are those of the matrix of the concurrency design.
+The numbers of rows are those of docs/architecture.md, "What the search must tell apart".
 """
 
 from __future__ import annotations

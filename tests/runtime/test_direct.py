@@ -122,7 +122,7 @@ async def test_a_query_carries_a_chain_to_graphflow_alone(
     line.is_open = False
     monkeypatch.setattr(caller, "call", call)
     monkeypatch.setattr(client, "_is_own", lambda: False)
-    monkeypatch.setattr(type(line), "is_heard", is_heard)
+    monkeypatch.setattr(type(line._sender), "is_wanted", is_heard)
     monkeypatch.setattr(node.context.search, "chain", lambda call: b"chain")
     assert (await client.call(REQUEST)).sum == 5
     assert carried == [b"chain" if is_heard else b""]
