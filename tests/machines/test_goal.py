@@ -20,6 +20,7 @@ from graphflow.machines.goal import (
     GoalRules,
     GoalStatus,
     Phase,
+    Step,
     step,
 )
 from tests.machines.rcl_goals import NEXT
@@ -220,3 +221,23 @@ def test_an_id_is_good_for_one_goal() -> None:
     """A goal cannot be entered twice."""
     with pytest.raises(ValueError, match="is already known"):
         book().ask(A, bytes(16))
+
+
+def test_what_every_row_of_an_event_does() -> None:
+    """In whatever phase it happens: rows that one scenario alone would not reach."""
+    ends = {GoalEvent.RETURNED: Phase.SUCCEEDED, GoalEvent.FAILED: Phase.ABORTED, GoalEvent.OUTSTAYED: Phase.ABORTED}
+    for (phase, event), row in STEPS.items():
+        if event in ends:
+            assert row.phase is ends[event], (phase, event)
+        if event is GoalEvent.UNWOUND:
+            assert row.phase is (Phase.CANCELED if phase is Phase.CANCELING else Phase.ABORTED), phase
+        if event is GoalEvent.OUTSTAYED:
+            assert row.do == (Do.DEGRADE,), phase
+        if event is GoalEvent.CLIENT_LOST and phase is not Phase.CANCELING:
+            assert row == Step(phase, (Do.AWAIT_CLIENT,)), phase
+        if phase is Phase.QUEUED and row.phase not in (Phase.QUEUED, Phase.RUNNING):
+            assert (Do.DEQUEUE in row.do) is (event is not GoalEvent.DROPPED), event  # the queue itself has dropped it
+        if phase is Phase.DECIDING and event not in (GoalEvent.ACCEPTED, GoalEvent.CLIENT_LOST):
+            assert row.phase is Phase.REJECTED, event
+        if phase in (Phase.RUNNING, Phase.PREEMPTED) and event is GoalEvent.CANCEL:
+            assert row.phase is Phase.CANCELING, phase
