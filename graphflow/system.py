@@ -36,3 +36,20 @@ def host_name() -> str:
     import platform  # importing it takes a tenth of a listing's time
 
     return re.sub(r"[^\w.-]", "_", platform.node())
+
+
+def end_with_parent(pid: int) -> None:
+    """Have the system interrupt this process when its parent ends, however that happens; on Linux only.
+
+    Args:
+        pid: The parent, which may have ended already.
+    """
+    if sys.platform != "linux":
+        return
+    import ctypes
+    import signal
+
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, int(signal.SIGINT))
+    if os.getppid() != pid:
+        os.kill(os.getpid(), signal.SIGINT)

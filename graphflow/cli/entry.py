@@ -16,6 +16,10 @@ if _IS_HEARD:
 
 def main() -> None:
     """Run the command that the command line names."""
+    if os.environ.get("GRAPHFLOW_ENDS_WITH"):
+        from graphflow.system import end_with_parent
+
+        end_with_parent(int(os.environ.pop("GRAPHFLOW_ENDS_WITH")))
     from graphflow.cli.main import main
 
     if _IS_HEARD:

@@ -15,9 +15,6 @@ from graphflow.cli.reaching import reach, reach_options
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.wire.profile import PROFILES, VARIABLE
 
-GONE_LIMIT = 10.0
-"""Seconds that a supervisor may take to end once its nodes have."""
-
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 
 
@@ -25,6 +22,7 @@ _graph = click.option("--graph", "name", metavar="NAME", help="Which running gra
 @click.argument("graph", metavar="GRAPH.yaml|NAME")
 @click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 @click.option("-d", "--detach", is_flag=True, help="Leave it running in the background.")
+@click.option("--no-console", is_flag=True, help="Show logs instead of the console; Ctrl-C then stops the graph.")
 @click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
 @click.option("--private", is_flag=True, help="Use a port and a domain of its own.")
 @click.option("--races", is_flag=True, help="Report updates of node attributes that are lost between handlers.")
@@ -35,6 +33,7 @@ def up(
     graph: str,
     args: tuple[str, ...],
     detach: bool,
+    no_console: bool,
     show_args: bool,
     private: bool,
     races: bool,
@@ -43,7 +42,10 @@ def up(
     connect: tuple[str, ...],
     net: str | None,
 ) -> int:
-    """Start a graph from its file and show its logs. Ctrl-C stops it."""
+    """Start a graph from its file and open the console on it.
+
+    Without a terminal, or with --no-console, its logs are shown and Ctrl-C stops it.
+    """
     if wire is not None:
         os.environ[VARIABLE] = wire
     if races:
@@ -61,13 +63,23 @@ def up(
     # Nothing heavy may be imported before the fork: the children share what this process has.
     from graphflow.supervisor.launch import launch
 
-    report = launch(path, list(args), domain, attached=not detach)
+    uses_console = not detach and not no_console and output.is_terminal()
+    report = launch(path, list(args), domain, attached=not detach and not uses_console)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])
+    if uses_console:
+        return _open_console(report["run"])
     from graphflow.cli.streaming import stream
 
     return stream(report["run"], report["classes"], detach=detach)
+
+
+def _open_console(run: dict[str, Any]) -> int:
+    from graphflow.cli.console import show
+    from graphflow.supervisor.rundir import GraphRun
+
+    return show(GraphRun(**run), run["domain"])
 
 
 def _go_private(domain: int | None) -> int:
@@ -110,26 +122,13 @@ def _show_args(path: Path) -> int:
 def down(name: str | None, everything: bool, now: bool) -> int:
     """Stop a running graph; returns when all its processes have ended."""
     from graphflow.supervisor import rundir
-    from graphflow.supervisor.control import ControlClient
 
     runs = rundir.running() if everything else [rundir.choose(name)]
     if not runs:
         raise SupervisorError("no graph is running", exit_code=exits.NOT_RUNNING)
-    code = exits.OK
-    for run in runs:
-        with ControlClient(run.socket) as client:
-            client.send(do="down", now=now)
-            for event in client.receive(timeout=60.0):
-                if event["event"] == "exited":
-                    output.talk(f"  {', '.join(event['nodes'])} ended")
-                elif event["event"] == "end":
-                    break
-        if not run.wait_gone(GONE_LIMIT):
-            output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
-            code = exits.TIMEOUT
-        else:
-            output.data(f"graph {run.graph} is down")
-    return code
+    from graphflow.cli.streaming import take_down
+
+    return max(take_down(run, now=now) for run in runs)
 
 
 @click.command()
@@ -166,22 +165,12 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
             row["node"],
             row["state"] + (f" ({row['detail']})" if row["detail"] else ""),
             str(row["pid"] or "-"),
-            _ago(now - row["since"]),
+            output.ago(now - row["since"]),
             row["class"],
         )
         for row in rows
     ]
-    widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
-
-
-def _ago(seconds: float) -> str:
-    whole = max(0, int(seconds))
-    if whole < 60:
-        return f"{whole}s"
-    if whole < 3600:
-        return f"{whole // 60}m{whole % 60:02d}s"
-    return f"{whole // 3600}h{whole % 3600 // 60:02d}m"
+    return output.columns(cells)
 
 
 @click.command()

@@ -21,7 +21,11 @@ _VERBS = {
     "init": ("init", "Write a starter project."),
     "up": ("graphs", "Start a graph from its file."),
     "down": ("graphs", "Stop a running graph."),
+    "attach": ("console", "Open the console on a running graph."),
+    "ls": ("console", "List running graphs."),
     "ps": ("graphs", "List the nodes of running graphs."),
+    "restart": ("nodes", "Restart nodes, whether they run or have ended."),
+    "stop": ("nodes", "Stop nodes."),
     "logs": ("graphs", "Show what the nodes of a graph have written."),
     "plan": ("files", "Show exactly what a graph file would run."),
     "check": ("files", "Report every mistake in a graph file."),
@@ -35,12 +39,13 @@ _VERBS = {
     "waits": ("waits", "Show which handlers hold slots, what they wait for, and where."),
     "groups": ("waits", "Show a node's concurrency groups, or move a handler into another."),
     "doctor": ("waits", "Check the running graph for problems."),
+    "console": ("console", "Open the console on a running graph, here or in a browser."),
     "interface": ("interface", "Show message, service and action types."),
 }
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
-_OTHER_WORDS = {"launch": "up", "start": "up", "stop": "down", "kill": "down", "interfaces": "interface"}
+_OTHER_WORDS = {"launch": "up", "start": "up", "kill": "down", "interfaces": "interface"}
 """What people coming from other tools type."""
 
 

@@ -10,16 +10,14 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.words import ValueCommand
 from graphflow.domain import domain_id
-from graphflow.errors import CallError, GraphflowError, UsageFault
-from graphflow.introspect.parameters import RemoteParameters
+from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.parameters import RemoteParameters, as_declared, read_value
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
-
-_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
 @click.group()
@@ -211,7 +209,7 @@ def _load(remote: RemoteParameters, settings: dict[str, Any]) -> bool:
             output.error(f"{setting.place}: {remote.unknown(name)}")
             failed = failed or not setting.is_optional
             continue
-        message = _message(_as_declared(setting.value, described[name].type), described[name])
+        message = _message(as_declared(setting.value, described[name].type), described[name])
         if described[name].read_only and message == present[name]:
             output.data(f"Parameter {name} is read-only and already has this value")
             continue
@@ -230,44 +228,3 @@ def _message(value: Any, declared: ParameterDescriptor) -> ParameterValue:
     from graphflow.runtime.values import to_message
 
     return to_message(value, declared.type if value == [] else type_id(value))
-
-
-def read_value(text: str, type_: int) -> Any:
-    """A value from the command line as the declared type takes it: quoted or not, `on` for a bool, 2 for a double.
-
-    Args:
-        type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter of any type.
-
-    Raises:
-        UsageFault: `text` is not YAML.
-    """
-    from graphflow.graph.source import parse_value
-
-    if type_ == 4:
-        try:
-            value = parse_value(text)
-        except GraphflowError:
-            return text
-        return value if isinstance(value, str) else text
-    if type_ == 1 and text.lower() in _WORDS:
-        return _WORDS[text.lower()]
-    try:
-        value = parse_value(text)
-    except GraphflowError as error:
-        raise UsageFault(str(error)) from None
-    return _as_declared(value, type_)
-
-
-def _as_declared(value: Any, type_: int) -> Any:
-    """A YAML value as a parameter of the type takes it: integers widened, numbers for bytes.
-
-    Args:
-        type_: A number of rcl_interfaces/msg/ParameterType.
-    """
-    if type_ == 3 and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if type_ == 8 and isinstance(value, list):
-        return [float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in value]
-    if type_ == 5 and isinstance(value, list) and all(type(v) is int and v in range(256) for v in value):
-        return bytes(value)
-    return value

@@ -20,6 +20,8 @@ _POLL = 0.1
 """Seconds between reads of the log files."""
 _GONE_LIMIT = 5.0
 """Seconds that a supervisor may take to end once its graph has."""
+_DOWN_LIMIT = 60.0
+"""Seconds between two ends of processes when a graph goes down."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -189,3 +191,19 @@ def _shown(place: str) -> str:
 
     path, colon, line = place.partition(":")
     return f"{shown(Path(path))}{colon}{line}" if path else ""
+
+
+def take_down(run: GraphRun, *, now: bool) -> int:
+    """Stop a graph and say what ends; returns the exit code."""
+    with ControlClient(run.socket) as client:
+        client.send(do="down", now=now)
+        for event in client.receive(timeout=_DOWN_LIMIT):
+            if event["event"] == "exited":
+                output.talk(f"  {', '.join(event['nodes'])} ended")
+            elif event["event"] == "end":
+                break
+    if not run.wait_gone(2 * _GONE_LIMIT):
+        output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
+        return exits.TIMEOUT
+    output.data(f"graph {run.graph} is down")
+    return exits.OK

@@ -1,6 +1,7 @@
 """What a process reports of its handlers and groups, and lets others change, on keys that ROS 2 does not know.
 
 @graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
+@graphflow/<domain>/numbers/<zid>    what its nodes have counted, and how late its loop is; answered likewise
 @graphflow/<domain>/look/<zid>       makes it look for a deadlock that another process found and it must report
 @graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
 """
@@ -8,6 +9,8 @@
 from __future__ import annotations
 
 import json
+import threading
+import time
 from typing import Any
 
 from graphflow.deadlock.protocols import Subject, Surroundings
@@ -18,8 +21,10 @@ from graphflow.machines.wait_graph_json import to_json
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
-from graphflow.wire.process import GROUPS, LOOK, WAITS, answer_key
+from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 
+LAG_LIMIT = 0.2
+"""Seconds to wait for the event loop to come round before it is called late."""
 _KINDS = ("timer", "subscription", "service", "action")
 
 
@@ -28,10 +33,12 @@ class Inspection:
 
     def __init__(self, process: Surroundings, search: Search) -> None:
         self._process, self._search = process, search
+        self._thread = threading.get_ident()
         session, domain = process.session, process.domain
         self._reports = (
             session.open_report(answer_key(domain, WAITS, session.zid), self._waits),
             session.open_report(answer_key(domain, LOOK, session.zid), self._look),
+            session.open_report(answer_key(domain, NUMBERS, session.zid), self._numbers),
         )
         self._inbox = Inbox(session.bell, None, self._asked)
         self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox)
@@ -51,6 +58,25 @@ class Inspection:
             "longest": watchdog.longest,
         }
         return json.dumps(told).encode()
+
+    def _numbers(self) -> bytes:
+        """Runs on any thread."""
+        lag = self._lag()
+        nodes = {node.full_name: node.statistics() for node in list(self._process.nodes)}
+        told = {"process": self._process.session.zid, "lag": lag, "nodes": nodes}
+        return json.dumps(told, default=str).encode()
+
+    def _lag(self) -> float:
+        """Seconds that the event loop takes to come round; where it has not, those since it should have."""
+        loop = self._process.loop
+        if not loop.is_running():
+            return 0.0
+        came = threading.Event()
+        asked = time.monotonic()
+        loop.call_soon_threadsafe(came.set)
+        if threading.get_ident() != self._thread:
+            came.wait(LAG_LIMIT)
+        return max(time.monotonic() - asked, self._search.watchdog.blocked_for)
 
     def _look(self) -> bytes:
         """Runs on any thread."""

@@ -47,6 +47,9 @@ class Subject(Protocol):
     def hooks(self) -> AbstractSet[str]:
         """Methods that are called outside any handler: checks of parameters, events, whether a goal is wanted."""
 
+    def statistics(self) -> dict[str, dict[str, Any]]:
+        """Numbers since the start, by the name of each handler, endpoint and group."""
+
 
 class Surroundings(Protocol):
     """What the nodes of one process share, as far as the search needs it."""

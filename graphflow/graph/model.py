@@ -144,6 +144,8 @@ class GraphFile(_Model):
     override: dict[str, Any] = {}
     deadlock: Annotated[StrictStr, AfterValidator(_policy)] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
+    console: Any = None
+    """Read by `graph.console`."""
 
 
 TOP_KEYS = tuple(GraphFile.model_fields)

@@ -106,6 +106,8 @@ class Plan:
     deadlock: DeadlockPolicy = "raise"
     call_timeout: float | None = CALL_TIMEOUT
     """Seconds that calls without a timeout of their own wait; None for ever."""
+    console: dict[str, Any] | None = None
+    """The windows and panes that a console opens with, as `graph.console` reads them."""
 
     def processes(self) -> dict[str, list[PlannedNode]]:
         """Nodes by the process they share, in the order of the file; a process of one node has the node's name."""

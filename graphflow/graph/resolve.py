@@ -9,6 +9,7 @@ from typing import Any
 
 from graphflow.errors import GraphFileError, InvalidName, Place
 from graphflow.graph import params_file, source
+from graphflow.graph.console import console_section
 from graphflow.graph.faults import Problems, example, validated
 from graphflow.graph.include import merged
 from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, keys_of
@@ -56,6 +57,7 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
     ordered_nodes, ordered_steps = _order(src, model, nodes, steps, problems)
+    console = console_section(src, problems.add)
     problems.raise_any()
     return Plan(
         name=model.name or path.stem,
@@ -67,6 +69,7 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         domain=model.domain,
         deadlock=model.deadlock,  # type: ignore[arg-type]  # its validator has looked
         call_timeout={None: CALL_TIMEOUT, "never": None}.get(model.call_timeout, model.call_timeout),
+        console=console,
     )
 
 

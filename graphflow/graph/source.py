@@ -57,7 +57,7 @@ class Source(NamedTuple):
 
     @property
     def file(self) -> str:
-        return next(iter(self.places.values())).file
+        return self.places[()].file
 
 
 def scalar(text: str) -> Any:

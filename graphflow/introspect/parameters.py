@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from graphflow.errors import ParameterError
+from graphflow.errors import GraphflowError, ParameterError, UsageFault
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
+
+_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
 
 
 class RemoteParameters:
@@ -79,3 +81,44 @@ class RemoteParameters:
     def unknown(self, name: str) -> ParameterError:
         """The error for a parameter that does not exist."""
         return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")
+
+
+def read_value(text: str, type_: int) -> Any:
+    """A value that a user has typed, as the declared type takes it: quoted or not, `on` for a bool, 2 for a double.
+
+    Args:
+        type_: A number of rcl_interfaces/msg/ParameterType; 0 for a parameter of any type.
+
+    Raises:
+        UsageFault: `text` is not YAML.
+    """
+    from graphflow.graph.source import parse_value
+
+    if type_ == 4:
+        try:
+            value = parse_value(text)
+        except GraphflowError:
+            return text
+        return value if isinstance(value, str) else text
+    if type_ == 1 and text.lower() in _WORDS:
+        return _WORDS[text.lower()]
+    try:
+        value = parse_value(text)
+    except GraphflowError as error:
+        raise UsageFault(str(error)) from None
+    return as_declared(value, type_)
+
+
+def as_declared(value: Any, type_: int) -> Any:
+    """A YAML value as a parameter of the type takes it: integers widened, numbers for bytes.
+
+    Args:
+        type_: A number of rcl_interfaces/msg/ParameterType.
+    """
+    if type_ == 3 and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if type_ == 8 and isinstance(value, list):
+        return [float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in value]
+    if type_ == 5 and isinstance(value, list) and all(type(v) is int and v in range(256) for v in value):
+        return bytes(value)
+    return value

@@ -44,8 +44,8 @@ def stall(
     for queue in waiting:
         lost = queue.dropped - dropped.get(queue.id, 0)
         lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
-    held = {_method(a.label) for a in holders}
-    others = [queue for queue in waiting if _method(queue.label) not in held]
+    held = {method_of(a.label) for a in holders}
+    others = [queue for queue in waiting if method_of(queue.label) not in held]
     return "\n".join([*lines, "If that is too long:", _own_group(others[0])] if others else lines)
 
 
@@ -159,10 +159,11 @@ def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
         at = Place(PurePath(other.place.file).name, other.place.line)
         wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
         yield f"  {wait} in {at}"
+        handler = method_of(other.label)
         yield (
-            f"  let {_method(other.label)} run in a thread, in the graph file\n"
-            f"      {other.node}: {{concurrency: {{blocking: {{handlers: [{_method(other.label)}], thread: true}}}}}}\n"
-            f"    or in the class: thread=True where {_method(other.label)} is declared"
+            f"  let {handler} run in a thread, in the graph file\n"
+            f"      {other.node}: {{concurrency: {{blocking: {{handlers: [{handler}], thread: true}}}}}}\n"
+            f"    or in the class: thread=True where {handler} is declared"
         )
         return
     queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
@@ -172,11 +173,11 @@ def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield f"  leave {edge.via.what} before the await in {at}"
     if queue is None or group is None:
         return
-    handler = _method(queue.label)
+    handler = method_of(queue.label)
     if queue.label.startswith("reply "):
         yield f"  let replies through: declare the client of {handler} without group="
-        queue, handler = replace(queue, node=activity.node, is_declared=True), _method(activity.label)
-    if group.name and (queue.node, handler) != (activity.node, _method(activity.label)):
+        queue, handler = replace(queue, node=activity.node, is_declared=True), method_of(activity.label)
+    if group.name and (queue.node, handler) != (activity.node, method_of(activity.label)):
         yield _own_group(replace(queue, label=handler))
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):
@@ -209,7 +210,7 @@ def _larger(group: GroupView, limit: int) -> str:
 
 
 def _own_group(queue: QueueView) -> str:
-    handler = _method(queue.label)
+    handler = method_of(queue.label)
     own = f"{handler}_group"
     if not queue.is_declared:
         return f"  give {handler} of {queue.node} a group of its own: group=Group(1) where it is made"
@@ -220,5 +221,6 @@ def _own_group(queue: QueueView) -> str:
     )
 
 
-def _method(label: str) -> str:
+def method_of(label: str) -> str:
+    """The method in an activity's or a queue's label: `tick` of `timer tick`."""
     return label.split()[-1]

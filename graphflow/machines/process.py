@@ -2,11 +2,15 @@ r"""The life of one supervised process, as a table.
 
     PENDING --go--> STARTING --ready--> READY --stop--> STOPPING --exit--> ENDED
                         \-----------------exit-----------------------------^
+                    STARTING, READY --restart--> RESTARTING --exit--> STARTING
+                    ENDED ---------------------restart--------------> STARTING
 
 A process waits (PENDING) until what it comes `after` is there. It is READY when all its nodes have said so themselves.
 Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the last rung at once. Whatever happens,
 `exit` is the only way to ENDED, so nothing is called ended that may still be running. An end that nobody asked for is
 judged by how it came: `failed` is true when the process ended by a signal or with a code other than 0.
+
+Starting again, when somebody asks for it, is stopping with another end: the process is STARTING again when it has gone.
 
 Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's stop sequences.
 """
@@ -28,6 +32,8 @@ class State(Enum):
     STARTING = "starting"
     READY = "ready"
     STOPPING = "stopping"
+    RESTARTING = "restarting"
+    """Stopping, to be started again."""
     ENDED = "ended"
 
 
@@ -38,6 +44,8 @@ class Event(Enum):
     """The last of its nodes is ready."""
     STOP = "stop"
     KILL = "kill"
+    RESTART = "restart"
+    """Somebody asks for a new process in place of this one."""
     LATE = "late"
     """The alarm set on entering the state has rung."""
     EXIT = "exit"
@@ -63,24 +71,36 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.READY: (State.READY, ()),
         Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
         Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.RESTART: (State.RESTARTING, (Do.TERMINATE,)),
         Event.LATE: (State.STOPPING, (Do.GIVE_UP, Do.TERMINATE)),
         Event.EXIT: (State.ENDED, ()),
     },
     State.READY: {
         Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
         Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.RESTART: (State.RESTARTING, (Do.TERMINATE,)),
         Event.EXIT: (State.ENDED, ()),
+    },
+    State.RESTARTING: {
+        Event.STOP: (State.STOPPING, ()),
+        Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.LATE: (State.RESTARTING, (Do.KILL,)),
+        Event.EXIT: (State.STARTING, (Do.SPAWN,)),
     },
     State.STOPPING: {
         Event.KILL: (State.STOPPING, (Do.KILL,)),
         Event.LATE: (State.STOPPING, (Do.KILL,)),
         Event.EXIT: (State.ENDED, ()),
     },
-    State.ENDED: {},
+    State.ENDED: {Event.RESTART: (State.STARTING, (Do.SPAWN,))},
 }
 """Events that a state does not list change nothing."""
 
-ALARMS: Mapping[State, float] = {State.STARTING: START_LIMIT, State.STOPPING: STOP_LIMIT}
+ALARMS: Mapping[State, float] = {
+    State.STARTING: START_LIMIT,
+    State.STOPPING: STOP_LIMIT,
+    State.RESTARTING: STOP_LIMIT,
+}
 """Seconds after entering a state at which LATE happens."""
 
 

@@ -5,11 +5,16 @@ knows the token, and every request carries it.
 
 A door sends one request and reads lines until the supervisor closes the connection:
 
-    {"do": "ps"}                        -> {"event": "ps", "nodes": [...]}
+    {"do": "ps"}                        -> {"event": "ps", "nodes": [...], "consoles": [...]}
+    {"do": "hello"}                     -> {"event": "hello", ...}: the graph, its file, the windows kept with the run
+    {"do": "plan"}                      -> {"event": "plan", "plan": ...}: what the graph file says, as `Plan.to_json`
     {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
-    {"do": "follow", "lifeline": true}  -> what has happened so far, then events as they come
+    {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}; likewise "stop"
+    {"do": "follow", "lifeline": true}  -> {"event": "hello", ...}, what has happened so far, then events as they come
 
-A `follow` with a lifeline ties the graph's life to the connection: when it breaks, the graph goes down.
+A `follow` with a lifeline ties the graph's life to the connection: when it breaks, the graph goes down. One with
+`"console": name` counts as a console. Whoever follows may send more requests: these, `announce` and `keep_layout`.
+A door that does not read what it is sent is cut off, so that nothing piles up here.
 """
 
 from __future__ import annotations
@@ -21,16 +26,20 @@ import os
 import secrets
 import socket
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Protocol, Self
 
-from graphflow.errors import SupervisorError
+from graphflow.errors import GraphflowError, SupervisorError
+from graphflow.graph.plan import Plan
+from graphflow.supervisor.doors import Doors
 from graphflow.system import is_portable, user_id
 
 CONNECT_LIMIT = 5.0
 CLOSE_LIMIT = 1.0
 LIFELINE_LIMIT = 5.0
+UNREAD_LIMIT = 1 << 20
+"""Bytes that may wait for a door that does not read."""
 _TCP = "tcp/"
 
 
@@ -39,9 +48,19 @@ class Commands(Protocol):
 
     def describe(self) -> list[dict[str, Any]]: ...
 
+    @property
+    def plan(self) -> Plan: ...
+
+    def hello(self) -> dict[str, Any]: ...
+
     def begin_stop(self, *, now: bool, reason: str) -> None: ...
 
-    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]: ...
+    def restart(self, node: str, by: str) -> None: ...
+
+    def stop(self, node: str, by: str) -> None: ...
+
+    @property
+    def doors(self) -> Doors: ...
 
 
 class ControlServer:
@@ -119,15 +138,41 @@ class ControlServer:
         except (ValueError, KeyError, TypeError):
             _write(writer, {"event": "error", "message": "not a request"})
             return
-        if what == "ps":
-            _write(writer, {"event": "ps", "nodes": self._commands.describe()})
-        elif what == "down":
+        if what == "down":
             await self._down(writer, now=bool(request.get("now")))
         elif what == "follow":
-            await self._follow(reader, writer, lifeline=bool(request.get("lifeline")))
+            await self._follow(reader, writer, request)
         else:
-            _write(writer, {"event": "error", "message": f"{what!r} is not a request"})
+            _write(writer, self._do(request))
         await writer.drain()
+
+    def _do(self, request: Any) -> dict[str, Any]:
+        """Carry out a request that is done at once; returns the answer."""
+        if not isinstance(request, dict):
+            return {"event": "error", "message": "not a request"}
+        what, by = request.get("do"), str(request.get("by", "the command line"))
+        try:
+            if what == "ps":
+                return {"event": "ps", "nodes": self._commands.describe(), "consoles": self._commands.doors.consoles}
+            if what == "plan":
+                return {"event": "plan", "plan": self._commands.plan.to_json(), "folder": os.getcwd()}
+            if what == "hello":
+                return self._commands.hello()
+            if what == "down":
+                self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
+            elif what == "restart":
+                self._commands.restart(str(request.get("node")), by)
+            elif what == "stop":
+                self._commands.stop(str(request.get("node")), by)
+            elif what == "announce":
+                self._commands.doors.announce(str(request.get("text")), by)
+            elif what == "keep_layout":
+                self._commands.doors.keep_layout(request.get("layout"))
+            else:
+                return {"event": "error", "message": f"{what!r} is not a request"}
+        except (GraphflowError, ValueError, RecursionError) as error:
+            return {"event": "error", "message": str(error)}
+        return {"event": "done", "do": what}
 
     async def _down(self, writer: asyncio.StreamWriter, *, now: bool) -> None:
         ended = asyncio.Event()
@@ -137,31 +182,39 @@ class ControlServer:
             if event["event"] == "end":
                 ended.set()
 
-        stop = self._commands.subscribe(listener, replay=False)
+        stop = self._commands.doors.subscribe(listener, replay=False)
         try:
             self._commands.begin_stop(now=now, reason="down")
             await ended.wait()
         finally:
             stop()
 
-    async def _follow(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, lifeline: bool) -> None:
+    async def _follow(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: dict[str, Any]
+    ) -> None:
+        lifeline = bool(request.get("lifeline"))
         if lifeline and self._expectation is not None:
             self._expectation.cancel()
-        stop = self._commands.subscribe(lambda event: _write(writer, event), replay=True)
+        doors = self._commands.doors
+        _write(writer, self._commands.hello())
+        stop = doors.subscribe(lambda event: _write(writer, event), replay=True)
+        leave = doors.join(str(request["console"])) if "console" in request else None
         try:
             self._followed.set()
             while line := await reader.readline():
-                request = json.loads(line)
-                if request.get("do") == "down":
-                    self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
+                _write(writer, self._do(json.loads(line)))
         finally:
             # However the connection ended: a peer that dies with unread events resets it.
             stop()
+            if leave is not None:
+                leave()
             if lifeline:
                 self._commands.begin_stop(now=False, reason="its terminal went away")
 
 
 def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:
+    if writer.transport.get_write_buffer_size() > UNREAD_LIMIT:
+        writer.transport.abort()
     if not writer.is_closing():
         writer.write(json.dumps(event).encode() + b"\n")
 
@@ -265,3 +318,20 @@ class ControlClient:
     def _lines(self) -> list[dict[str, Any]]:
         *lines, self._buffer = self._buffer.split(b"\n")
         return [json.loads(line) for line in lines]
+
+
+async def open_control(
+    address: str, line_limit: int
+) -> tuple[asyncio.StreamReader, asyncio.StreamWriter, dict[str, str]]:
+    """Connect to a supervisor from an event loop; returns also what every request must carry.
+
+    Args:
+        line_limit: Bytes that a line may have.
+
+    Raises:
+        OSError: Nothing answers at the address.
+    """
+    if address.startswith(_TCP):
+        port, _, token = address.removeprefix(_TCP).partition("/")
+        return *await asyncio.open_connection("127.0.0.1", int(port), limit=line_limit), {"token": token}
+    return *await asyncio.open_unix_connection(address, limit=line_limit), {}

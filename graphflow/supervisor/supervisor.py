@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from graphflow.errors import GraphflowError
+from graphflow import __version__
+from graphflow.errors import GraphflowError, SupervisorError
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
 from graphflow.machines.process import ALARMS, Do, Event, Exit, Order, State, step
+from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
+from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
 from graphflow.supervisor.steps import StepRunner
@@ -36,6 +37,7 @@ class Process:
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
         self.error = ""
+        self.restarts = 0
         self.stop_asked = False
         self.failed = False
         """Whether the process ended by itself with a failure."""
@@ -52,11 +54,12 @@ class Supervisor:
     """
 
     def __init__(self, plan: Plan, context: Context, starter: Starter, logs: Path, step_types: dict[str, str]) -> None:
-        self.plan = plan
+        self._plan = plan
         self.exit_code = 0
         self.up = asyncio.Event()
         """Whether everything is ready and all steps are done."""
         self.ended = asyncio.Event()
+        self.doors = Doors(self._end_if_all_have)
         self._context = context
         self._starter = starter
         self._steps = StepRunner(context, step_types)
@@ -73,8 +76,6 @@ class Supervisor:
         self._stopping = False
         self._layers: list[list[str]] = []
         self._began = time.monotonic()
-        self._history: list[dict[str, Any]] = []
-        self._listeners: list[Callable[[dict[str, Any]], None]] = []
 
     def _make_order(self) -> Order:
         def holder(name: str) -> str:
@@ -101,6 +102,7 @@ class Supervisor:
                 "process": node.process,
                 "class": node.class_path,
                 "log": process.log,
+                "restarts": process.restarts,
                 "detail": process.error or (str(process.exit) if process.exit and process.exit.failed else ""),
             }
             for process in self._processes.values()
@@ -113,13 +115,50 @@ class Supervisor:
             return "failed"
         return process.state.value
 
-    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]:
-        """Pass events to a listener, past ones first if `replay`; returns a function that stops this."""
-        if replay:
-            for event in self._history:
-                listener(event)
-        self._listeners.append(listener)
-        return lambda: self._listeners.remove(listener)
+    @property
+    def plan(self) -> Plan:
+        """What is to run."""
+        return self._plan
+
+    def hello(self) -> dict[str, Any]:
+        """What a door is told when it begins to follow."""
+        return {
+            "event": "hello",
+            "version": __version__,
+            "graph": self.plan.name,
+            "file": self.plan.file,
+            "console": self.plan.console,
+            "layout": self.doors.layout,
+        }
+
+    def restart(self, node: str, by: str) -> None:
+        """Start a node's process again, whether it runs or has ended.
+
+        Raises:
+            SupervisorError: There is no such node, or the graph is being stopped.
+        """
+        process = self._named(node)
+        if self._stopping:
+            raise SupervisorError("the graph is being stopped")
+        self.doors.announce(f"restart {node}", by)
+        self._happen(process, Event.RESTART)
+
+    def stop(self, node: str, by: str) -> None:
+        """Stop a node's process; the others go on.
+
+        Raises:
+            SupervisorError: There is no such node.
+        """
+        process = self._named(node)
+        self.doors.announce(f"stop {node}", by)
+        process.stop_asked = True
+        self._happen(process, Event.STOP)
+
+    def _named(self, node: str) -> Process:
+        if node not in self._process_of:
+            near = did_you_mean(node, self._process_of)
+            raise SupervisorError(f"graph {self.plan.name} has no node {node}{near}")
+        return self._process_of[node]
 
     def begin_stop(self, *, now: bool, reason: str) -> None:
         """Stop everything, last started first; `now` sends SIGKILL. Asking again is harmless."""
@@ -169,7 +208,7 @@ class Supervisor:
         what = event["event"]
         if what == "spawned":
             process.pid = event["pid"]
-            if process.stop_asked:  # it was asked to stop before it had a pid
+            if process.state in (State.STOPPING, State.RESTARTING):  # asked to stop before it had a pid
                 self._act(process, Do.TERMINATE)
         elif what == "ready":
             process.waiting_for.discard(event["node"])
@@ -231,7 +270,7 @@ class Supervisor:
 
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
-        if event is Event.LATE and was is State.STOPPING:
+        if event is Event.LATE and was in (State.STOPPING, State.RESTARTING):
             self._tell(event="note", text=f"{process.name} did not end within {ALARMS[was]:.0f} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
@@ -242,6 +281,8 @@ class Supervisor:
             if process.state in ALARMS:
                 loop = self._context.loop
                 process.alarm = loop.call_later(ALARMS[process.state], self._happen, process, Event.LATE)
+        if was is State.RESTARTING and process.state is State.STARTING:
+            self._tell_exit(process, unexpected=False)
         for action in actions:
             self._act(process, action)
         if process.state is State.ENDED and was is not State.ENDED:
@@ -258,7 +299,9 @@ class Supervisor:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
             self._tell(event="error", message=f"{process.error}\n  its log: {process.log}")
-            self._fail(f"{process.name} did not become ready")
+            process.failed = True
+            if not self.up.is_set():
+                self._fail(f"{process.name} did not become ready")
 
     def _spawn(self, process: Process) -> None:
         env: dict[str, str] = {}
@@ -273,7 +316,12 @@ class Supervisor:
             "deadlock": self.plan.deadlock,
             "call_timeout": self.plan.call_timeout,
         }
-        self._tell(event="starting", process=process.name)
+        again = process.exit is not None
+        process.restarts += again
+        process.pid, process.exit, process.error = None, None, ""
+        process.stop_asked = process.failed = False
+        process.waiting_for = {n.name for n in process.nodes}
+        self._tell(event="starting", process=process.name, again=again)
         self._starter.spawn(process.name, job, process.log, env)
 
     def _process_ended(self, process: Process, was: State) -> None:
@@ -282,6 +330,17 @@ class Supervisor:
         if early and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
         failed = early or (process.exit is not None and process.exit.failed)
+        self._tell_exit(process, unexpected=failed and not asked)
+        if failed and not asked:
+            process.failed = True
+            self.exit_code = 1
+            if was is State.STARTING and not self.up.is_set():
+                self.begin_stop(now=False, reason=f"{process.name} did not start")
+        if self._stopping:
+            self._stop_next_layer()
+        self._end_if_all_have()
+
+    def _tell_exit(self, process: Process, *, unexpected: bool) -> None:
         if process.exit is not None:
             self._tell(
                 event="exited",
@@ -289,19 +348,19 @@ class Supervisor:
                 nodes=[n.name for n in process.nodes],
                 pid=process.pid,
                 how=str(process.exit),
-                unexpected=failed and not asked,
+                unexpected=unexpected,
                 error=process.error,
                 log=process.log,
             )
-        if failed and not asked:
-            process.failed = True
-            self.exit_code = 1
-            if was is State.STARTING:
-                self.begin_stop(now=False, reason=f"{process.name} did not start")
-        if self._stopping:
-            self._stop_next_layer()
-        elif all(p.state is State.ENDED for p in self._processes.values()):
+
+    def _end_if_all_have(self) -> None:
+        """End with the last process; while consoles look on, it may be started again."""
+        if any(p.state is not State.ENDED for p in self._processes.values()):
+            return
+        if self._stopping or not self.doors.consoles:
             self.ended.set()
+        else:
+            self._tell(event="note", text="all nodes have ended; restart one, or stop the graph")
 
     def _stop_next_layer(self) -> None:
         while self._layers and all(self._processes_ended(name) for name in self._layers[0]):
@@ -312,17 +371,13 @@ class Supervisor:
                 if not process.stop_asked:
                     process.stop_asked = True
                     self._happen(process, Event.STOP)
-        if all(p.state is State.ENDED for p in self._processes.values()):
-            self.ended.set()
+        self._end_if_all_have()
 
     def _processes_ended(self, name: str) -> bool:
         return self._processes[name].state is State.ENDED
 
     def _tell(self, **event: Any) -> None:
-        self._history.append(event)
-        for listener in list(self._listeners):
-            listener(event)
-        logger.info("%s", json.dumps(event))
+        self.doors.tell(**event)
 
 
 SIGKILL = 9

@@ -52,7 +52,7 @@ def watch_key(domain: int) -> str:
     return f"@graphflow/{domain}/proc/**"
 
 
-WAITS, LOOK, GROUPS = "waits", "look", "groups"
+WAITS, NUMBERS, LOOK, GROUPS = "waits", "numbers", "look", "groups"
 """What a process answers; see `deadlock.inspection`."""
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.graphs import _ago, _table
+from graphflow.cli.graphs import _table
+from graphflow.cli.output import ago
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -79,7 +80,7 @@ def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
 )
 def test_how_long_a_node_has_been_so(seconds: float, text: str) -> None:
     """In seconds, then minutes, then hours, and never less than none."""
-    assert _ago(seconds) == text
+    assert ago(seconds) == text
 
 
 def test_the_table_of_ps() -> None:

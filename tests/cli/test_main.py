@@ -13,23 +13,8 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS: tuple[str, ...] = (
-    "init",
-    "up",
-    "down",
-    "ps",
-    "logs",
-    "plan",
-    "check",
-    "run",
-    "demo",
-    "node",
-    "topic",
-    "service",
-    "action",
-    "param",
-)
-VERBS += ("waits", "groups", "doctor", "interface")
+VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "restart", "stop", "logs", "plan", "check", "run")
+VERBS += ("demo", "node", "topic", "service", "action", "param", "waits", "groups", "doctor", "console", "interface")
 
 
 @pytest.fixture(autouse=True)
@@ -81,7 +66,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["topik"], "no such command 'topik'; did you mean 'topic'?"),
         (["launch"], "no such command 'launch'; did you mean 'up'?"),
         (["lanch"], "no such command 'lanch'; did you mean 'up'?"),
-        (["stop"], "no such command 'stop'; did you mean 'down'?"),
+        (["kill"], "no such command 'kill'; did you mean 'down'?"),
         (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
         (["topic", "lst"], "No such command 'lst'. Did you mean 'list'?"),
         (["topic", "list", "--type"], "--show-types"),

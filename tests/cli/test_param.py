@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from graphflow.cli.param import read_value
 from graphflow.errors import UsageFault
 from graphflow.interface import TYPE_IDS
+from graphflow.introspect.parameters import read_value
 from tests.conftest import PROGRAMS, Machine, Program
 
 ROBOT = str(PROGRAMS / "verbs" / "robot.py")

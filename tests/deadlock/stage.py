@@ -30,6 +30,9 @@ class Actor:
     handlers: set[str] = field(default_factory=set)
     hooks: set[str] = field(default_factory=set)
 
+    def statistics(self) -> dict[str, dict[str, Any]]:
+        return {}
+
 
 class Stage:
     """A process; made inside of a running loop."""

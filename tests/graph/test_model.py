@@ -34,7 +34,18 @@ def test_keys_are_those_written_in_files() -> None:
     ]
     assert keys_of(StepSpec) == ["call", "type", "request", "after", "timeout"]
     assert keys_of(Arg) == ["default", "doc", "unit", "choices"]
-    assert TOP_KEYS == ("name", "domain", "args", "nodes", "steps", "include", "override", "deadlock", "call_timeout")
+    assert TOP_KEYS == (
+        "name",
+        "domain",
+        "args",
+        "nodes",
+        "steps",
+        "include",
+        "override",
+        "deadlock",
+        "call_timeout",
+        "console",
+    )
     with pytest.raises(ValidationError):
         NodeSpec.model_validate({"class_": "a:B"})
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Do, Event, Exit, Order, State, step
 
 P, S, R, T, E = State.PENDING, State.STARTING, State.READY, State.STOPPING, State.ENDED
+A = State.RESTARTING
 
 # Written by hand, every state and every event; what is not said here changes nothing.
 EFFECTS = {
@@ -18,11 +19,18 @@ EFFECTS = {
     (S, Event.READY): (R, ()),
     (S, Event.STOP): (T, (Do.TERMINATE,)),
     (S, Event.KILL): (T, (Do.KILL,)),
+    (S, Event.RESTART): (A, (Do.TERMINATE,)),
     (S, Event.LATE): (T, (Do.GIVE_UP, Do.TERMINATE)),
     (S, Event.EXIT): (E, ()),
     (R, Event.STOP): (T, (Do.TERMINATE,)),
     (R, Event.KILL): (T, (Do.KILL,)),
+    (R, Event.RESTART): (A, (Do.TERMINATE,)),
     (R, Event.EXIT): (E, ()),
+    (A, Event.STOP): (T, ()),
+    (A, Event.KILL): (T, (Do.KILL,)),
+    (A, Event.LATE): (A, (Do.KILL,)),
+    (A, Event.EXIT): (S, (Do.SPAWN,)),
+    (E, Event.RESTART): (S, (Do.SPAWN,)),
     (T, Event.KILL): (T, (Do.KILL,)),
     (T, Event.LATE): (T, (Do.KILL,)),
     (T, Event.EXIT): (E, ()),
@@ -53,7 +61,7 @@ def test_the_stop_ladder() -> None:
 
 def test_only_starting_and_stopping_have_a_time_limit() -> None:
     """A process may wait and work for as long as it likes."""
-    assert ALARMS == {State.STARTING: START_LIMIT, State.STOPPING: STOP_LIMIT}
+    assert ALARMS == {S: START_LIMIT, T: STOP_LIMIT, A: STOP_LIMIT}
     assert START_LIMIT > STOP_LIMIT > 0
 
 
@@ -64,14 +72,13 @@ def test_a_spawned_process_ends_by_its_exit_alone(events: list[Event]) -> None:
     for event in events:
         before = state
         state, actions = step(state, event)
-        assert actions.count(Do.SPAWN) <= (before is State.PENDING)
-        alive = alive or Do.SPAWN in actions
         if event is Event.EXIT:
             alive = False
+        assert not (alive and Do.SPAWN in actions)
+        alive = alive or Do.SPAWN in actions
         if state is State.ENDED and before is not State.ENDED:
             assert not alive
-        if not alive and before is not State.PENDING:
-            assert not set(actions) & {Do.SPAWN}
+        assert Do.SPAWN not in actions or state is State.STARTING
 
 
 @pytest.mark.parametrize(

@@ -7,23 +7,35 @@ import json
 import os
 import socket
 import stat
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from graphflow.errors import SupervisorError
+from graphflow.graph.plan import Plan
 from graphflow.supervisor.control import ControlClient, ControlServer
+from graphflow.supervisor.doors import Doors
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Graph:
-    """A graph of one node that is asked to stop, and tells nothing."""
+    """A graph of one node that is asked things, and tells nothing by itself."""
+
+    plan = Plan("g", "g.yaml", "/", ())
 
     def __init__(self) -> None:
         self.stopped: list[str] = []
+        self.asked: list[tuple[str, str, str]] = []
+        self.emptied = 0
+        self.doors = Doors(self._empty)
+
+    def _empty(self) -> None:
+        self.emptied += 1
+
+    def hello(self) -> dict[str, Any]:
+        return {"event": "hello", "graph": "g", "layout": self.doors.layout}
 
     def describe(self) -> list[dict[str, Any]]:
         return [{"node": "/a"}]
@@ -31,8 +43,13 @@ class Graph:
     def begin_stop(self, *, now: bool, reason: str) -> None:
         self.stopped.append(reason)
 
-    def subscribe(self, listener: Callable[[dict[str, Any]], None], *, replay: bool) -> Callable[[], None]:
-        return lambda: None
+    def restart(self, node: str, by: str) -> None:
+        if node != "/a":
+            raise SupervisorError(f"graph g has no node {node}")
+        self.asked.append(("restart", node, by))
+
+    def stop(self, node: str, by: str) -> None:
+        self.asked.append(("stop", node, by))
 
 
 @pytest.fixture(params=["", "1"], ids=["unix", "portable"])
@@ -61,7 +78,7 @@ async def test_a_request_is_answered(portable: bool, tmp_path: Path) -> None:
     assert address.startswith("tcp/") is portable
     if not portable:
         assert stat.S_IMODE(os.stat(address).st_mode) == 0o600
-    assert await asyncio.to_thread(ask, address) == [{"event": "ps", "nodes": [{"node": "/a"}]}]
+    assert await asyncio.to_thread(ask, address) == [{"event": "ps", "nodes": [{"node": "/a"}], "consoles": []}]
     await server.close()
     with pytest.raises(SupervisorError, match="does not answer"):
         await asyncio.to_thread(ask, address)

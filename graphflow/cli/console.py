@@ -1,0 +1,169 @@
+"""`graphflow attach`, `ls` and `console`: the console, and the runs that it can be attached to."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections import Counter
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.reaching import reach, reach_options
+from graphflow.cli.streaming import take_down
+from graphflow.cli.tree import verbs
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError, UsageFault
+from graphflow.supervisor import rundir
+from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.rundir import GraphRun
+
+_RENDEZVOUS = "GRAPHFLOW_RENDEZVOUS"
+"""As in transport.config, which imports Zenoh."""
+COMMAND = (sys.executable, "-m", "graphflow")
+"""The words that start this program again."""
+
+
+def show(run: GraphRun | None, domain: int, prefix: str | None = None) -> int:
+    """Open the console and say how it was left; returns the exit code."""
+    if run is not None:
+        os.environ["GRAPHFLOW_DOMAIN"], os.environ[_RENDEZVOUS] = str(run.domain), run.endpoint
+    # The one place where a door opens the other; nothing of the console is imported before.
+    tui = import_module("graphflow.tui.main")
+    left = tui.open_console(run, domain, command=COMMAND, verbs=verbs, prefix=prefix)
+    if left.run is None:
+        output.talk(f"[left domain {domain}: its nodes run on]")
+        return exits.OK
+    return _say_goodbye(left.run, left.how, left.exit_code)
+
+
+def _say_goodbye(run: GraphRun, how: str, exit_code: int | None) -> int:
+    if exit_code is not None:
+        output.talk(f"graph {run.graph} has ended; its logs are in {run.logs}")
+        return exit_code
+    if how == "stop":
+        return take_down(run, now=False)
+    if not run.is_alive:
+        output.error(f"the supervisor of {run.graph} died; its log is {run.logs}/supervisor.log")
+        return exits.FAILED
+    nodes = len(_rows(run)["nodes"])
+    which = f" --graph {run.graph}" if len(rundir.running()) > 1 else ""
+    if how == "failed":
+        output.error("the console failed, the graph runs on; please report what stands above")
+    output.talk(
+        f"[detached from {run.graph}: {nodes} node{'s' if nodes != 1 else ''} keep{'s' if nodes == 1 else ''} running]"
+        f"   graphflow attach{which}   |   graphflow down{which}"
+    )
+    return exits.FAILED if how == "failed" else exits.OK
+
+
+def _rows(run: GraphRun) -> dict[str, Any]:
+    with ControlClient(run.socket) as client:
+        client.send(do="ps")
+        return next(client.receive(), {"nodes": [], "consoles": []})
+
+
+@click.command()
+@click.argument("graph", required=False, metavar="[GRAPH]")
+@click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+@click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a; else GRAPHFLOW_PREFIX, or ctrl+b.")
+@reach_options
+def attach(graph: str | None, name: str | None, prefix: str | None, connect: tuple[str, ...], net: str | None) -> int:
+    """Open the console on a running graph. Leaving it (ctrl+b d) stops nothing.
+
+    Where no graph of yours runs, it shows the nodes that others have started in the domain, such as a robot's with
+    --connect; without control of their processes.
+    """
+    reach(connect, net)
+    if not output.is_terminal():
+        raise UsageFault("the console needs a terminal; without one, see graphflow ps, logs -f and waits")
+    try:
+        run = rundir.choose(name or graph)
+    except SupervisorError as error:
+        if error.exit_code != exits.NOT_RUNNING or name or graph or not _anybody(bool(connect or net)):
+            raise
+        return show(None, domain_id(), prefix)
+    return show(run, run.domain, prefix)
+
+
+def _anybody(reaches_out: bool) -> bool:
+    """Whether nodes can be seen that no supervisor of ours has started."""
+    from graphflow.introspect.view import View
+
+    try:
+        with View(domain_id()) as view:
+            return reaches_out or bool(view.cache.nodes(hidden=False))
+    except SupervisorError:
+        return False
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def ls(as_json: bool) -> int:
+    """List running graphs: their nodes, and the consoles attached to them."""
+    runs = rundir.running()
+    if not runs:
+        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exits.NOT_RUNNING)
+    rows = []
+    for run in runs:
+        told = _rows(run)
+        states = Counter(node["state"] for node in told["nodes"])
+        rows.append(
+            {
+                "graph": run.graph,
+                "domain": run.domain,
+                "nodes": dict(states),
+                "began": run.began,
+                "consoles": [c["name"] for c in told.get("consoles", [])],
+                "file": run.file,
+            }
+        )
+    if as_json:
+        output.as_json(rows)
+        return exits.OK
+    output.lines(_table(rows))
+    return exits.OK
+
+
+def _table(rows: list[dict[str, Any]]) -> list[str]:
+    head = ("GRAPH", "DOMAIN", "NODES", "UP", "CONSOLES", "FILE")
+    cells = [head] + [
+        (
+            row["graph"],
+            str(row["domain"]),
+            ", ".join(f"{n} {'running' if state == 'ready' else state}" for state, n in row["nodes"].items()),
+            output.ago(time.time() - row["began"]),
+            ", ".join(row["consoles"]) or "none",
+            row["file"],
+        )
+        for row in rows
+    ]
+    return output.columns(cells)
+
+
+@click.command()
+@click.option("--web", is_flag=True, help="In a browser, on this machine only.")
+@click.option("--port", type=click.IntRange(1, 65535), default=8147, show_default=True, help="Port for --web.")
+@click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+@click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a.")
+def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
+    """Open the console on a running graph, here or in a browser."""
+    run = rundir.choose(name)
+    if not web:
+        if not output.is_terminal():
+            raise UsageFault("the console needs a terminal; --web shows it in a browser")
+        return show(run, run.domain, prefix)
+    if find_spec("textual_serve") is None:
+        raise UsageFault("--web needs the extra `web`: pip install 'graphflow-zenoh[web]'")
+    words = [*COMMAND, "attach", "--graph", run.graph, *(["--prefix", prefix] if prefix else [])]
+    os.environ["GRAPHFLOW_DOMAIN"] = str(run.domain)
+    output.talk(
+        f"the console of {run.graph} is at http://127.0.0.1:{port}; from another machine: "
+        f"ssh -L {port}:127.0.0.1:{port} THIS_MACHINE\nCtrl-C ends the page; the graph runs on"
+    )
+    import_module("graphflow.tui.web").serve(words, port)
+    return exits.OK

@@ -1,0 +1,241 @@
+"""The console itself: one screen, the prefix, the pulse by which views look at what is new."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding
+from textual.screen import Screen
+from textual.timer import Timer
+
+from graphflow.system import is_portable
+from graphflow.tui.actions import by_chord, console_actions, shown
+from graphflow.tui.bars import Hints, Status, WhichKey
+from graphflow.tui.deeds import Deeds
+from graphflow.tui.desk import Desk
+from graphflow.tui.home import home
+from graphflow.tui.hub import Hub
+from graphflow.tui.ink import DARK, LIGHT, make_ink
+from graphflow.tui.layout import Layout
+from graphflow.tui.panes import Content
+from graphflow.tui.registry import view_class
+from graphflow.tui.view import View
+from graphflow.tui.workspace import Workspace
+
+PULSE = 0.05
+"""Seconds between two looks at what is new: at most twenty times a second anything is drawn."""
+WHICH_KEY_AFTER = 0.4
+"""Seconds after the prefix at which the keys that may follow are shown."""
+
+
+class MainScreen(Screen[object], inherit_bindings=False):
+    """The screen of the panes: the tab key is theirs, and so is Ctrl-C."""
+
+    AUTO_FOCUS = ""
+
+
+class Console(Desk):
+    """The console. Its result says how it was left: `detach`, `stop`, or `switch NAME`.
+
+    Args:
+        hub: What there is to see.
+        layout: The windows to begin with; None for the usual ones.
+        prefix: The prefix key.
+        theme: The name of a theme.
+    """
+
+    CSS_PATH = "app.tcss"
+    ENABLE_COMMAND_PALETTE = False
+    BINDINGS: ClassVar[list[Any]] = [
+        Binding(",".join(action.keys), f"do('{action.name}')", action.title, show=False, priority="ctrl+" in key)
+        for action in console_actions()
+        for key in action.keys[:1]
+    ]
+
+    def __init__(self, hub: Hub, layout: Layout | None = None, prefix: str = "ctrl+b", theme: str = DARK.name) -> None:
+        super().__init__(hub, layout or Layout(), prefix)
+        self.deeds = Deeds(self)
+        self.hints = Hints()
+        self.status = Status()
+        self.which_key = WhichKey()
+        self._chords = by_chord()
+        self._chord_open = False
+        self._which_timer: Timer | None = None
+        self._beats = 0
+        self.register_theme(DARK)
+        self.register_theme(LIGHT)
+        self.theme = theme if theme in self.available_themes else DARK.name
+        self.ink = make_ink(self)
+
+    # life
+
+    def compose(self) -> ComposeResult:
+        if not self.windows.windows:
+            self.windows.current = self.windows.open("home", home(self.windows, self.hub))
+        self.workspace = Workspace(self.windows, self._make_view)
+        yield self.workspace
+        yield self.hints
+        yield self.status
+        yield self.which_key
+
+    def get_default_screen(self) -> Screen[object]:
+        return MainScreen(id="_default")
+
+    def on_mount(self) -> None:
+        self.ink = make_ink(self)
+        if not (self.is_headless or self.is_web or is_portable()):
+            self._hear_signals()
+        self.theme_changed_signal.subscribe(self, lambda _: self._new_ink())
+        self.set_interval(PULSE, self._pulse)
+        self.call_after_refresh(self._begin)
+
+    def _hear_signals(self) -> None:
+        """Take the terminal anew when the process goes on after a SIGSTOP.
+
+        Textual would start it a second time beside the first, whose threads then keep the process from ending. It has
+        no use for SIGTSTP either: in a terminal of its own kind, Ctrl-Z is for what runs in it.
+        """
+        loop = asyncio.get_running_loop()
+        loop.add_signal_handler(signal.SIGCONT, self._take_terminal)
+        loop.add_signal_handler(signal.SIGTSTP, lambda: None)
+
+    def _take_terminal(self) -> None:
+        with self.suspend():  # to leave the terminal and come back is what sets it up
+            self.hints.refresh()
+
+    def _begin(self) -> None:
+        """The first screen is drawn: now what takes longer."""
+        if self.hub.supervision is not None:
+            self.spawn(self.hub.supervision.follow())
+        if self.hub.live is None:
+            self.spawn(self._join())
+
+    async def _join(self) -> None:
+        from graphflow.tui.live import Live
+
+        live = Live(self.hub.domain)
+        await live.open()
+        self.hub.live = live
+        if live.trouble:
+            self.say(live.trouble, bad=True)
+
+    # what supervision says
+
+    def on_descendant_focus(self) -> None:
+        self.hints.refresh()
+
+    def heard(self, event: dict[str, Any]) -> None:
+        """Take in what the supervisor says."""
+        match event["event"]:
+            case "hello" if self.hub.supervision and self.hub.supervision.version_note:
+                self.say(self.hub.supervision.version_note)
+            case "ps":
+                self.hub.logs.follow(_log_files(event["nodes"]))
+            case "announced" if self.hub.supervision and event["by"] != self.hub.supervision.name:
+                self.say(f"{event['text']} by {event['by']}")
+            case "note" | "stopping":
+                self.say(event.get("text") or f"stopping ({event['reason']})")
+            case "step":
+                done = "done" if event["ok"] else "FAILED"
+                self.say(f"step {event['step']} {done}: {event['text']}", bad=not event["ok"])
+            case "error":
+                self.say(event["message"], bad=True)
+            case "exited" if event["unexpected"]:
+                self._crashed(event)
+            case "end":
+                code = event["exit_code"]
+                self.say(f"the graph has ended, exit code {code}; q leaves", bad=bool(code))
+            case "lost" if self.hub.supervision and self.hub.supervision.exit_code is None:
+                self.say(f"{event['message']}; q leaves", bad=True)
+        self.status.refresh()
+
+    def _crashed(self, event: dict[str, Any]) -> None:
+        names = ", ".join(event["nodes"])
+        self.say(f"{names} died: {event['how']}; {shown(self.prefix)} r restarts, enter on it shows why", bad=True)
+        self.flags[self.windows.current] = "!"
+
+    # the pulse
+
+    def _pulse(self) -> None:
+        now = time.monotonic()
+        self._beats += 1
+        if self._beats % 2 == 0:
+            self.hub.logs.read()
+        if self.screen is self.screen_stack[0] or self._beats % 10 == 0:
+            for frame in self.workspace.visible_frames:
+                view = frame.view
+                if view.is_mounted and now - view.looked >= view.EVERY - PULSE / 2:
+                    view.looked = now
+                    view.look(now)
+                    frame.title_line.refresh_if_changed()
+        if self._beats % 10 == 0:
+            self.deeds.look(now)
+            self.hints.look(now)
+            self.status.refresh()
+
+    def _make_view(self, content: object) -> View:
+        assert isinstance(content, Content)
+        return view_class(content.view)(self.hub, content)
+
+    def _new_ink(self) -> None:
+        self.ink = make_ink(self)
+        self.refresh(layout=True)
+
+    def open_beside(self, content: Content) -> None:
+        """Show something beside the focused pane; where there is no room, in a window of its own."""
+        self.deeds.open_beside(content)
+
+    # keys
+
+    async def on_event(self, event: events.Event) -> None:
+        if isinstance(event, events.Key) and not event.is_forwarded and self._takes(event):
+            return
+        await super().on_event(event)
+
+    def _takes(self, event: events.Key) -> bool:
+        """Whether a key is the prefix, or follows it."""
+        if self._chord_open:
+            self._close_chord()
+            if event.key == self.prefix:
+                return False  # twice: for what has the focus
+            action = self._chords.get(event.key)
+            if action is not None:
+                self.call_later(self.deeds.do, action.name)
+            elif event.key != "escape":
+                self.say(
+                    f"{shown(self.prefix)} {shown(event.key)} means nothing; {shown(self.prefix)} ? lists all keys"
+                )
+            return True
+        if event.key == self.prefix and len(self.screen_stack) == 1:
+            self._chord_open = True
+            self._which_timer = self.set_timer(WHICH_KEY_AFTER, self.which_key.open)
+            return True
+        return False
+
+    def _close_chord(self) -> None:
+        self._chord_open = False
+        if self._which_timer is not None:
+            self._which_timer.stop()
+        self.which_key.display = False
+
+    def action_do(self, name: str) -> None:
+        self.call_later(self.deeds.do, name)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """The console's bare keys are for its own screen, not for dialogs above it."""
+        if action == "do" and len(self.screen_stack) > 1:
+            return parameters[:1] == ("ask_to_stop",)
+        return True
+
+
+def _log_files(rows: list[dict[str, Any]]) -> list[tuple[str, tuple[str, ...]]]:
+    """Each log with the nodes that write it."""
+    found: dict[str, list[str]] = {}
+    for row in rows:
+        found.setdefault(row["log"], []).append(row["node"])
+    return [(log, tuple(nodes)) for log, nodes in found.items()]

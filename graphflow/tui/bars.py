@@ -1,0 +1,213 @@
+"""The lines at the bottom: what can be pressed now, which windows there are, and the keys after the prefix."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from typing import Any, NamedTuple
+
+from rich.segment import Segment
+from rich.style import Style
+from textual import events
+from textual.strip import Strip
+from textual.widget import Widget
+
+from graphflow.tui.actions import console_actions, shown
+
+MESSAGE_SECONDS = 6.0
+"""How long a message stays in place of the hints."""
+
+
+class StateMark(NamedTuple):
+    """A glyph for a node's state, beside its word."""
+
+    glyph: str
+    ink: str
+
+
+MARKS = {
+    "ready": StateMark("●", "good"),
+    "starting": StateMark("◐", "warn"),
+    "restarting": StateMark("◐", "warn"),
+    "stopping": StateMark("◑", "warn"),
+    "pending": StateMark("◌", "dim"),
+    "ended": StateMark("○", "dim"),
+    "failed": StateMark("✖", "bad"),
+    "foreign": StateMark("◆", "accent"),
+}
+
+
+class Bar(Widget):
+    """One line or more of text made of pieces."""
+
+    @property
+    def console_app(self) -> Any:
+        return self.app
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        """What the line says."""
+        raise NotImplementedError
+
+    def render_line(self, y: int) -> Strip:
+        base = self.rich_style
+        strip = Strip([Segment(text, base + style) for text, style in self.pieces(y, self.size.width)])
+        return strip.crop_extend(0, self.size.width, base)
+
+
+class Hints(Bar):
+    """What can be pressed now; for a while, what has just happened."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._message: tuple[str, str, float] | None = None
+
+    def say(self, text: str, ink: str) -> None:
+        """Show a message for a while."""
+        self._message = (text, ink, time.monotonic() + MESSAGE_SECONDS)
+        self.refresh()
+
+    def look(self, now: float) -> None:
+        """Take a message down when its time is over."""
+        if self._message is not None and now > self._message[2]:
+            self._message = None
+            self.refresh()
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        ink = self.console_app.ink
+        if self._message is not None:
+            text, name, _ = self._message
+            return [(" ", ink.text), (text.replace("\n", " "), getattr(ink, name))]
+        found: list[tuple[str, Style]] = [(" ", ink.text)]
+        for _, key, title in self._shown(width):
+            found += [(key, ink.accent), (f" {title}  ", ink.text)]
+        return found
+
+    def _shown(self, width: int) -> list[tuple[str, str, str]]:
+        """The actions of the focused view for which there is room: name, key, title."""
+        view = self.console_app.focused_view
+        room = width - 1
+        found = []
+        for action in view.ACTIONS if view is not None else ():
+            if action.hint and action.keys:
+                key = shown(action.keys[0])
+                room -= len(key) + len(action.title) + 3
+                if room < 0:
+                    break
+                found.append((action.name, key, action.title))
+        return found
+
+    def on_click(self, event: events.Click) -> None:
+        """A click on what can be pressed does it; on a message it takes it away."""
+        if self._message is not None:
+            self._message = None
+            self.refresh()
+            return
+        at = 1
+        for name, key, title in self._shown(self.size.width):
+            at += len(key) + len(title) + 3
+            if event.x < at:
+                self.console_app.focused_view.action_act(name)
+                return
+
+
+class Status(Bar):
+    """Which graph, which windows, how the nodes are, and the two keys that one must know."""
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        app, ink = self.console_app, self.console_app.ink
+        found: list[tuple[str, Style]] = [(f" [{app.hub.graph}] ", ink.strong)]
+        found += [piece for _, pieces in self._windows() for piece in pieces]
+        right = [*self._states(), *self._keys()]
+        room = width - sum(len(t) for t, _ in found) - sum(len(t) for t, _ in right)
+        if room < 0:
+            right = self._states() if width - sum(len(t) for t, _ in [*found, *self._states()]) >= 0 else []
+            room = max(0, width - sum(len(t) for t, _ in [*found, *right]))
+        return [*found, (" " * room, ink.text), *right]
+
+    def _windows(self) -> list[tuple[int, list[tuple[str, Style]]]]:
+        app, ink = self.console_app, self.console_app.ink
+        windows = app.windows
+        found = []
+        for number, window in windows.windows.items():
+            current = number == windows.current
+            mark = "*" if current else "-" if number == windows.last else ""
+            mark += "Z" if window.zoomed else ""
+            mark += app.flags.get(number, "")
+            style = ink.cursor + ink.strong if current else ink.dim
+            found.append((number, [(f" {number}:{window.name}{mark} ", style)]))
+        return found
+
+    def _states(self) -> list[tuple[str, Style]]:
+        app, ink = self.console_app, self.console_app.ink
+        supervision = app.hub.supervision
+        found: list[tuple[str, Style]] = []
+        if supervision is None:
+            return [("no supervisor here ", ink.warn)]
+        if supervision.exit_code is not None:
+            return [(f"ended, exit code {supervision.exit_code} ", ink.bad if supervision.exit_code else ink.warn)]
+        counts = Counter(row["state"] for row in supervision.nodes.values())
+        for state, mark in MARKS.items():
+            if counts[state]:
+                found.append((f"{mark.glyph}{counts[state]} ", getattr(ink, mark.ink)))
+        if app.deadlocks:
+            found.append((f"✖ {app.deadlocks} DEADLOCK{'S' if app.deadlocks > 1 else ''} ^b g ", ink.bad))
+        return found
+
+    def _keys(self) -> list[tuple[str, Style]]:
+        ink, prefix = self.console_app.ink, shown(self.console_app.prefix)
+        return [(f" {prefix} ?", ink.accent), (" help ", ink.text), (f" {prefix} d", ink.accent), (" leave ", ink.text)]
+
+    def on_click(self, event: events.Click) -> None:
+        at = len(f" [{self.console_app.hub.graph}] ")
+        for number, pieces in self._windows():
+            at += sum(len(text) for text, _ in pieces)
+            if event.x < at:
+                self.console_app.deeds.go_to_window(number)
+                return
+        from_right = self.size.width - event.x
+        leave = len(self._keys()[2][0] + self._keys()[3][0])
+        if from_right <= leave:
+            self.console_app.deeds.do_detach()
+        elif from_right <= leave + len(self._keys()[0][0] + self._keys()[1][0]):
+            self.console_app.deeds.do_help()
+        elif self.console_app.deadlocks:
+            self.console_app.deeds.do_groups()
+
+
+class WhichKey(Bar):
+    """The keys that may follow the prefix, shown when the next one is slow to come."""
+
+    def on_mount(self) -> None:
+        self.display = False
+
+    def open(self) -> None:
+        """Show as many lines as it takes."""
+        self.styles.height = min(self._rows(), max(4, self.app.size.height - 4))
+        self.display = True
+
+    def _entries(self) -> list[tuple[str, str]]:
+        found: dict[str, list[str]] = {}
+        for action in console_actions():
+            if action.short:
+                found.setdefault(action.short, []).extend(map(shown, action.chord))
+        return [(_joined(keys), short) for short, keys in found.items()]
+
+    def _columns(self) -> int:
+        return max(1, self.app.size.width // 16)
+
+    def _rows(self) -> int:
+        return math.ceil(len(self._entries()) / self._columns())
+
+    def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
+        ink, entries, rows = self.console_app.ink, self._entries(), self._rows()
+        room = width // self._columns()
+        found: list[tuple[str, Style]] = []
+        for key, short in entries[y::rows]:
+            found += [(f" {key}", ink.accent), (f" {short}".ljust(room - len(key) - 1), ink.text)]
+        return found
+
+
+def _joined(keys: list[str]) -> str:
+    """Keys of one entry: the digits as a range, the rest one after the other."""
+    return "0-9" if len(keys) == 10 else "".join(keys)

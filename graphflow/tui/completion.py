@@ -1,0 +1,132 @@
+"""Completing what is typed: verbs, their options, and the live names of the graph."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+from typing import Any
+
+from graphflow.errors import GraphflowError
+from graphflow.introspect.echo import flow, plain
+from graphflow.introspect.parameters import RemoteParameters
+from graphflow.msgs import registry
+from graphflow.tui.hub import Hub, Verbs
+from graphflow.wire.liveliness import Kind
+
+ANSWER_LIMIT = 1.0
+"""Seconds that a node has to tell its parameters."""
+
+
+class Completer:
+    """Completes lines of the command line, without the word `graphflow`."""
+
+    def __init__(self, hub: Hub) -> None:
+        self._hub = hub
+        self._verbs: Verbs | None = None
+
+    async def complete(self, line: str) -> tuple[str, list[str]]:
+        """The line with its last word completed as far as it is certain, and the words that it may become."""
+        words = line.split()
+        partial = words.pop() if words and not line.endswith(" ") else ""
+        choices = sorted({c for c in await self._choices(words) if c.startswith(partial)})
+        if not choices:
+            return line, []
+        common = _common(choices)
+        head = line[: len(line) - len(partial)]
+        if len(choices) == 1:
+            return f"{head}{choices[0]} ", choices
+        return head + common, choices
+
+    async def _choices(self, words: list[str]) -> list[str]:
+        if self._verbs is None:
+            self._verbs = await asyncio.to_thread(self._hub.read_verbs)
+        at: Any = {"commands": self._verbs}
+        rest = list(words)
+        while rest and at.get("commands") and rest[0] in at["commands"]:
+            at = at["commands"][rest.pop(0)]
+        if at.get("commands"):
+            return [] if rest else list(at["commands"])
+        return await self._arguments(at, rest)
+
+    async def _arguments(self, command: dict[str, Any], words: list[str]) -> list[str]:
+        options: dict[str, bool] = command["options"]
+        given, skip = [], False
+        for word in words:
+            if skip:
+                skip = False
+            elif word.startswith("-"):
+                skip = options.get(word, False)
+            else:
+                given.append(word)
+        if skip:
+            return []
+        arguments: list[str] = command["arguments"]
+        names = [argument.strip("[].").removesuffix("]...") for argument in arguments]
+        if not names or (len(given) >= len(names) and not arguments[-1].endswith("...")):
+            return list(options)
+        what = names[min(len(given), len(names) - 1)]
+        found = await self._named(what, given)
+        return found or list(options)
+
+    async def _named(self, what: str, given: list[str]) -> list[str]:
+        live = self._hub.live
+        if live is None:
+            return []
+        cache = live.cache
+        match what.upper():
+            case "NODE" | "NODES":
+                return self._hub.nodes()
+            case "TOPIC":
+                return list(cache.topics())
+            case "SERVICE":
+                return sorted({e.name for e in cache.endpoints(Kind.SERVICE)})
+            case "ACTION":
+                return list(cache.actions())
+            case "TYPE":
+                return self._types(given)
+            case "PARAMETER" | "PARAMETERS" if given:
+                return await self._parameters(given[0])
+            case "VALUES" | "GOAL" | "REQUEST" if len(given) >= 2:
+                return _template(given[1])
+            case "HANDLER" if given:
+                return self._handlers(given[0])
+        return []
+
+    def _types(self, given: list[str]) -> list[str]:
+        """The type of what was named before."""
+        assert self._hub.live is not None
+        cache = self._hub.live.cache
+        if not given:
+            return []
+        tables = (cache.topics(hidden=True), cache.services(hidden=True), cache.actions())
+        return [type_ for table in tables for type_ in table.get(given[0], [])]
+
+    def _handlers(self, node: str) -> list[str]:
+        assert self._hub.live is not None
+        report = self._hub.live.concurrency
+        groups = report.nodes.get(node, []) if report is not None else []
+        return [h["handler"] for g in groups for h in g["handlers"]]
+
+    async def _parameters(self, node: str) -> list[str]:
+        assert self._hub.live is not None
+        try:
+            return await self._hub.live.ask(lambda view: RemoteParameters(view, view.node(node), ANSWER_LIMIT).names())
+        except GraphflowError:
+            return []
+
+
+def _common(words: list[str]) -> str:
+    """The beginning that all words share."""
+    first, last = min(words), max(words)
+    return next((first[:i] for i, c in enumerate(first) if last[i : i + 1] != c), first)
+
+
+def _template(type_name: str) -> list[str]:
+    """A message of a type with all its fields, for the user to fill in."""
+    try:
+        found: Any = registry.interface_class(registry.full_name(type_name))
+    except GraphflowError:
+        return []
+    parts: Iterable[str] = ("Request", "Goal")
+    message = next((getattr(found, part) for part in parts if hasattr(found, part)), found)
+    return [f"'{flow(plain(message()))}'"]

@@ -1,0 +1,249 @@
+"""What the console's own actions do: `do_<name>` for each line of `actions.CONSOLE`."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from graphflow.graph.console import LAYOUTS, VIEWS, known_views
+from graphflow.tui.actions import carry_out, console_actions, keys_of, shown
+from graphflow.tui.dialogs import Ask, Choice, Item, Note, Pick
+from graphflow.tui.ink import DARK, LIGHT
+from graphflow.tui.lines import Lines
+from graphflow.tui.pane_deeds import PaneDeeds
+from graphflow.tui.panes import Content
+
+_ALSO_VERBS = ("groups",)
+"""Views whose names are verbs too: with more words they are the verb."""
+
+
+class Deeds(PaneDeeds):
+    """Carries out the console's actions."""
+
+    def do(self, name: str) -> None:
+        """Carry out an action."""
+        carry_out(self, name)
+
+    def look(self, now: float) -> None:
+        """Keep an eye on what is told wherever one is: deadlocks."""
+        app, live = self._app, self._app.hub.live
+        if live is None:
+            return
+        live.want("concurrency")
+        if live.concurrency is not None:
+            found = len(live.concurrency.reports)
+            if found > app.deadlocks:
+                app.say(f"DEADLOCK found; {shown(app.prefix)} g shows it and how to end it", bad=True)
+            app.deadlocks = found
+
+    # leaving
+
+    def do_detach(self) -> None:
+        self._app.run_worker(self._app.leave("detach"))
+
+    def do_ask_to_stop(self) -> None:
+        app = self._app
+        view = app.focused_view
+        if app.stops_again():
+            self.stop_now()
+            return
+        if view is not None and view.interrupt():
+            app.say("ended the command; ^c again asks to stop the graph")
+            return
+        if len(app.screen_stack) > 1:
+            app.pop_screen()
+        if app.hub.supervision is None:
+            self._ask("No supervisor here: these nodes were started elsewhere.", [Choice("d", "leave")], self._leave)
+            return
+        nodes = len(app.hub.supervision.nodes)
+        question = f"Leave or stop {app.hub.graph}, {nodes} node{'s' if nodes != 1 else ''}?"
+        choices = [Choice("d", "detach: the nodes run on"), Choice("s", "stop the graph   (or ^c again)")]
+        self._ask(question, choices, self._leave)
+
+    def _ask(self, question: str, choices: list[Choice], answered: Any, detail: str = "") -> None:
+        self._app.push_screen(Ask(question, choices, detail), answered)
+
+    def _leave(self, answer: str | None) -> None:
+        if answer == "d":
+            self.do_detach()
+        elif answer == "s":
+            self.stop_now()
+
+    def stop_now(self) -> None:
+        """Stop the graph and leave when it has ended."""
+        self._app.run_worker(self._app.leave("stop"))
+
+    def do_sessions(self) -> None:
+        from graphflow.supervisor.rundir import running
+
+        runs = running()
+        here = self._app.hub.supervision
+        items = [
+            Item(r.graph, f"domain {r.domain}  {r.file}", None if here and r.run_id == here.run.run_id else r.socket)
+            for r in runs
+        ]
+
+        def picked(socket: str | None) -> None:
+            if socket:
+                self._app.run_worker(self._app.leave(f"switch {socket}"))
+
+        self._app.push_screen(Pick("Running graphs", items, "no other graph is running"), picked)
+
+    # the graph
+
+    def do_find(self) -> None:
+        from graphflow.tui.pickable import things
+
+        def picked(content: Content | None) -> None:
+            if content is not None:
+                self.open_beside(content)
+
+        self._app.push_screen(Pick("Find in the graph", things(self._app.hub), "not connected yet"), picked)
+
+    def do_groups(self) -> None:
+        self._app.did("graphflow waits")
+        self.open_window(Content("groups"))
+
+    def do_restart_node(self) -> None:
+        view = self._app.focused_view
+        node = view.chosen().get("node", "") if view is not None else ""
+        if node:
+            self.restart(node)
+        else:
+            self._app.say("choose a node first, in the list of nodes")
+
+    def restart(self, node: str) -> None:
+        """Ask, then restart a node."""
+        supervision = self._app.hub.supervision
+        if supervision is None or node not in supervision.nodes:
+            self._app.say(
+                f"{node} was not started by this graph's supervisor, so it cannot be restarted here", bad=True
+            )
+            return
+        process = supervision.nodes[node]["process"]
+        mates = [n for n, row in supervision.nodes.items() if process and row["process"] == process and n != node]
+        detail = f"It shares a process with {', '.join(mates)}, which restart too." if mates else ""
+
+        def answered(key: str | None) -> None:
+            if key == "r":
+                supervision.send(do="restart", node=node)
+                self._app.did(f"graphflow restart {node}")
+
+        if supervision.nodes[node]["state"] in ("ended", "failed"):
+            answered("r")
+        else:
+            self._ask(f"Restart {node}?", [Choice("r", "restart")], answered, detail)
+
+    def stop_node(self, node: str) -> None:
+        """Ask, then stop a node."""
+        supervision = self._app.hub.supervision
+        if supervision is None or node not in supervision.nodes:
+            self._app.say(f"{node} was not started by this graph's supervisor, so it cannot be stopped here", bad=True)
+            return
+
+        def answered(key: str | None) -> None:
+            if key == "s":
+                supervision.send(do="stop", node=node)
+                self._app.did(f"graphflow stop {node}")
+
+        self._ask(f"Stop {node}? The others run on.", [Choice("s", "stop it")], answered)
+
+    def do_search_logs(self) -> None:
+        self.open_window(Content("log"), "logs")
+        self._app.call_after_refresh(self._search_here)
+
+    def _search_here(self) -> None:
+        view = self._app.focused_view
+        search = getattr(view, "do_filter", None)
+        if search is not None:
+            search()
+
+    def do_mute_node(self) -> None:
+        view = self._app.focused_view
+        node = view.chosen().get("node", "") if view is not None else ""
+        if not node:
+            self._app.say("choose a node, or a line of its log, first")
+            return
+        muted = self._app.hub.muted
+        muted.symmetric_difference_update({node})
+        self._app.say(f"{node} is {'muted' if node in muted else 'heard again'} in merged logs")
+
+    def do_palette(self) -> None:
+        app, view = self._app, self._app.focused_view
+        mine = view.ACTIONS if view is not None else ()
+        items = [Item(a.title, ", ".join(map(shown, a.keys)), (view, a.name)) for a in mine]
+        items += [Item(a.title, keys_of(a, app.prefix), (self, a.name)) for a in console_actions()]
+
+        def picked(chosen: tuple[object, str] | None) -> None:
+            if chosen is not None:
+                carry_out(*chosen)
+
+        app.push_screen(Pick("Everything that can be done here", items), picked)
+
+    def do_command(self) -> None:
+        from graphflow.tui.command import CommandLine
+
+        self._app.push_screen(CommandLine(self._app.hub), self._typed)
+
+    def _typed(self, text: str | None) -> None:
+        if not text or not text.strip():
+            return
+        text = text.strip().removeprefix("graphflow ").removeprefix("gf ").strip()
+        word, _, rest = text.partition(" ")
+        if (
+            word in known_views()
+            and not (word in _ALSO_VERBS and rest)
+            and (rest or word not in VIEWS or not VIEWS[word].needs_it)
+        ):
+            self.open_beside(Content(word, rest))
+        elif word == "layout" and rest in LAYOUTS:
+            self.do_arrange(rest)
+        elif word == "save-layout":
+            self.do_save_layout()
+        elif word in ("detach", "quit", "q"):
+            self.do_detach()
+        else:
+            self.open_beside(Content("prompt", text, {"run": True}))
+
+    # the console
+
+    def do_help(self) -> None:
+        from graphflow.tui.views.help import VIEW as HELP
+
+        self._app.push_screen(Note("Keys", lambda: HELP(self._app.hub, Content("help"))))
+
+    def do_clients(self) -> None:
+        supervision = self._app.hub.supervision
+        consoles = supervision.consoles if supervision is not None else []
+        items = [
+            Item(
+                c["name"],
+                f"since {time.strftime('%H:%M:%S', time.localtime(c['since']))}"
+                f"{'  (this one)' if supervision and c['name'] == supervision.name else ''}",
+                None,
+            )
+            for c in consoles
+        ]
+        self._app.push_screen(Pick("Attached consoles", items, "only this one"))
+
+    def do_clock(self) -> None:
+        self._app.say(time.strftime("%A %d %B %Y, %H:%M:%S"))
+
+    def do_theme(self) -> None:
+        self._app.theme = LIGHT.name if self._app.current_theme.dark else DARK.name
+        self._app.say(f"theme {self._app.theme}")
+
+    def do_messages(self) -> None:
+        def body() -> Lines:
+            lines = Lines()
+            lines.call_after_refresh(lines.replace, list(self._app.said))
+            return lines
+
+        self._app.push_screen(Note("What was said", body))
+
+    def do_copy_command(self) -> None:
+        if not self._app.last_shell:
+            self._app.say("no command has been shown yet")
+            return
+        self._app.copy_to_clipboard(self._app.last_shell)
+        self._app.say(f"copied: {self._app.last_shell}")

@@ -1,0 +1,122 @@
+"""What views, bars and deeds have in common: the hub, the windows, and a voice to the user."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import Any
+
+from textual.app import App
+from textual.timer import Timer
+
+from graphflow.tui.actions import shown
+from graphflow.tui.bars import Hints, Status
+from graphflow.tui.hub import Hub
+from graphflow.tui.ink import Ink
+from graphflow.tui.layout import Layout
+from graphflow.tui.panes import Window
+from graphflow.tui.view import View
+from graphflow.tui.workspace import Workspace
+
+MESSAGES = 500
+"""Messages kept."""
+KEEP_AFTER = 1.0
+"""Seconds after the last change at which the windows are kept with the run."""
+STOP_WITHIN = 2.0
+"""Seconds in which a second Ctrl-C stops the graph without asking."""
+
+
+class Desk(App[str]):
+    """The part of the console that its other parts know."""
+
+    hints: Hints
+    status: Status
+    workspace: Workspace
+    ink: Ink
+
+    def __init__(self, hub: Hub, windows: Layout, prefix: str) -> None:
+        super().__init__()
+        self.hub = hub
+        self.windows = windows
+        self.prefix = prefix
+        self.flags: dict[int, str] = {}
+        """What the window list says of each window: `!` for a crash in it."""
+        self.deadlocks = 0
+        self.clipboard_text = ""
+        self.last_shell = ""
+        """The command that would have done what was done last."""
+        self.said: list[str] = []
+        """Messages so far."""
+        self.tasks: set[asyncio.Task[None]] = set()
+        """What runs as long as the console does."""
+        self._keep_timer: Timer | None = None
+        self._asked_to_stop = 0.0
+
+    def spawn(self, work: Any) -> None:
+        """Run something until the console is left."""
+        task = asyncio.create_task(work)
+        self.tasks.add(task)
+        task.add_done_callback(self.tasks.discard)
+
+    async def leave(self, how: str) -> None:
+        """End the console; the graph is another matter."""
+        if self.hub.supervision is not None:
+            self.keep_layout_now()
+        for frame in self.workspace.frames.values():
+            frame.view.closed()
+        if self.hub.live is not None:
+            await self.hub.live.close()
+        for task in self.tasks:
+            task.cancel()
+        self.exit(how)
+
+    @property
+    def focused_view(self) -> View | None:
+        """The view in the focused pane."""
+        frame = self.workspace.focused if hasattr(self, "workspace") else None
+        return None if frame is None else frame.view
+
+    def say(self, text: str, *, bad: bool = False) -> None:
+        """Tell the user something in the bottom line."""
+        self._note(text)
+        self.hints.say(text, "bad" if bad else "text")
+
+    def _note(self, text: str) -> None:
+        self.said.append(f"{time.strftime('%H:%M:%S')}  {text}")
+        del self.said[:-MESSAGES]
+
+    def did(self, shell: str) -> None:
+        """Show the shell command that does what was just done."""
+        self.last_shell = shell
+        self._note(f"$ {shell}")
+        self.hints.say(f"$ {shell}   ({shown(self.prefix)} y copies)", "accent")
+
+    def changed(self) -> None:
+        """The windows have changed: show it, and keep them with the run soon."""
+        self.workspace.sync()
+        self.status.refresh()
+        self.hints.refresh()
+        if self._keep_timer is not None:
+            self._keep_timer.stop()
+        self._keep_timer = self.set_timer(KEEP_AFTER, self.keep_layout_now)
+
+    def keep_layout_now(self) -> None:
+        """Keep the windows with the run, so that whoever attaches next finds them."""
+        self.workspace.keep_contents()
+        if self.hub.supervision is not None:
+            self.hub.supervision.send(do="keep_layout", layout=self.windows.to_json())
+
+    def stops_again(self) -> bool:
+        """Whether this Ctrl-C is the second within two seconds."""
+        now = time.monotonic()
+        again = now - self._asked_to_stop < STOP_WITHIN
+        self._asked_to_stop = now
+        return again
+
+    @property
+    def window(self) -> Window:
+        return self.windows.window
+
+    def copy_to_clipboard(self, text: str) -> None:
+        self.clipboard_text = text
+        super().copy_to_clipboard(text)

@@ -1,0 +1,204 @@
+"""Many lines of text, of which only those on screen are ever drawn."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import Any, ClassVar, NamedTuple
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.geometry import Size
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from graphflow.tui.ink import Ink
+
+KEPT = 20_000
+WRAPS_INTO = 50
+"""Lines that one row becomes at most where long ones are wrapped."""
+
+
+class Part(NamedTuple):
+    """A piece of a row that is too long for one line."""
+
+    row: Any
+    start: int
+    """The column of the row at which the piece begins."""
+
+
+class Lines(ScrollView, can_focus=True):
+    """Lines that grow at the end and are followed there, until one scrolls up.
+
+    Args:
+        bound: Lines kept; the oldest go first.
+        wraps: Whether long rows go on in the next line, rather than being cut off.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "move(-1)", show=False),
+        Binding("down,j", "move(1)", show=False),
+        Binding("pageup", "page(-1)", show=False),
+        Binding("pagedown", "page(1)", show=False),
+        Binding("home,g", "top", show=False),
+        Binding("end,G", "bottom", show=False),
+    ]
+
+    def __init__(self, bound: int = KEPT, *, wraps: bool = False) -> None:
+        super().__init__()
+        self.wraps = wraps
+        self._wrapped_at = 0
+        self.rows: deque[Any] = deque(maxlen=bound)
+        self.follows = True
+        self.cursor: int | None = None
+        """The index of the chosen row, while one is chosen."""
+
+    @property
+    def ink(self) -> Ink:
+        ink: Ink = self.app.ink  # type: ignore[attr-defined]
+        return ink
+
+    def draw(self, row: Any) -> Iterable[tuple[str, Style]]:
+        """One row as pieces of text; for subclasses whose rows are not plain text."""
+        if isinstance(row, Text):
+            for segment in row.render(self.app.console):
+                yield segment.text, segment.style or self.ink.text
+        else:
+            yield str(row), self.ink.text
+
+    def extend(self, rows: Iterable[Any]) -> None:
+        """Add rows at the end."""
+        before = len(self.rows)
+        fresh = list(self._parts(rows))
+        self.rows.extend(fresh)
+        self._moved(lost=before + len(fresh) - len(self.rows))
+
+    def replace(self, rows: Iterable[Any]) -> None:
+        """Show other rows."""
+        fresh = list(self._parts(rows))
+        self.rows.clear()
+        self.rows.extend(fresh)
+        self.cursor = None
+        self._moved(lost=0)
+
+    @property
+    def chosen(self) -> Any:
+        """The row that is chosen; None for none."""
+        if self.cursor is None or not 0 <= self.cursor < len(self.rows):
+            return None
+        row = self.rows[self.cursor]
+        return row.row if isinstance(row, Part) else row
+
+    def _parts(self, rows: Iterable[Any]) -> Iterator[Any]:
+        """The rows as lines: the long ones in parts, if they wrap."""
+        width = self._wrapped_at = self.scrollable_content_region.width
+        if not self.wraps or not width:
+            yield from rows
+            return
+        for row in rows:
+            length = sum(cell_len(text) for text, _ in self.draw(row))
+            yield row
+            yield from (Part(row, start) for start in range(width, min(length, width * WRAPS_INTO), width))
+
+    def wrap(self, wraps: bool) -> None:
+        """Let long rows go on in the next line, or not."""
+        self.wraps = wraps
+        self.replace([row for row in self.rows if not isinstance(row, Part)])
+
+    def _moved(self, lost: int) -> None:
+        self.virtual_size = Size(self._widest, len(self.rows))
+        if self.follows:
+            self.scroll_end(animate=False, immediate=True, x_axis=False)
+        elif lost:
+            self.scroll_to(y=max(0, self.scroll_offset.y - lost), animate=False, immediate=True)
+            self.cursor = None if self.cursor is None else max(0, self.cursor - lost)
+        self.refresh()
+
+    @property
+    def _widest(self) -> int:
+        return self.scrollable_content_region.width
+
+    def render_line(self, y: int) -> Strip:
+        width = self.scrollable_content_region.width
+        left, top = self.scroll_offset
+        index = top + y
+        base = self.rich_style
+        if not 0 <= index < len(self.rows):
+            return Strip.blank(width, base)
+        ink = self.ink
+        style = base + ink.cursor if index == self.cursor else base
+        row = self.rows[index]
+        if isinstance(row, Part):
+            row, left = row
+        strip = Strip([Segment(text, style + piece) for text, piece in self.draw(row)])
+        return strip.crop_extend(left, left + width, style)
+
+    def on_resize(self, event: events.Resize) -> None:
+        if self.wraps and self._wrapped_at != self.scrollable_content_region.width:
+            self.wrap(True)
+        self._moved(lost=0)
+
+    # moving
+
+    def hold(self) -> None:
+        """Stop following, so that what is read stays where it is."""
+        self.follows = False
+
+    def action_move(self, step: int) -> None:
+        height = self.scrollable_content_region.height
+        if self.cursor is None:
+            self.cursor = min(len(self.rows) - 1, self.scroll_offset.y + height - 1)
+        else:
+            self.cursor = max(0, min(len(self.rows) - 1, self.cursor + step))
+        self.hold()
+        self.show_row(self.cursor)
+
+    def show_row(self, index: int) -> None:
+        """Scroll just enough to have a row on screen."""
+        height, top = self.scrollable_content_region.height, self.scroll_offset.y
+        if index < top:
+            self.scroll_to(y=index, animate=False, immediate=True)
+        elif index >= top + height:
+            self.scroll_to(y=index - height + 1, animate=False, immediate=True)
+        self.refresh()
+
+    def action_page(self, step: int) -> None:
+        height = self.scrollable_content_region.height
+        if step < 0:
+            self.hold()
+        self.scroll_to(y=self.scroll_offset.y + step * max(1, height - 1), animate=False, immediate=True)
+        self._follow_at_the_end()
+
+    def action_top(self) -> None:
+        self.hold()
+        self.scroll_home(animate=False, immediate=True)
+
+    def action_bottom(self) -> None:
+        self.follows, self.cursor = True, None
+        self.scroll_end(animate=False, immediate=True, x_axis=False)
+        self.refresh()
+
+    def on_mouse_scroll_up(self) -> None:
+        self.hold()
+
+    def on_mouse_scroll_down(self) -> None:
+        self.call_after_refresh(self._follow_at_the_end)
+
+    def _follow_at_the_end(self) -> None:
+        if self.is_vertical_scroll_end:
+            self.follows, self.cursor = True, None
+            self.refresh()
+
+    def on_click(self, event: events.Click) -> None:
+        index = self.scroll_offset.y + event.y
+        if 0 <= index < len(self.rows):
+            self.hold()
+            self.cursor = index
+            self.refresh()
+
+    def get_content_width(self, container: Size, viewport: Size) -> int:
+        return container.width

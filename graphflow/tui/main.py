@@ -1,0 +1,129 @@
+"""Opening the console, and what is done when it has been left."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("TEXTUAL_FPS", "20")  # Textual reads it when it is imported
+
+from graphflow.errors import SupervisorError
+from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.rundir import GraphRun, running
+from graphflow.tui.app import Console
+from graphflow.tui.hub import Hub, Verbs
+from graphflow.tui.ink import DARK
+from graphflow.tui.layout import Layout
+from graphflow.tui.supervision import Supervision
+
+FAILED = "failed"
+"""How a console was left whose own code has failed."""
+PREFIX_VARIABLE, THEME_VARIABLE = "GRAPHFLOW_PREFIX", "GRAPHFLOW_THEME"
+
+
+class Left:
+    """How a console was left: `detach`, `stop` or `failed`; and the graph's exit code, if it has ended meanwhile."""
+
+    def __init__(self, how: str, run: GraphRun | None, exit_code: int | None) -> None:
+        self.how, self.run, self.exit_code = how, run, exit_code
+
+
+def open_console(
+    run: GraphRun | None,
+    domain: int,
+    *,
+    command: tuple[str, ...],
+    verbs: Callable[[], Verbs],
+    prefix: str | None = None,
+) -> Left:
+    """Show the console until it is left; by then it may have gone to another graph.
+
+    Args:
+        run: The run to attach to; None for nodes that no supervisor of ours has started.
+        command: The words that start `graphflow`.
+        verbs: Reads the verbs of the command line.
+        prefix: The prefix key, from the command line.
+
+    Raises:
+        SupervisorError: The supervisor does not answer.
+    """
+    while True:
+        if run is not None:
+            _log_to(Path(run.logs) / f"console-{os.getpid()}.log")
+        how, exit_code = _show(run, domain, command, verbs, prefix)
+        if not how.startswith("switch "):
+            return Left(how, run, exit_code)
+        socket = how.removeprefix("switch ")
+        run = next((r for r in running() if r.socket == socket), run)
+        assert run is not None
+        domain = run.domain
+        os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
+
+
+def _show(
+    run: GraphRun | None, domain: int, command: tuple[str, ...], verbs: Callable[[], Verbs], prefix: str | None
+) -> tuple[str, int | None]:
+    hub = Hub(domain, None, command, verbs)
+    hello: dict[str, Any] = {}
+    app: Console | None = None
+    if run is not None:
+        hello, rows = _first_word(run)
+
+        def heard(event: dict[str, Any]) -> None:
+            if app is not None:
+                app.heard(event)
+
+        hub.supervision = Supervision(run, heard)
+        hub.supervision.hello = hello
+        hub.supervision.nodes = {row["node"]: row for row in rows}
+    section = hello.get("console") or {}
+    app = Console(
+        hub,
+        _layout(hello),
+        prefix or os.environ.get(PREFIX_VARIABLE) or section.get("prefix") or _usual_prefix(),
+        os.environ.get(THEME_VARIABLE) or section.get("theme") or DARK.name,
+    )
+    how = app.run() or FAILED
+    return how, hub.supervision.exit_code if hub.supervision is not None else None
+
+
+def _usual_prefix() -> str:
+    """Inside tmux, its own prefix would never arrive."""
+    return "ctrl+a" if os.environ.get("TMUX") else "ctrl+b"
+
+
+def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """What the supervisor says before anything is drawn, so that the first screen is the right one."""
+    with ControlClient(run.socket) as client:
+        client.send(do="hello")
+        hello = next(client.receive(), {})
+    with ControlClient(run.socket) as client:
+        client.send(do="ps")
+        rows = next(client.receive(), {}).get("nodes", [])
+    return hello, rows
+
+
+def _layout(hello: dict[str, Any]) -> Layout | None:
+    """The windows kept with the run, else the graph file's."""
+    for data in (hello.get("layout"), hello.get("console")):
+        if data and data.get("windows"):
+            try:
+                return Layout.from_json(data)
+            except ValueError:
+                logging.getLogger("graphflow.console").warning("the windows kept with the run cannot be read")
+    return None
+
+
+def _log_to(path: Path) -> None:
+    """The terminal belongs to the console: what is logged goes to a file."""
+    logger = logging.getLogger()
+    for handler in list(logger.handlers):
+        logger.removeHandler(handler)
+        handler.close()
+    try:
+        logger.addHandler(logging.FileHandler(path, delay=True))
+    except OSError as error:
+        raise SupervisorError(f"{path}: {error.strerror}") from None

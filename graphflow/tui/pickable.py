@@ -1,0 +1,37 @@
+"""What can be picked: views for a pane, and everything in the graph that has one."""
+
+from __future__ import annotations
+
+from graphflow.graph.console import VIEWS, known_views
+from graphflow.names import is_hidden
+from graphflow.tui.dialogs import Item
+from graphflow.tui.hub import Hub
+from graphflow.tui.panes import Content
+from graphflow.tui.registry import describe
+from graphflow.wire.liveliness import Kind
+
+
+def contents(hub: Hub) -> list[Item]:
+    """Views that show something without being told more, then those of each thing in the graph."""
+    plain = [name for name in known_views() if name not in VIEWS or not VIEWS[name].needs_it]
+    return [*(Item(name, describe(name), Content(name)) for name in plain), *things(hub)]
+
+
+def things(hub: Hub) -> list[Item]:
+    """Nodes, topics, services, actions: each with the views that are about it."""
+    found = []
+    for node in hub.nodes():
+        found += [Item(f"log {node}", "what it writes", Content("log", node))]
+        found += [Item(f"params {node}", "its parameters", Content("params", node))]
+    if hub.live is None:
+        return found
+    cache = hub.live.cache
+    for topic, types in cache.topics().items():
+        found += [Item(f"echo {topic}", ", ".join(types), Content("echo", topic))]
+        found += [Item(f"hz {topic}", ", ".join(types), Content("hz", topic))]
+    for entity in cache.endpoints(Kind.SERVICE):
+        if not is_hidden(entity.name):
+            found.append(Item(f"call {entity.name}", entity.type, Content("calls", entity.name)))
+    for action, types in cache.actions().items():
+        found.append(Item(f"goals {action}", ", ".join(types), Content("goals", action)))
+    return found

@@ -1,0 +1,35 @@
+"""All views by name: those that come with graphflow, imported when first shown, and those of other packages."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from graphflow.graph.console import PLUGINS, VIEWS, known_views
+from graphflow.names import did_you_mean
+from graphflow.tui.view import View
+
+
+def view_class(name: str) -> type[View]:
+    """The class of a view; a view that says what is wrong where there is none."""
+    if name in VIEWS:
+        found: type[View] = import_module(f"graphflow.tui.views.{name}").VIEW
+        return found
+    from importlib.metadata import entry_points
+
+    from graphflow.tui.views.broken import broken
+
+    for entry in entry_points(group=PLUGINS):
+        if entry.name == name:
+            try:
+                loaded = entry.load()
+            except Exception as error:  # another package's code: whatever it raises is what its user must see
+                return broken(f"the view {name} of {entry.value} cannot be loaded: {error!r}")
+            if isinstance(loaded, type) and issubclass(loaded, View):
+                return loaded
+            return broken(f"{entry.value} is no subclass of graphflow.tui.view.View")
+    return broken(f"there is no view {name!r}{did_you_mean(name, known_views())}")
+
+
+def describe(name: str) -> str:
+    """What a view shows, in a line."""
+    return view_class(name).DOC

@@ -1,0 +1,1 @@
+"""The views, one module each; each says `VIEW = <its class>`."""

@@ -1,0 +1,21 @@
+"""In place of a view that cannot be shown: why not."""
+
+from __future__ import annotations
+
+from textual.app import ComposeResult
+from textual.widgets import Static
+
+from graphflow.tui.view import View
+
+
+def broken(why: str) -> type[View]:
+    """A view that says why there is none."""
+
+    class Broken(View):
+        NAME = "broken"
+        DOC = why
+
+        def compose(self) -> ComposeResult:
+            yield Static(why, classes="hint", markup=False)
+
+    return Broken

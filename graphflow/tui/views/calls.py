@@ -1,0 +1,216 @@
+"""Services: all of them, and a form for the request of one; what was answered, and what was asked before."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, ClassVar
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.widget import Widget
+from textual.widgets import DataTable, Input, Static
+
+from graphflow.errors import EncodeError, GraphflowError
+from graphflow.introspect.echo import block, flow, plain, truncated
+from graphflow.msgs import registry
+from graphflow.names import is_hidden
+from graphflow.tui.actions import Action
+from graphflow.tui.form import Form, form_for
+from graphflow.tui.hub import Hub
+from graphflow.tui.lines import Lines
+from graphflow.tui.logs import plain_text
+from graphflow.tui.panes import Content
+from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.wire.liveliness import Kind
+
+CALL_LIMIT = 10.0
+"""Seconds that a service has to answer."""
+HISTORY = 50
+_OF_EVERY_NODE = (
+    "/describe_parameters",
+    "/get_parameter_types",
+    "/get_parameters",
+    "/list_parameters",
+    "/set_parameters",
+    "/set_parameters_atomically",
+    "/get_logger_levels",
+    "/set_logger_levels",
+    "/get_type_description",
+)
+
+
+class Calls(TableView):
+    """Services, and calls to them."""
+
+    NAME = "calls"
+    DOC = "services: a form for the request, the answers so far"
+    COLUMNS = ("service", "type", "node")
+    EVERY = 1.0
+    ACTIONS = (
+        Action("open_form", "fill in and call", keys=("enter",), hint=True),
+        Action("send", "call", keys=("ctrl+s",), verb="graphflow service call {service} TYPE VALUES", hint=True),
+        Action("earlier", "the request before", keys=("ctrl+up",)),
+        Action("later", "the request after", keys=("ctrl+down",)),
+        Action("back", "back to the list", keys=("escape",), hint=True),
+        Action("hidden", "every node's own services too", keys=("a",)),
+        FIND,
+    )
+    DEFAULT_CSS = """
+    Calls .shell { height: auto; max-height: 3; padding: 0 1; color: $text-muted; }
+    """
+
+    asked: ClassVar[dict[str, list[dict[str, Any]]]] = {}
+    """The requests made in this console, by service."""
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._hidden_too = False
+        self._type = ""
+        self._form: Form | None = None
+        self._shell = Static("", classes="shell", markup=False)
+        self._answers = Lines(2000, wraps=True)
+        self._at = 0
+
+    def compose(self) -> ComposeResult:
+        yield from super().compose()
+        yield self._shell
+        yield self._answers
+
+    def on_mount(self) -> None:
+        self._show_list()
+
+    @property
+    def title(self) -> str:
+        return f"call {self.about}" if self._form is not None else "services"
+
+    def rows(self) -> dict[str, Cells]:
+        live, ink = self.hub.live, self.ink
+        if live is None:
+            return {}
+        found: dict[str, Cells] = {}
+        for e in live.cache.endpoints(Kind.SERVICE):
+            if not self._hidden_too and (is_hidden(e.name) or e.name.endswith(_OF_EVERY_NODE)):
+                continue
+            found[e.name] = (Text(e.name), Text(e.type, style=ink.dim), Text(e.node_name, style=ink.node(e.node_name)))
+        return found
+
+    def look(self, now: float) -> None:
+        super().look(now)
+        if self.about and self._form is None and self.about in {*self._all()}:
+            self._open(self.about)
+
+    def _all(self) -> list[str]:
+        return [] if self.hub.live is None else [e.name for e in self.hub.live.cache.endpoints(Kind.SERVICE)]
+
+    @property
+    def heart(self) -> Widget:
+        if self._form is None:
+            return self.table
+        return next(iter(self._form.query(Input)), self._answers)
+
+    def _show_list(self) -> None:
+        has_form = self._form is not None
+        self.table.display = not has_form
+        self._shell.display = self._answers.display = has_form
+
+    def on_data_table_row_selected(self, event: DataTable.RowSelected) -> None:
+        event.stop()
+        self.do_open_form()
+
+    def do_open_form(self) -> None:
+        if self.key:
+            self._open(self.key)
+
+    def _open(self, name: str) -> None:
+        assert self.hub.live is not None
+        types = [e.type for e in self.hub.live.cache.endpoints(Kind.SERVICE, name)]
+        if not types:
+            return
+        self.about, self._type = name, types[0]
+        try:
+            self._form = form_for(registry.service_schema(self._type).request.name)
+        except GraphflowError as error:
+            self.about = ""
+            self.say(str(error), bad=True)
+            return
+        self._answers.replace([])
+        self._at = len(self.asked.get(name, []))
+        self.mount(self._form, before=self._shell)
+        self._show_list()
+        self._show_shell()
+
+    def do_back(self) -> None:
+        if self._form is not None:
+            self._form.remove()
+            self._form, self.about = None, ""
+            self._show_list()
+            self.table.focus()
+        else:
+            self.key_escape()
+
+    def on_form_edited(self) -> None:
+        self._show_shell()
+
+    def _command(self) -> str:
+        assert self._form is not None
+        values = self._form.values()
+        return f"graphflow service call {self.about} {self._type}" + (f" '{flow(values)}'" if values else "")
+
+    def _show_shell(self) -> None:
+        try:
+            self._shell.update(f"ctrl+s calls;  $ {self._command()}")
+        except EncodeError as error:
+            self._shell.update(str(error))
+
+    def do_send(self) -> None:
+        form = self._form
+        if form is None:
+            self.do_open_form()
+            return
+        try:
+            message, values, command = form.message(), form.values(), self._command()
+        except EncodeError as error:
+            self.say(str(error), bad=True)
+            return
+        past = self.asked.setdefault(self.about, [])
+        past.append(values)
+        del past[:-HISTORY]
+        self._at = len(past) - 1
+        name, type_name = self.about, self._type
+        self.did(command)
+        self.hub.announce(command.removeprefix("graphflow "))
+
+        async def call() -> None:
+            assert self.hub.live is not None
+            began = time.monotonic()
+            ink = self.ink
+            self._answers.extend([Text(f"▶ {flow(values)}", style=ink.accent)])
+            try:
+                answer = await self.hub.live.ask(lambda g: g.call(name, type_name, message, CALL_LIMIT))
+            except GraphflowError as error:
+                self._answers.extend(Text(plain_text(line), style=ink.bad) for line in str(error).split("\n"))
+                return
+            lines = block(truncated(plain(answer))).split("\n")
+            took = f"◀ after {(time.monotonic() - began) * 1000:.0f} ms"
+            self._answers.extend([Text(took, style=ink.good), *(f"  {plain_text(line)}" for line in lines[:500])])
+
+        self.work(call)
+
+    def do_earlier(self) -> None:
+        self._recall(-1)
+
+    def do_later(self) -> None:
+        self._recall(1)
+
+    def _recall(self, step: int) -> None:
+        past = self.asked.get(self.about, [])
+        if self._form is not None and past:
+            self._at = max(0, min(len(past) - 1, self._at + step))
+            self._form.fill(past[self._at])
+
+    def do_hidden(self) -> None:
+        self._hidden_too = not self._hidden_too
+        self.look(0.0)
+
+
+VIEW = Calls

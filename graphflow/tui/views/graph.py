@@ -1,0 +1,266 @@
+"""The graph as boxes and arrows: nodes, topics with their rates, and in red what does not fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.geometry import Region, Size
+from textual.widget import Widget
+
+from graphflow.machines.cache import GraphCache
+from graphflow.names import is_hidden
+from graphflow.tui.actions import Action, shown
+from graphflow.tui.drawing import Box, Cell, Drawing, draw
+from graphflow.tui.hub import Hub
+from graphflow.tui.ink import Ink
+from graphflow.tui.lines import Lines
+from graphflow.tui.panes import Content
+from graphflow.tui.view import View
+from graphflow.tui.views.topics import misfit
+from graphflow.wire.liveliness import Entity, Kind
+
+BOXES = 120
+"""Boxes that are laid out; a larger graph is collapsed by its namespaces first."""
+_EVERYWHERE = ("/rosout", "/parameter_events", "/clock")
+"""Topics that every node has: they would be in every picture."""
+
+
+class Arrow(NamedTuple):
+    """A node publishes to a topic, or a topic reaches a node."""
+
+    source: str
+    target: str
+    is_bad: bool = False
+
+
+class Picture(NamedTuple):
+    """What is to be drawn."""
+
+    nodes: tuple[str, ...]
+    topics: tuple[str, ...]
+    arrows: tuple[Arrow, ...]
+
+
+def picture(cache: GraphCache, below: str, collapsed: frozenset[str], *, everything: bool) -> Picture:
+    """Nodes, topics and the arrows between them.
+
+    Args:
+        below: Only nodes of this namespace and what they are connected to; empty for all.
+        collapsed: Namespaces drawn as one box each.
+        everything: Also topics that only one side knows, and those that every node has.
+    """
+    ends: dict[str, list[Entity]] = {}
+    for e in cache:
+        if e.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION) and not is_hidden(e.name) and not is_hidden(e.node_name):
+            ends.setdefault(e.name, []).append(e)
+    nodes = dict.fromkeys(box_of(n, collapsed) for n in cache.nodes(hidden=False) if n.startswith(below))
+    arrows: dict[Arrow, None] = {}
+    topics: dict[str, None] = {}
+    for topic, there in sorted(ends.items()):
+        kinds = {e.kind for e in there}
+        near = any(e.node_name.startswith(below) for e in there)
+        if not near or (not everything and (len(kinds) < 2 or topic in _EVERYWHERE)):
+            continue
+        sources = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.PUBLISHER}
+        targets = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.SUBSCRIPTION}
+        if sources == targets and len(sources) == 1 and not everything:
+            continue  # it stays within one box
+        bad = bool(misfit(there))
+        topics[topic] = None
+        nodes.update(dict.fromkeys((*sorted(sources), *sorted(targets))))
+        arrows.update(dict.fromkeys(Arrow(s, topic, bad) for s in sorted(sources)))
+        arrows.update(dict.fromkeys(Arrow(topic, t, bad) for t in sorted(targets)))
+    return Picture(tuple(nodes), tuple(topics), tuple(arrows))
+
+
+def box_of(node: str, collapsed: Iterable[str]) -> str:
+    """The box that a node is drawn in: its own, or that of a namespace."""
+    found = [space for space in collapsed if node.startswith(f"{space}/")]
+    return f"{max(found, key=len)}/…" if found else node
+
+
+class Boxes(Lines):
+    """The drawn graph, which scrolls both ways."""
+
+    DEFAULT_CSS = "Boxes { overflow-x: auto; scrollbar-size-horizontal: 1; }"
+    wide = 0
+
+    @property
+    def _widest(self) -> int:
+        return max(self.wide, super()._widest)
+
+    def get_content_width(self, container: Size, viewport: Size) -> int:
+        return max(self.wide, container.width)
+
+
+class Graph(View):
+    """The graph."""
+
+    NAME = "graph"
+    DOC = "nodes and topics as boxes and arrows"
+    EVERY = 1.0
+    ACTIONS = (
+        Action("next_box", "next box", keys=("n",), hint=True),
+        Action("previous_box", "box before", keys=("N",)),
+        Action("open_box", "open it", keys=("enter",), hint=True),
+        Action("collapse", "collapse its namespace, or all back", keys=("space",), hint=True),
+        Action("everything", "unconnected topics too", keys=("a",), hint=True),
+        Action("mermaid", "copy as Mermaid", keys=("M",)),
+    )
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._boxes = Boxes(5000)
+        self._boxes.follows = False
+        self._collapsed: frozenset[str] = frozenset()
+        self._everything = False
+        self._chosen = ""
+        self._picture = Picture((), (), ())
+        self._drawing = Drawing([])
+        self._drawn: Any = None
+
+    def compose(self) -> ComposeResult:
+        yield self._boxes
+
+    @property
+    def heart(self) -> Widget:
+        return self._boxes
+
+    @property
+    def note(self) -> str:
+        bad = sum(arrow.is_bad for arrow in self._picture.arrows)
+        return f"{len(self._picture.nodes)} nodes{f', {bad} misfits' if bad else ''}"
+
+    def chosen(self) -> dict[str, str]:
+        if self._chosen in self._picture.topics:
+            return {"topic": self._chosen}
+        return {"node": self._chosen} if self._chosen in self.hub.nodes() else {}
+
+    def look(self, now: float) -> None:
+        live = self.hub.live
+        if live is None or live.context is None:
+            return
+        live.want("numbers")
+        made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
+        if len(made.nodes) + len(made.topics) > BOXES and not self._collapsed:
+            spaces = frozenset(n.rpartition("/")[0] for n in made.nodes if n.count("/") > 1)
+            if spaces:
+                self._collapsed = spaces
+                made = picture(live.cache, self.about, self._collapsed, everything=self._everything)
+        labels = {t: _label(t, live.numbers.published(t)) for t in made.topics}
+        wanted = (made, tuple(labels.values()), self._chosen, self.ink)
+        if wanted == self._drawn:
+            return
+        self._drawn, self._picture = wanted, made
+        self._draw(made, labels)
+
+    def _draw(self, made: Picture, labels: dict[str, str]) -> None:
+        boxes, ink = self._boxes, self.ink
+        top, left = boxes.scroll_offset.y, boxes.scroll_offset.x
+        if not made.nodes:
+            boxes.replace([Text("no nodes yet", style=ink.dim)])
+            return
+        if len(made.nodes) + len(made.topics) > BOXES:
+            many = f"{len(made.nodes)} nodes are too many to draw"
+            text = f"{many}; give a namespace: {shown(self.console.prefix)} : graph /NAME"
+            boxes.replace([Text(text, style=ink.warn)])
+            return
+        parts = {n: Box((n,)) for n in made.nodes} | {t: Box(tuple(labels[t].split("\n")), False) for t in made.topics}
+        self._drawing = draw(parts, ((arrow.source, arrow.target) for arrow in made.arrows))
+        boxes.wide = max((len(row) for row in self._drawing.rows), default=0)
+        boxes.replace(_rows(self._drawing, made, self._chosen, ink))
+        boxes.scroll_to(x=left, y=top, animate=False, immediate=True)
+
+    def _names(self) -> list[str]:
+        return [*self._picture.nodes, *self._picture.topics]
+
+    def _step(self, step: int) -> None:
+        names = self._names()
+        if names:
+            at = names.index(self._chosen) + step if self._chosen in names else 0
+            self._chosen = names[at % len(names)]
+            self.look(0.0)
+            place = self._drawing.boxes.get(self._chosen)
+            if place is not None:
+                self._boxes.scroll_to_region(Region(*place), animate=False, immediate=True)
+
+    def do_next_box(self) -> None:
+        self._step(1)
+
+    def do_previous_box(self) -> None:
+        self._step(-1)
+
+    def do_open_box(self) -> None:
+        if self._chosen in self._picture.topics:
+            self.did(f"graphflow topic echo {self._chosen}")
+            self.open("echo", self._chosen)
+        elif self._chosen.endswith("/…"):
+            self._collapsed -= {self._chosen.removesuffix("/…")}
+            self.look(0.0)
+        elif self._chosen:
+            self.did(f"graphflow node info {self._chosen}")
+            self.open("prompt", f"node info {self._chosen}", run=True)
+        else:
+            self.say("choose a box first: n, or a click")
+
+    def do_collapse(self) -> None:
+        space = self._chosen.rpartition("/")[0]
+        if self._chosen in self._picture.nodes and space:
+            self._collapsed ^= {space}
+        else:
+            self._collapsed = frozenset()
+        self.look(0.0)
+
+    def do_everything(self) -> None:
+        self._everything = not self._everything
+        self.look(0.0)
+
+    def do_mermaid(self) -> None:
+        ids = {name: f"n{i}" for i, name in enumerate(self._names())}
+        lines = ["flowchart LR"]
+        lines += [f'  {ids[n]}(["{n}"])' for n in self._picture.nodes]
+        lines += [f'  {ids[t]}["{t}"]' for t in self._picture.topics]
+        lines += [f"  {ids[a.source]} --> {ids[a.target]}" for a in self._picture.arrows]
+        self.console.copy_to_clipboard("\n".join(lines))
+        self.say("copied the graph as Mermaid")
+
+    def on_click(self, event: events.Click) -> None:
+        row = event.screen_y - self._boxes.region.y + self._boxes.scroll_offset.y
+        column = event.screen_x - self._boxes.region.x + self._boxes.scroll_offset.x
+        for name, place in self._drawing.boxes.items():
+            if place.contains(column, row):
+                self._chosen = name
+                self.look(0.0)
+
+
+def _label(topic: str, rate: float | None) -> str:
+    return topic if not rate else f"{topic}\n{rate:.1f} Hz"
+
+
+def _rows(drawing: Drawing, made: Picture, chosen: str, ink: Ink) -> Iterator[Text]:
+    """The drawn graph, a text a row."""
+    topics = set(made.topics)
+    bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
+
+    def style(cell: Cell) -> Style:
+        if cell.box:
+            base = ink.bad if cell.box in bad & topics else ink.dim if cell.box in topics else ink.node(cell.box)
+            return base + ink.cursor + Style(bold=True) if cell.box == chosen else base
+        if cell.arrow == chosen:
+            return ink.accent
+        return ink.bad if cell.arrow in bad else ink.dim
+
+    for row in drawing.rows:
+        text = Text(no_wrap=True)
+        for cell in row:
+            text.append(cell.text, style(cell))
+        text.rstrip()
+        yield text
+
+
+VIEW = Graph

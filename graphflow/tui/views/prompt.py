@@ -1,0 +1,215 @@
+"""A prompt: any verb of graphflow, run in a process of its own, whose output streams into the pane."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shlex
+import signal
+from collections import deque
+
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.widget import Widget
+from textual.widgets import Input
+
+from graphflow.tui.actions import Action
+from graphflow.tui.completion import Completer
+from graphflow.tui.hub import Hub
+from graphflow.tui.lines import Lines
+from graphflow.tui.logs import plain_text
+from graphflow.tui.panes import Content
+from graphflow.tui.view import View
+
+CHUNK = 1 << 16
+WAITING = 2_000
+"""Lines that may wait to be drawn; what comes faster is counted and left out."""
+HISTORY = 200
+WELCOME = (
+    "Any verb of graphflow: topic echo /turtle1/pose, param set ..., action send_goal ...",
+    "tab completes, ↑ recalls, ^c ends what runs; f2 shows a view here instead.",
+)
+
+
+class Prompt(View):
+    """A line to type in, and what came of it."""
+
+    NAME = "prompt"
+    DOC = "type any graphflow verb; its output streams here"
+    EVERY = 0.1
+    ACTIONS = (
+        Action("complete", "complete", keys=("tab",), hint=True),
+        Action("interrupt_it", "end what runs", keys=("ctrl+c",), hint=True),
+    )
+
+    past: list[str] = []  # noqa: RUF012 - one history for all prompts of a console
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._lines = Lines(10_000, wraps=True)
+        self._input = Input(placeholder="topic list", classes="line")
+        self._completer = Completer(hub)
+        self._runs_at_once = bool(self.options.pop("run", False))
+        self._process: asyncio.subprocess.Process | None = None
+        self._fresh: deque[tuple[str, str]] = deque()
+        self._lost = 0
+        self._at = 0
+
+    def compose(self) -> ComposeResult:
+        yield self._lines
+        yield self._input
+
+    def on_mount(self) -> None:
+        self._at = len(self.past)
+        if self.about and self._runs_at_once:
+            self._run(self.about)
+        elif self.about:  # it came back with the windows: what it did need not be wanted twice
+            self._input.value = self.about
+            self._lines.extend([Text("enter runs this again", style=self.ink.dim)])
+        else:
+            self._lines.extend(Text(line, style=self.ink.dim) for line in WELCOME)
+
+    @property
+    def title(self) -> str:
+        return f"$ {self.about}" if self.about else "prompt"
+
+    @property
+    def note(self) -> str:
+        dropped = f"{self._lost} lines left out " if self._lost else ""
+        return dropped + ("running, ^c ends it" if self._process is not None else "")
+
+    @property
+    def heart(self) -> Widget:
+        return self._input
+
+    def look(self, now: float) -> None:
+        if not self._fresh:
+            return
+        ink = self.ink
+        rows = [Text(text, style=getattr(ink, style)) for text, style in self._fresh]
+        self._fresh.clear()
+        self._lines.extend(rows)
+
+    # the line
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        event.stop()
+        text = event.value.strip()
+        self._input.value = ""
+        if not text:
+            return
+        if not self.past or self.past[-1] != text:
+            self.past.append(text)
+            del self.past[:-HISTORY]
+        self._at = len(self.past)
+        if text in ("clear", "exit", "quit"):
+            self._lines.replace([]) if text == "clear" else self.console.deeds.do_close_pane()
+            return
+        self._run(text)
+
+    def on_key(self, event: events.Key) -> None:
+        if event.key in ("up", "down") and self._input.has_focus:
+            event.stop()
+            self._at = max(0, min(len(self.past), self._at + (1 if event.key == "down" else -1)))
+            self._input.value = self.past[self._at] if self._at < len(self.past) else ""
+            self._input.cursor_position = len(self._input.value)
+
+    def do_complete(self) -> None:
+        """Complete what is being typed; show the choices where there are several."""
+        self.work(self._complete, group="complete")
+
+    async def _complete(self) -> None:
+        text, choices = await self._completer.complete(self._input.value)
+        self._input.value = text
+        self._input.cursor_position = len(text)
+        if len(choices) > 1:
+            shown = "  ".join(choices[:60]) + (f"  ... {len(choices)} in all" if len(choices) > 60 else "")
+            self._lines.extend([Text(shown, style=self.ink.dim)])
+
+    # what runs
+
+    def _run(self, text: str) -> None:
+        if self._process is not None:
+            self.say("a command is running here; ^c ends it, or open another pane", bad=True)
+            return
+        text = text.removeprefix("graphflow ").removeprefix("gf ").removeprefix("ros2 ").strip()
+        self.about = text
+        self.work(lambda: self._stream(text))
+
+    async def _stream(self, text: str) -> None:
+        self._lines.extend([Text(f"$ graphflow {text}", style=self.ink.accent)])
+        self._lost = 0
+        try:
+            words = shlex.split(text)
+        except ValueError as error:
+            self._lines.extend([Text(f"{error}: check the quotes", style=self.ink.bad)])
+            return
+        refusal = _refusal(words)
+        if refusal:
+            self._lines.extend([Text(refusal, style=self.ink.warn)])
+            return
+        self.console.did(f"graphflow {text}")
+        env = {**os.environ, "GRAPHFLOW_ENDS_WITH": str(os.getpid()), "COLUMNS": str(max(40, self.size.width - 1))}
+        process = self._process = await asyncio.create_subprocess_exec(
+            *self.hub.command,
+            *words,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            env=env,
+            start_new_session=True,
+        )
+        assert process.stdout is not None
+        assert process.stderr is not None
+        try:
+            await asyncio.gather(self._read(process.stdout, "text"), self._read(process.stderr, "warn"))
+            code = await process.wait()
+            if code:
+                self._fresh.append((f"exit code {code}", "bad"))
+        finally:
+            if process.returncode is None:
+                process.kill()
+            self._process = None
+
+    async def _read(self, stream: asyncio.StreamReader, style: str) -> None:
+        rest = b""
+        while data := await stream.read(CHUNK):
+            *lines, rest = (rest + data).split(b"\n")
+            if len(rest) > CHUNK:
+                lines, rest = [*lines, rest], b""
+            for line in lines:
+                if len(self._fresh) >= WAITING:
+                    self._fresh.popleft()
+                    self._lost += 1
+                self._fresh.append((plain_text(line.decode(errors="replace")), style))
+            await asyncio.sleep(0)
+        if rest:
+            self._fresh.append((plain_text(rest.decode(errors="replace")), style))
+
+    def interrupt(self) -> bool:
+        """End what runs, as Ctrl-C does; returns whether anything did."""
+        if self._process is None or self._process.returncode is not None:
+            return False
+        self._process.send_signal(signal.SIGINT)
+        return True
+
+    def do_interrupt_it(self) -> None:
+        self.interrupt()
+
+    def closed(self) -> None:
+        if self._process is not None and self._process.returncode is None:
+            self._process.terminate()
+
+
+def _refusal(words: list[str]) -> str:
+    """Why a verb does not run in a pane; empty where it does."""
+    first = words[0] if words else ""
+    if first in ("attach", "console"):
+        return "this is a console already; ^b s switches to another graph"
+    if first == "up" and "-d" not in words and "--detach" not in words:
+        return "in a pane a graph runs in the background: graphflow up -d ..., then ^b s switches to it"
+    return ""
+
+
+VIEW = Prompt

@@ -1,0 +1,127 @@
+"""A file and a line of it, to read: where something waits, or where a line of a log was written."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+from rich.syntax import Syntax
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.widget import Widget
+
+from graphflow.tui.actions import Action
+from graphflow.tui.hub import Hub
+from graphflow.tui.lines import Lines
+from graphflow.tui.logs import plain_text
+from graphflow.tui.panes import Content
+from graphflow.tui.view import View
+
+LONGEST = 1 << 20
+"""Bytes of a file that are shown."""
+LOOKED_AT = 5000
+"""Files that are looked at to find one by its name alone."""
+
+
+class Source(View):
+    """A file, at a line."""
+
+    NAME = "source"
+    DOC = "the file and line of a wait or a log line"
+    ACTIONS = (
+        Action("edit", "open in $EDITOR", keys=("e",), hint=True),
+        Action("back", "back to the line", keys=("b",), hint=True),
+        Action("copy", "copy file:line", keys=("y",)),
+    )
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        name, _, line = self.about.rpartition(":")
+        self._line = int(line) if line.isdecimal() else 1
+        self._file = find_file(name if line.isdecimal() else self.about, self._roots())
+        self._lines = Lines(50_000)
+        self._lines.follows = False
+
+    def _roots(self) -> list[Path]:
+        plan = self.hub.plan
+        return [Path.cwd(), *([Path(plan.root)] if plan is not None else [])]
+
+    def compose(self) -> ComposeResult:
+        yield self._lines
+
+    @property
+    def heart(self) -> Widget:
+        return self._lines
+
+    def on_mount(self) -> None:
+        if self._file is None:
+            self._lines.replace([Text(f"there is no file {self.about} here", style=self.ink.warn)])
+            return
+        try:
+            data = self._file.read_bytes()[:LONGEST]
+        except OSError as error:
+            self._lines.replace([Text(f"{self._file}: {error.strerror}", style=self.ink.warn)])
+            return
+        code = "\n".join(plain_text(line) for line in data.decode(errors="replace").split("\n"))
+        theme = "monokai" if self.ink.is_dark else "default"
+        lexer = Syntax.guess_lexer(str(self._file), code)
+        rows = Syntax("", lexer, theme=theme, background_color="default").highlight(code).split("\n")
+        width = len(str(len(rows)))
+        for number, row in enumerate(rows, 1):
+            mark = "▶" if number == self._line else " "
+            row.stylize_before(self.ink.text)
+            self._lines.rows.append(Text.assemble((f"{mark}{number:>{width}} ", self.ink.dim), row))
+        self._lines.extend([])
+        self.call_after_refresh(self.do_back)
+
+    def do_back(self) -> None:
+        self._lines.cursor = min(self._line - 1, max(0, len(self._lines.rows) - 1))
+        height = self._lines.scrollable_content_region.height
+        self._lines.scroll_to(y=max(0, self._line - 1 - height // 2), animate=False, immediate=True)
+        self._lines.refresh()
+
+    def do_edit(self) -> None:
+        if self._file is None:
+            return
+        at = (self._lines.cursor or 0) + 1
+        edit(self, self._file, at)
+
+    def do_copy(self) -> None:
+        place = f"{self._file or self.about}:{(self._lines.cursor or 0) + 1}"
+        self.console.copy_to_clipboard(place)
+        self.say(f"copied: {place}")
+
+
+def edit(view: View, file: Path, line: int) -> None:
+    """Open a file in the user's editor, which has the terminal meanwhile."""
+    editor = os.environ.get("VISUAL") or os.environ.get("EDITOR")
+    if not editor:
+        view.say("set EDITOR, for example export EDITOR=nano", bad=True)
+        return
+    try:
+        with view.app.suspend():
+            subprocess.run([*shlex.split(editor), f"+{line}", str(file)], check=False)
+    except (OSError, ValueError) as error:
+        view.say(f"{editor}: {error}", bad=True)
+
+
+def find_file(name: str, roots: list[Path]) -> Path | None:
+    """A file by its path, or by its name below one of the folders."""
+    path = Path(name)
+    for root in roots:
+        if (root / path).is_file():
+            return root / path
+    if path.name != name:
+        return None
+    for root in roots:
+        for looked, found in enumerate(root.rglob("*.py")):
+            if found.name == name and ".venv" not in found.parts:
+                return found
+            if looked > LOOKED_AT:
+                break
+    return None
+
+
+VIEW = Source

@@ -1,0 +1,102 @@
+"""All topics: their types, who is on them, how fast they are, and what does not fit."""
+
+from __future__ import annotations
+
+from rich.text import Text
+
+from graphflow.machines.matching import verdict
+from graphflow.tui.actions import Action
+from graphflow.tui.table import FIND, Cells, TableView
+from graphflow.wire.liveliness import Entity, Kind
+
+
+class Topics(TableView):
+    """All topics."""
+
+    NAME = "topics"
+    DOC = "every topic: type, publishers, subscriptions, rate"
+    COLUMNS = ("topic", "type", "pub", "sub", "rate", "fits")
+    EVERY = 1.0
+    ACTIONS = (
+        Action("echo", "echo", keys=("enter", "e"), verb="graphflow topic echo {topic}", hint=True),
+        Action("hz", "rate", keys=("h",), verb="graphflow topic hz {topic}", hint=True),
+        Action("plot", "plot", keys=("p",), hint=True),
+        Action("info", "info", keys=("i",), verb="graphflow topic info -v {topic}", hint=True),
+        Action("hidden", "hidden ones too", keys=("a",)),
+        FIND,
+        Action("copy", "copy the name", keys=("y",)),
+    )
+
+    shows_hidden = False
+
+    def rows(self) -> dict[str, Cells]:
+        live, ink = self.hub.live, self.ink
+        if live is None:
+            return {}
+        live.want("numbers")
+        ends: dict[str, list[Entity]] = {}
+        for entity in live.cache:
+            if entity.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
+                ends.setdefault(entity.name, []).append(entity)
+        found: dict[str, Cells] = {}
+        for name, types in live.cache.topics(hidden=self.shows_hidden).items():
+            there = ends.get(name, [])
+            publishers = sum(e.kind is Kind.PUBLISHER for e in there)
+            rate = live.numbers.published(name)
+            trouble = misfit(there)
+            found[name] = (
+                Text(name, style=ink.text),
+                Text(", ".join(types), style=ink.dim),
+                Text(str(publishers or ""), justify="right"),
+                Text(str(len(there) - publishers or ""), justify="right"),
+                Text("" if rate is None else f"{rate:.1f} Hz", justify="right"),
+                Text(f"✖ {trouble}" if trouble else "", style=ink.bad),
+            )
+        return found
+
+    def chosen(self) -> dict[str, str]:
+        return {"topic": self.key} if self.key else {}
+
+    def on_data_table_row_selected(self) -> None:
+        self.do_echo()
+
+    def do_echo(self) -> None:
+        self._open("echo", "topic echo")
+
+    def do_hz(self) -> None:
+        self._open("hz", "topic hz")
+
+    def _open(self, view: str, verb: str) -> None:
+        if self.key:
+            self.did(f"graphflow {verb} {self.key}")
+            self.open(view, self.key)
+
+    def do_plot(self) -> None:
+        if self.key:
+            self.open("plot", self.key)
+
+    def do_info(self) -> None:
+        if self.key:
+            self.open("prompt", f"topic info -v {self.key}", run=True)
+
+    def do_hidden(self) -> None:
+        self.shows_hidden = not self.shows_hidden
+        self.look(0.0)
+
+    def do_copy(self) -> None:
+        self.console.copy_to_clipboard(self.key)
+        self.say(f"copied: {self.key}")
+
+
+def misfit(there: list[Entity]) -> str:
+    """What keeps a publisher and a subscription of a topic apart, in a few words; empty for nothing."""
+    for publisher in there:
+        for other in there:
+            if publisher.kind is Kind.PUBLISHER and other.kind is Kind.SUBSCRIPTION:
+                found = verdict(publisher, other)
+                if found is not None and found.complaint:
+                    return ", ".join(found.policies) or "type"
+    return ""
+
+
+VIEW = Topics

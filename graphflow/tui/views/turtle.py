@@ -1,0 +1,230 @@
+"""The turtles as they draw: turtlesim's window in the terminal, and its keys."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from textual.app import ComposeResult
+from textual.widget import Widget
+from textual.widgets import Static
+
+from graphflow.errors import GraphflowError
+from graphflow.tui.actions import Action
+from graphflow.tui.canvas import Drawing, TurtleCanvas, read_picture
+from graphflow.tui.hub import Hub
+from graphflow.tui.panes import Content
+from graphflow.tui.tap import Tap
+from graphflow.tui.view import View
+
+if TYPE_CHECKING:
+    from graphflow.introspect.view import View as Graph
+
+# What messages need is imported when there is a graph: this view is in the first window that is drawn.
+
+POSES = ("turtlesim/msg/Pose", "turtlesim_msgs/msg/Pose")
+TURTLES = 50
+"""Turtles that are followed."""
+PICTURE_EVERY = 3.0
+"""Seconds between two pictures of everything drawn, which also show what clear, set_pen and teleports do."""
+PICTURE_SHARE = 0.01
+"""The share of time that taking pictures may cost."""
+JUMP = 1.0
+"""Metres between two poses that no turtle drives: it was teleported."""
+LINEAR, ANGULAR = 2.0, 2.0
+"""What one press of an arrow commands, in m/s and rad/s, as teleop does."""
+TURNS = {"g": 0, "t": 45, "r": 90, "e": 135, "d": 180, "c": -135, "v": -90, "b": -45}
+"""Teleop's keys and the degrees they turn to: where they lie around the f."""
+
+
+class Turtles(View):
+    """The turtles of a turtlesim, live."""
+
+    NAME = "turtle"
+    DOC = "turtlesim live: trails, and arrow keys that drive"
+    EVERY = 0.05
+    ACTIONS = (
+        Action("forward", "drive: ↑↓←→", keys=("up",), hint=True),
+        Action("backward", "drive backwards", keys=("down",)),
+        Action("left", "turn left", keys=("left",)),
+        Action("right", "turn right", keys=("right",)),
+        *(Action(f"turn:{degrees}", f"turn to {degrees}°", keys=(key,)) for key, degrees in TURNS.items()),
+        Action("stop_turning", "stop turning; gbvcdert turn", keys=("f",), hint=True),
+        Action("next_turtle", "next turtle", keys=("n",), hint=True),
+        Action("clear", "clear", keys=("C",), verb="graphflow service call /clear", hint=True),
+    )
+
+    can_focus = True
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._taps: dict[str, Tap] = {}
+        self._drawing = Drawing()
+        self._canvas = TurtleCanvas(self._drawing)
+        self._driven = self.about
+        self._picture_at = 0.0
+        self._seen = -1
+        self._empty = Static("waiting for a turtle: no node publishes a turtlesim pose yet", classes="hint")
+
+    def compose(self) -> ComposeResult:
+        yield self._canvas
+        yield self._empty
+
+    @property
+    def heart(self) -> Widget:
+        return self._canvas if self._taps else self
+
+    @property
+    def title(self) -> str:
+        return f"turtle {self._driven}" if len(self._taps) > 1 and self._driven else "turtle"
+
+    @property
+    def note(self) -> str:
+        pose = self._drawing.turtles.get(self._driven)
+        if pose is None:
+            return ""
+        return f"x {pose.x:.1f}  y {pose.y:.1f}  {math.degrees(pose.theta):4.0f}°"
+
+    def look(self, now: float) -> None:
+        live = self.hub.live
+        self._canvas.display, self._empty.display = bool(self._taps), not self._taps
+        if live is None or live.context is None:
+            return
+        if live.changes != self._seen:
+            self._seen = live.changes
+            self._find()
+        self._drawing.now = now
+        for tap in self._taps.values():
+            tap.look()
+        if self._taps and now > self._picture_at:
+            self._picture_at = now + PICTURE_EVERY
+            self.work(self._take_picture, group="picture")
+        self._canvas.redraw()
+
+    def _find(self) -> None:
+        from graphflow.msgs.geometry_msgs.msg import Twist
+        from graphflow.wire.liveliness import Kind
+
+        assert self.hub.live is not None
+        topics = self.hub.live.cache.topics()
+        wanted = {
+            t.removesuffix("/pose").removeprefix("/"): t for t, types in topics.items() if set(types) & set(POSES)
+        }
+        published = {e.name for e in self.hub.live.cache.endpoints(Kind.PUBLISHER)}
+        wanted = dict(list({n: t for n, t in wanted.items() if t in published}.items())[:TURTLES])
+        for name in [n for n in self._taps if n not in wanted]:
+            self._taps.pop(name).close()
+            self._drawing.turtles.pop(name, None)
+        for name, topic in wanted.items():
+            if name not in self._taps:
+                tap = self._taps[name] = Tap(self.hub.live, topic)
+                tap.heard = self._heard(name)
+                self.hub.live.publisher(Twist, f"/{name}/cmd_vel")  # so that it is known when a key is pressed
+        if self._driven not in self._taps and self._taps:
+            self._driven = self.about if self.about in self._taps else next(iter(self._taps))
+
+    def _heard(self, name: str) -> Callable[[Any, float], None]:
+        def heard(pose: Any, _: float) -> None:
+            self._drawing.moved(name, pose.x, pose.y, pose.theta, JUMP)
+
+        return heard
+
+    async def _take_picture(self) -> None:
+        """What was drawn before we looked, and what poses do not tell."""
+        from graphflow.msgs.std_srvs.srv import Trigger
+
+        assert self.hub.live is not None
+        services = self.hub.live.cache.services()
+        name = next((n for n, types in services.items() if n.endswith("/snapshot") and Trigger.NAME in types), None)
+        if name is None:
+            return
+        began = time.monotonic()
+
+        def call(graph: Graph) -> str:
+            return str(graph.call(name, Trigger.NAME, Trigger.Request(), 2.0).message)
+
+        try:
+            picture = read_picture(await self.hub.live.ask(call))
+        except GraphflowError:
+            return  # the turtles are drawn by their poses all the same
+        took = time.monotonic() - began
+        self._picture_at = time.monotonic() + max(PICTURE_EVERY, took / PICTURE_SHARE)
+        self._drawing.take(picture, began)
+
+    def closed(self) -> None:
+        for tap in self._taps.values():
+            tap.close()
+        self._taps.clear()
+
+    # driving
+
+    def _drive(self, linear: float, angular: float) -> None:
+        if not self._driven or self.hub.live is None or self.hub.live.node is None:
+            return
+        from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+
+        topic = f"/{self._driven}/cmd_vel"
+        publisher = self.hub.live.publisher(Twist, topic)
+        publisher.publish(Twist(linear=Vector3(x=linear), angular=Vector3(z=angular)))
+        values = f"{{linear: {{x: {linear}}}, angular: {{z: {angular}}}}}"
+        self.did(f"graphflow topic pub --once {topic} geometry_msgs/msg/Twist '{values}'")
+
+    def do_forward(self) -> None:
+        self._drive(LINEAR, 0.0)
+
+    def do_backward(self) -> None:
+        self._drive(-LINEAR, 0.0)
+
+    def do_left(self) -> None:
+        self._drive(0.0, ANGULAR)
+
+    def do_right(self) -> None:
+        self._drive(0.0, -ANGULAR)
+
+    def do_turn(self, degrees: str) -> None:
+        self.work(lambda: self._turned(math.radians(float(degrees))), group="turn")
+
+    async def _turned(self, theta: float) -> None:
+        from graphflow.msgs import registry
+
+        live = self.hub.live
+        if live is None or live.node is None:
+            return
+        name = f"/{self._driven}/rotate_absolute"
+        types = live.cache.actions().get(name)
+        if not types:
+            self.say(f"no node offers {name}", bad=True)
+            return
+        type_: Any = registry.interface_class(types[0])
+        self.did(f"graphflow action send_goal {name} {types[0]} '{{theta: {theta:.4f}}}'")
+        client = live.action_client(type_, name)
+        async with client.send(type_.Goal(theta=theta)) as goal:
+            await goal.result()
+
+    def do_stop_turning(self) -> None:
+        self.work(self._nothing, group="turn")
+
+    async def _nothing(self) -> None:
+        """Takes the place of a turn that is under way, which cancels it."""
+
+    def do_next_turtle(self) -> None:
+        names = list(self._taps)
+        if names:
+            at = names.index(self._driven) + 1 if self._driven in names else 0
+            self._driven = names[at % len(names)]
+
+    def do_clear(self) -> None:
+        from graphflow.msgs.std_srvs.srv import Empty
+
+        async def clear() -> None:
+            if self.hub.live is not None:
+                await self.hub.live.ask(lambda graph: graph.call("/clear", Empty.NAME, Empty.Request(), 2.0))
+                self._picture_at = 0.0
+
+        self.did("graphflow service call /clear std_srvs/srv/Empty")
+        self.work(clear)
+
+
+VIEW = Turtles

@@ -1,0 +1,72 @@
+"""The console's screen: what the supervisor says is shown, views look as often as they may, several consoles agree."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow.tui.panes import Content
+from tests.tui.stage import record, stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+@pytest.mark.parametrize(
+    ("event", "text"),
+    [
+        ({"event": "announced", "text": "restart /a", "by": "pts/9"}, "restart /a by pts/9"),
+        ({"event": "note", "text": "linked to tcp/x"}, "linked to tcp/x"),
+        ({"event": "stopping", "reason": "down"}, "stopping (down)"),
+        ({"event": "step", "step": "spawn", "ok": False, "text": "/spawn: no"}, "step spawn FAILED: /spawn: no"),
+        ({"event": "error", "message": "not ready within 20 s"}, "not ready within 20 s"),
+        ({"event": "end", "exit_code": 1}, "the graph has ended, exit code 1; q leaves"),
+        ({"event": "lost", "message": "the supervisor has gone"}, "the supervisor has gone; q leaves"),
+    ],
+)
+async def test_what_the_supervisor_says(event: dict[str, Any], text: str) -> None:
+    """In the bottom line, and among the messages."""
+    async with stage() as s:
+        s.console.heard(event)
+        assert text in s.text
+        assert text in s.console.said[-1]
+
+
+async def test_a_crash_is_flagged_until_one_looks() -> None:
+    """The window list has a mark, the bottom line the way to go on."""
+    async with stage(Content("log"), Content("nodes")) as s:
+        s.console.heard({"event": "exited", "nodes": ["/arm"], "how": "signal SIGKILL", "unexpected": True})
+        assert "/arm died: signal SIGKILL; ^b r restarts" in s.text
+        assert "0:log*!" in s.text
+        await s.prefix("1")
+        await s.prefix("0")
+        assert "0:log*!" not in s.text
+
+
+async def test_logs_are_read_while_the_console_runs() -> None:
+    """By the pulse, without anybody asking."""
+    async with stage(Content("log"), records=[record("one")]) as s:
+        await s.until("one")
+        s.console.hub.logs.add([record("two")])
+        await s.until("two")
+
+
+async def test_windows_are_kept_with_the_run() -> None:
+    """After a change, and when the console is left, with what the views show by then."""
+    async with stage(Content("log")) as s:
+        await s.press("3")
+        s.console.keep_layout_now()
+        supervision: Any = s.console.hub.supervision
+        kept = [r["layout"] for r in supervision.asked if r["do"] == "keep_layout"]
+        assert kept[-1]["windows"][0]["root"]["options"] == {"level": "warn"}
+
+
+async def test_a_small_terminal_shows_one_pane() -> None:
+    """Below what two need."""
+    async with stage(Content("nodes"), size=(80, 24)) as s:
+        await s.prefix("percent_sign")
+        assert len(s.console.workspace.visible_frames) == 2
+        await s.pilot.resize_terminal(22, 10)
+        await s.until(lambda: len(s.console.workspace.visible_frames) == 1)
+        await s.pilot.resize_terminal(80, 24)
+        await s.until(lambda: len(s.console.workspace.visible_frames) == 2)

@@ -1,0 +1,69 @@
+"""The bottom lines: what can be pressed, the windows, the states; clicks on them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow.machines.process import State
+from graphflow.tui.bars import MARKS
+from graphflow.tui.panes import Content
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+def test_every_state_has_a_mark() -> None:
+    """Those of processes, failed ones, and nodes of others; all glyphs differ where the words could be cut off."""
+    assert {state.value for state in State} | {"failed", "foreign"} == set(MARKS)
+    assert MARKS["ready"].glyph != MARKS["failed"].glyph != MARKS["ended"].glyph
+
+
+async def test_the_bottom_lines_on_80_columns() -> None:
+    """The focused view's keys, and the two that one must know."""
+    async with stage(Content("log"), Content("nodes"), size=(80, 24)) as s:
+        hints, status = s.text.split("\n")[-2:]
+        assert "/ filter" in hints
+        assert "[lab]  0:log*  1:nodes" in status
+        assert status.endswith("●2  ^b ? help  ^b d leave")
+
+
+async def test_a_click_on_a_window_opens_it() -> None:
+    """As everything can be reached by the mouse."""
+    async with stage(Content("log"), Content("nodes")) as s:
+        at = s.text.split("\n")[-1].index("1:nodes")
+        await s.pilot.click(type(s.console.status), offset=(at + 1, 0))
+        assert s.console.windows.current == 1
+
+
+async def test_clicks_on_what_can_be_pressed() -> None:
+    """The view's keys, help, and leaving."""
+    async with stage(Content("log"), size=(100, 24)) as s:
+        await s.pilot.pause()
+        hints = s.text.split("\n")[-2]
+        await s.pilot.click(type(s.console.hints), offset=(hints.index("filter"), 0))
+        await s.until(lambda: "shown" in s.view.query_one("Input").classes)
+        status = s.text.split("\n")[-1]
+        await s.pilot.click(type(s.console.status), offset=(status.index("help"), 0))
+        await s.until("The prefix is ^b")
+        await s.press("escape")
+        await s.pilot.click(type(s.console.status), offset=(status.index("leave"), 0))
+        await s.until(lambda: s.console.return_value == "detach")
+
+
+async def test_a_deadlock_is_told_wherever_one_is() -> None:
+    """With the key that shows it."""
+    async with stage() as s:
+        s.console.deadlocks = 1
+        await s.look()
+        assert "✖ 1 DEADLOCK ^b g" in s.text
+
+
+async def test_after_the_end() -> None:
+    """The exit code stays in sight."""
+    async with stage() as s:
+        supervision: Any = s.console.hub.supervision
+        supervision.exit_code = 1
+        await s.look()
+        assert "ended, exit code 1" in s.text

@@ -1,0 +1,132 @@
+"""Every other key of the console does what its line says: leaving, asking, telling."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.testing import Graph
+from graphflow.tui.actions import CONSOLE, console_actions
+from graphflow.tui.dialogs import Ask, Note, Pick
+from graphflow.tui.panes import Content
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+@pytest.mark.parametrize("view", ["nodes", "prompt"])
+@pytest.mark.parametrize(
+    ("key", "screen"),
+    [
+        ("question_mark", Note),
+        ("colon", "CommandLine"),
+        ("s", Pick),
+        ("f", Pick),
+        ("v", Pick),
+        ("D", Pick),
+        ("S", Ask),
+        ("tilde", Note),
+    ],
+)
+async def test_keys_that_ask(view: str, key: str, screen: object) -> None:
+    """They open what their line says, and escape takes it away again."""
+    async with stage(Content(view)) as s:
+        await s.prefix(key)
+        name = type(s.console.screen).__name__
+        assert name == (screen if isinstance(screen, str) else screen.__name__)  # type: ignore[attr-defined]
+        await s.press("escape")
+        assert len(s.console.screen_stack) == 1
+
+
+async def test_keys_that_say(graph: Graph) -> None:
+    """The clock, the theme, what to do about a node when none is chosen, what can be copied."""
+    async with stage(Content("topics"), graph=graph) as s:
+        await s.prefix("t")
+        assert s.console.said[-1].endswith(tuple(f":{n:02d}" for n in range(60)))
+        await s.prefix("T")
+        assert s.console.theme == "graphflow-light"
+        await s.prefix("T")
+        assert s.console.theme == "graphflow-dark"
+        for key, words in (
+            ("r", "choose a node first"),
+            ("m", "choose a node"),
+            ("y", "no command has been shown"),
+            ("left_square_bracket", "nothing to scroll"),
+            ("right_square_bracket", "nothing has been copied"),
+        ):
+            await s.prefix(key)
+            assert words in s.console.said[-1], key
+        await s.prefix("g")
+        assert s.console.window.name == "groups"
+        await s.prefix("slash")
+        await s.until(lambda: s.console.window.name == "logs")
+        await s.prefix("y")
+        assert s.console.clipboard_text == "graphflow waits"
+
+
+async def test_the_palette_does_everything() -> None:
+    """What the focused view can, and what the console can; found by typing."""
+    async with stage(Content("nodes")) as s:
+        await s.press("ctrl+p")
+        await s.type("light or dark")
+        await s.press("enter")
+        assert s.console.theme == "graphflow-light"
+        await s.press("ctrl+p")
+        await s.type("split, new pane on the right")
+        await s.press("enter")
+        assert "prompt" in [p.content.view for p in s.console.window.panes()]
+
+
+async def test_the_prefix_itself() -> None:
+    """Twice goes through; an unknown key says so; escape ends it; slow fingers see the keys."""
+    async with stage(Content("prompt")) as s:
+        await s.prefix("escape")
+        assert not s.console.which_key.display
+        await s.prefix("J")
+        assert "^b J means nothing" in s.text
+        await s.press("ctrl+b")
+        await s.until(lambda: s.console.which_key.display)
+        assert "d detach" in s.text
+        await s.press("z")
+        assert not s.console.which_key.display
+        await s.type("ab")
+        await s.press("ctrl+b", "ctrl+b")
+        assert s.view.query_one("Input.line").value == "ab"  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("keys", [("ctrl+b", "d"), ("q",), ("ctrl+q",), ("ctrl+c", "d")])
+async def test_leaving(keys: tuple[str, ...]) -> None:
+    """Four ways to leave, none of which stops anything."""
+    async with stage(Content("nodes")) as s:
+        await s.press(*keys)
+        await s.until(lambda: s.console.return_value is not None)
+        assert s.console.return_value == "detach"
+        assert s.asked == []
+
+
+@pytest.mark.parametrize("keys", [("ctrl+c", "s"), ("ctrl+c", "ctrl+c")])
+async def test_stopping(keys: tuple[str, ...]) -> None:
+    """Ctrl-C asks; the second one does not."""
+    async with stage(Content("prompt")) as s:
+        await s.press(keys[0])
+        assert "Leave or stop lab, 2 nodes?" in s.text
+        await s.press(keys[1])
+        await s.until(lambda: s.console.return_value is not None)
+        assert s.console.return_value == "stop"
+
+
+async def test_without_a_supervisor_nothing_can_be_stopped() -> None:
+    """A console on a robot says so instead."""
+    async with stage(Content("nodes"), supervised=False, size=(80, 24)) as s:
+        assert "no supervisor here" in s.text
+        await s.press("ctrl+c")
+        assert "No supervisor here" in s.text
+        assert "stop the graph" not in s.text
+
+
+def test_every_chord_is_used_once() -> None:
+    """No key after the prefix, and no bare key, means two things."""
+    chords = [key for action in console_actions() for key in action.chord]
+    keys = [key for action in console_actions() for key in action.keys]
+    assert len(chords) == len(set(chords))
+    assert len(keys) == len(set(keys))
+    assert len({a.name for a in console_actions()}) == sum(map(len, CONSOLE.values()))

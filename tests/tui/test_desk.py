@@ -1,0 +1,44 @@
+"""A voice to the user, and leaving."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow.tui.panes import Content
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_messages_are_kept() -> None:
+    """The last five hundred, commands among them."""
+    async with stage() as s:
+        for i in range(600):
+            s.console.say(f"message {i}")
+        s.console.did("graphflow ps")
+        assert len(s.console.said) == 500
+        assert s.console.said[-1].endswith("$ graphflow ps")
+        assert s.console.last_shell == "graphflow ps"
+
+
+async def test_the_second_ctrl_c_counts_for_two_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After that it asks again."""
+    now = [100.0]
+    async with stage() as s:
+        monkeypatch.setattr("graphflow.tui.desk.time.monotonic", lambda: now[0])
+        assert not s.console.stops_again()
+        now[0] += 1.9
+        assert s.console.stops_again()
+        now[0] += 2.1
+        assert not s.console.stops_again()
+
+
+async def test_leaving_keeps_the_windows_and_lets_go() -> None:
+    """Views are closed, the windows sent."""
+    async with stage(Content("log")) as s:
+        await s.console.leave("detach")
+        supervision: Any = s.console.hub.supervision
+        assert supervision.asked[-1]["do"] == "keep_layout"
+        assert s.console.return_value == "detach"

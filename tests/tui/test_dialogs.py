@@ -1,0 +1,60 @@
+"""What the console asks."""
+
+from __future__ import annotations
+
+import pytest
+from textual.widgets import Input, OptionList
+
+from graphflow.tui.dialogs import SHOWN, Ask, AskLine, Choice, Item, Pick
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+@pytest.mark.parametrize(("keys", "answer"), [(["d"], "d"), (["s"], "s"), (["escape"], None), (["down", "enter"], "s")])
+async def test_a_question(keys: list[str], answer: str | None) -> None:
+    """Answered by a key, by a button, or not at all."""
+    async with stage() as s:
+        answers: list[str | None] = []
+        s.console.push_screen(
+            Ask("Stay or go?", [Choice("d", "stay"), Choice("s", "go [now]")], "detail"), answers.append
+        )
+        await s.until("[s] go [now]")
+        await s.press(*keys)
+        assert answers == [answer]
+
+
+async def test_a_line() -> None:
+    """Enter takes it, escape does not."""
+    async with stage() as s:
+        answers: list[str | None] = []
+        s.console.push_screen(AskLine("Name", "old"), answers.append)
+        await s.until(lambda: isinstance(s.console.focused, Input))
+        await s.type("new")
+        await s.press("enter")
+        assert answers == ["new"]
+
+
+async def test_picking_by_parts_of_a_name() -> None:
+    """The best fits first; arrows choose; names in brackets are no markup; long lists are bounded."""
+    async with stage() as s:
+        answers: list[int | None] = []
+        items = [Item(f"/arm{i}/[pose]", "x/msg/Y", i) for i in range(500)]
+        s.console.push_screen(Pick("Which", items), answers.append)
+        await s.until("/arm0/[pose]")
+        assert s.console.screen.query_one(OptionList).option_count == SHOWN
+        await s.type("arm417")
+        assert s.console.screen.query_one(OptionList).option_count == 1
+        await s.press("enter")
+        assert answers == [417]
+
+
+async def test_nothing_to_pick() -> None:
+    """It says so, and enter does nothing."""
+    async with stage() as s:
+        s.console.push_screen(Pick("Which", [], "no graph runs"))
+        await s.until("no graph runs")
+        await s.press("enter")
+        assert isinstance(s.console.screen, Pick)
+        await s.press("escape")
+        assert len(s.console.screen_stack) == 1

@@ -1,0 +1,71 @@
+"""Many lines: bounded, followed, wrapped; scrolled without jumping."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+from rich.text import Text
+from textual.widget import Widget
+
+from graphflow.tui.lines import Lines
+from graphflow.tui.panes import Content
+from tests.tui.stage import Stage, stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+@asynccontextmanager
+async def lines(**options: Any) -> AsyncIterator[tuple[Stage, Lines]]:
+    async with stage(Content("nodes"), size=(40, 12)) as s:
+        made = Lines(**options)
+        view: Widget = s.view
+        await view.remove_children()
+        await view.mount(made)
+        s.console.screen.set_focus(made)
+        await s.pilot.pause()
+        yield s, made
+
+
+async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
+    """While one has scrolled up, the oldest go without moving what is on the screen."""
+    async with lines(bound=50) as (s, made):
+        made.extend([f"line {i}" for i in range(50)])
+        assert "line 49" in s.text
+        await s.press("pageup", "pageup")
+        top = s.text.split("\n")[1]
+        made.extend([f"line {i}" for i in range(50, 55)])
+        await s.pilot.pause()
+        assert len(made.rows) == 50
+        assert s.text.split("\n")[1] == top
+        await s.press("end")
+        assert "line 54" in s.text
+
+
+async def test_long_rows_wrap() -> None:
+    """In parts of the width; choosing a part chooses the row."""
+    async with lines(wraps=True) as (s, made):
+        made.extend(["a" * 50, Text("short")])
+        assert "a" * 10 in s.text
+        await s.press("up", "up")
+        assert made.chosen == "a" * 50
+        assert len(made.rows) == 3
+        made.wrap(False)
+        assert len(made.rows) == 2
+
+
+async def test_moving() -> None:
+    """By lines, pages, to both ends."""
+    async with lines() as (s, made):
+        made.extend([f"line {i}" for i in range(100)])
+        await s.press("home")
+        assert "line 0" in s.text
+        assert not made.follows
+        await s.press("j")
+        assert made.chosen is not None
+        await s.press("pagedown", "k")
+        await s.press("G")
+        assert made.follows
+        assert made.chosen is None

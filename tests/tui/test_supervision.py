@@ -1,0 +1,100 @@
+"""The line to the supervisor, over a real socket."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from graphflow.graph.plan import Plan
+from graphflow.supervisor.control import ControlServer
+from graphflow.supervisor.doors import Doors
+from graphflow.supervisor.rundir import GraphRun
+from graphflow.tui import supervision as module
+from graphflow.tui.supervision import Supervision
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+class Graph:
+    """A supervisor that remembers what it was asked."""
+
+    plan = Plan("g", "g.yaml", "/", ())
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.doors = Doors(lambda: self.asked.append("empty"))
+
+    def hello(self) -> dict[str, Any]:
+        return {"event": "hello", "version": "0.0.0", "layout": self.doors.layout}
+
+    def describe(self) -> list[dict[str, Any]]:
+        return [{"node": "/a", "state": "ready"}]
+
+    def begin_stop(self, *, now: bool, reason: str) -> None:
+        self.asked.append(f"stop {reason}")
+
+    def restart(self, node: str, by: str) -> None:
+        self.asked.append(f"restart {node}")
+        self.doors.announce(f"restart {node}", by)
+
+    def stop(self, node: str, by: str) -> None:
+        self.asked.append(f"stop {node}")
+
+
+def run_at(address: str) -> GraphRun:
+    return GraphRun("id", "g", 0, 1, 0.0, time.time(), "g.yaml", address, "", "", "")
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    async with asyncio.timeout(5.0):
+        while not holds():
+            await asyncio.sleep(0.01)
+
+
+@pytest.mark.parametrize("portable", ["", "1"])
+async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each is told what the other does, the windows of the one are there for the next, and leaving is noticed."""
+    monkeypatch.setenv("GRAPHFLOW_PORTABLE", portable)
+    graph = Graph()
+    server = ControlServer(graph)
+    run = run_at(await server.open(tmp_path / "c.sock"))
+    heard: list[dict[str, Any]] = []
+    one, two = Supervision(run, heard.append), Supervision(run, lambda _: None)
+    two.name = "pts/2"
+    tasks = [asyncio.ensure_future(x.follow()) for x in (one, two)]
+    await until(lambda: len(one.consoles) == 2 and bool(two.nodes) and one.plan is not None)
+    assert one.hello["version"] == "0.0.0"
+    assert "0.0.0" in one.version_note
+    two.send(do="restart", node="/a")
+    await until(lambda: any(e["event"] == "announced" for e in heard))
+    [told] = [e for e in heard if e["event"] == "announced"]
+    assert (told["text"], told["by"]) == ("restart /a", "pts/2")
+    two.send(do="keep_layout", layout={"windows": []})
+    await until(lambda: graph.doors.layout == {"windows": []})
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    await until(lambda: graph.asked == ["restart /a", "empty"])
+    await server.close()
+
+
+async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told, and nothing can be sent any more."""
+    monkeypatch.setattr(module, "ASK_EVERY", 0.01)
+    graph = Graph()
+    server = ControlServer(graph)
+    heard: list[dict[str, Any]] = []
+    one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
+    task = asyncio.ensure_future(one.follow())
+    await until(lambda: bool(one.nodes))
+    graph.doors.tell(event="end", exit_code=3)
+    await server.close()
+    await asyncio.wait_for(task, 5.0)
+    assert one.exit_code == 3
+    assert heard[-1]["event"] == "lost"
+    assert not one.send(do="ps")

@@ -1,0 +1,51 @@
+"""Goals: seen by whoever sent them, with feedback; sent by a form, cancelled by a key."""
+
+from __future__ import annotations
+
+import pytest
+from textual.widgets import Input
+
+from graphflow.msgs.example_interfaces.action import Fibonacci
+from graphflow.testing import Graph
+from graphflow.tui.panes import Content
+from tests.tui.nodes import Talker
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_a_goal_of_somebody_else(graph: Graph) -> None:
+    """It appears with its feedback, and c cancels it."""
+    await graph.start(Talker())
+    async with stage(Content("goals"), graph=graph) as s:
+        await s.until("no goal yet")
+        await graph.settle()
+        client = graph.action_client(Fibonacci, "/fibonacci")
+        await graph.settle()
+        sent = await client.send_goal(Fibonacci.Goal(order=5))
+        await graph.settle()
+        await s.until("◐ executing")
+        assert "sequence: [0, 1, 1]" in s.text
+        assert "1 running" in s.text
+        await s.press("c")
+        await s.until("○ canceled")
+        assert sent.done
+        await s.press("c")
+        assert "the goal has ended" in s.text
+
+
+async def test_sending(graph: Graph) -> None:
+    """A form of the goal's fields; the result is told."""
+    await graph.start(Talker())
+    async with stage(Content("goals", "/fibonacci"), graph=graph) as s:
+        await s.until("no goal yet")
+        await s.press("n")
+        await s.until(lambda: bool(s.view.query("Form")))
+        await s.until(lambda: isinstance(s.console.focused, Input))
+        await s.type("7")
+        await s.until("$ graphflow action send_goal -f /fibonacci")
+        await s.press("ctrl+s")
+        await s.until("◐ executing")
+        await graph.clock.advance(6.0)
+        await s.until("● succeeded")
+        await s.until("sequence: [0, 1, 1, 2]")

@@ -1,0 +1,33 @@
+"""The rate of a topic."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph
+from graphflow.tui.panes import Content
+from tests.tui.nodes import Talker
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_numbers_and_silence(graph: Graph) -> None:
+    """Rate, shortest and longest gap, jitter, losses; and silence is called so."""
+    node = Talker()
+    await graph.start(node)
+    async with stage(Content("hz", "/chatter"), graph=graph) as s:
+        await s.look()
+        assert "no message yet" in s.text
+        await graph.settle()
+        for _ in range(5):
+            node.chatter.publish(String(data="x"))
+            await graph.settle()
+        await s.look()
+        assert "average rate" in s.text
+        assert "over 5 messages" in s.text
+        assert "0 lost on the way" in s.text
+        s.view._tap.arrivals.clear()  # type: ignore[attr-defined]
+        await s.look()
+        assert "nothing for 5 s, 5 messages before" in s.text

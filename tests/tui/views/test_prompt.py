@@ -1,0 +1,110 @@
+"""A prompt: verbs run and stream, end by Ctrl-C, are recalled and completed."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from textual.widgets import Input
+
+from graphflow.testing import Graph
+from graphflow.tui.panes import Content
+from graphflow.tui.views.prompt import Prompt
+from tests.tui.nodes import Talker
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+def program(text: str) -> tuple[str, ...]:
+    """In place of `graphflow`."""
+    return (sys.executable, "-c", text)
+
+
+async def test_output_streams_and_exit_codes_are_told() -> None:
+    """stdout, stderr and the code; escape sequences are not obeyed."""
+    async with stage(Content("prompt")) as s:
+        text = "import sys; print('out', sys.argv[1:]); print('\\x1b[31mred', file=sys.stderr); sys.exit(3)"
+        s.console.hub.command = program(text)
+        await s.type("topic list 'a b'")
+        await s.press("enter")
+        await s.until("exit code 3")
+        assert "out ['topic', 'list', 'a b']" in s.text
+        assert "red" in s.text
+        assert "\x1b" not in s.text
+
+
+async def test_ctrl_c_ends_the_verb_and_then_asks() -> None:
+    """It interrupts what runs, as in a terminal; the console stays."""
+    async with stage(Content("prompt")) as s:
+        waits = "import time\nprint('up', flush=True)\ntry:\n    time.sleep(60)\n"
+        s.console.hub.command = program(f"{waits}except KeyboardInterrupt:\n    print('bye')")
+        await s.type("topic echo /x")
+        await s.press("enter")
+        await s.until("up")
+        await s.press("ctrl+c")
+        await s.until("bye")
+        await s.until(lambda: not s.view.interrupt())
+        assert s.console.return_value is None
+
+
+async def test_history_and_words_of_its_own() -> None:
+    """↑ recalls; `clear` empties the pane; a console in a console is refused; quotes must close."""
+    Prompt.past.clear()
+    async with stage(Content("prompt")) as s:
+        s.console.hub.command = program("print('ran')")
+        for text, answer in (
+            ("ps", "ran"),
+            ("attach", "this is a console already"),
+            ("topic 'list", "check the quotes"),
+        ):
+            await s.type(text)
+            await s.press("enter")
+            await s.until(answer)
+            await s.until(lambda: s.view._process is None)  # type: ignore[attr-defined]
+        await s.press("up", "up", "up")
+        assert s.view.query_one(Input).value == "ps"
+        await s.press("down", "down", "down")
+        await s.type("clear")
+        await s.press("enter")
+        await s.look()
+        assert "ran" not in s.text
+
+
+async def test_a_command_that_came_back_with_the_windows_waits_for_enter() -> None:
+    """What it did need not be wanted twice."""
+    async with stage(Content("prompt", "action send_goal /x"), Content("prompt", "ps", {"run": True})) as s:
+        s.console.hub.command = program("print('ran')")
+        assert s.view.query_one(Input).value == "action send_goal /x"
+        assert "enter runs this again" in s.text
+        await s.press("enter")
+        await s.until("ran")
+        await s.prefix("1")
+        await s.until("$ graphflow ps")
+        assert s.view.content == Content("prompt", "ps")
+
+
+async def test_completion(graph: Graph) -> None:
+    """Tab completes verbs and live names, and shows the choices where there are several."""
+    await graph.start(Talker())
+    async with stage(Content("prompt"), graph=graph) as s:
+        await s.type("to")
+        await s.press("tab")
+        await s.until(lambda: s.view.query_one(Input).value == "topic ")
+        await s.type("e")
+        await s.press("tab")
+        await s.until(lambda: s.view.query_one(Input).value == "topic echo ")
+        await s.type("/cha")
+        await s.press("tab")
+        await s.until(lambda: s.view.query_one(Input).value == "topic echo /chatter ")
+
+
+async def test_what_comes_too_fast_is_counted() -> None:
+    """The pane keeps up; what is left out is said."""
+    async with stage(Content("prompt")) as s:
+        s.console.hub.command = program("for i in range(30000): print(i)")
+        await s.type("topic echo /x")
+        await s.press("enter")
+        await s.until("29999")
+        await s.look()
+        assert "lines left out" in s.text or s.view._lost == 0  # type: ignore[attr-defined]

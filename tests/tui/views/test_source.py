@@ -1,0 +1,52 @@
+"""A file at a line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.tui.panes import Content
+from graphflow.tui.views.source import find_file
+from tests.tui.stage import stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
+    """Wherever it is in the file; control characters in it are not obeyed."""
+    file = tmp_path / "long.py"
+    file.write_text("\n".join(f"x{i} = {i}  # \x1b[31m" for i in range(1, 301)))
+    async with stage(Content("source", f"{file}:200"), size=(80, 20)) as s:
+        await s.until("▶200 x200 = 200")
+        assert "x300" not in s.text
+        assert "\x1b" not in s.text
+        await s.press("y")
+        assert s.console.clipboard_text == f"{file}:200"
+
+
+async def test_a_file_that_is_not_there() -> None:
+    """It says so."""
+    async with stage(Content("source", "nowhere.py:3")) as s:
+        assert "there is no file nowhere.py:3" in s.text
+
+
+async def test_the_editor_must_be_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without one, it says what to set."""
+    monkeypatch.delenv("EDITOR", raising=False)
+    monkeypatch.delenv("VISUAL", raising=False)
+    (tmp_path / "a.py").write_text("x = 1\n")
+    async with stage(Content("source", f"{tmp_path / 'a.py'}:1")) as s:
+        await s.press("e")
+        assert "set EDITOR" in s.text
+
+
+def test_files_by_their_name_alone(tmp_path: Path) -> None:
+    """As reports write them."""
+    (tmp_path / "nodes").mkdir()
+    file = tmp_path / "nodes" / "arm.py"
+    file.write_text("")
+    assert find_file("arm.py", [tmp_path]) == file
+    assert find_file("nodes/arm.py", [tmp_path]) == file
+    assert find_file(str(file), []) is None or find_file(str(file), [Path("/")]) == file
+    assert find_file("leg.py", [tmp_path]) is None

@@ -1,0 +1,27 @@
+"""What processes cost."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from graphflow.tui.panes import Content
+from tests.tui.stage import Supervised, stage
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_a_row_a_process() -> None:
+    """With all its nodes, and the supervisor; those that have ended are left out."""
+    async with stage(Content("top"), nodes=("/a", "/b", "/gone")) as s:
+        supervision = s.console.hub.supervision
+        assert isinstance(supervision, Supervised)
+        supervision.nodes["/a"]["pid"] = supervision.nodes["/b"]["pid"] = os.getpid()
+        supervision.nodes["/gone"] |= {"pid": os.getppid(), "state": "ended"}
+        await s.look()
+        assert "/a, /b" in s.text
+        assert "the supervisor" in s.text
+        assert "/gone" not in s.text
+        await s.press("M")
+        assert "/a, /b" in s.text
