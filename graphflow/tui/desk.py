@@ -24,6 +24,8 @@ KEEP_AFTER = 1.0
 """Seconds after the last change at which the windows are kept with the run."""
 STOP_WITHIN = 2.0
 """Seconds in which a second Ctrl-C stops the graph without asking."""
+LEAVE_WITHIN = 2.0
+"""Seconds for what is under way in the panes to end."""
 
 
 class Desk(App[str]):
@@ -62,8 +64,11 @@ class Desk(App[str]):
         """End the console; the graph is another matter."""
         if self.hub.supervision is not None:
             self.keep_layout_now()
-        for frame in self.workspace.frames.values():
-            frame.view.closed()
+        views = [frame.view for frame in self.workspace.frames.values()]
+        for view in views:
+            view.closed()
+        under_way = [worker for view in views for worker in self.workers.cancel_node(view)]
+        await asyncio.wait_for(asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True), LEAVE_WITHIN)
         if self.hub.live is not None:
             await self.hub.live.close()
         for task in self.tasks:

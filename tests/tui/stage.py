@@ -6,10 +6,11 @@ import asyncio
 import json
 import time
 import unicodedata
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable, Coroutine
+from concurrent.futures import Future
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from textual import events
 from textual.keys import REPLACED_KEYS, _character_to_key, _get_unicode_name_from_key
@@ -51,6 +52,7 @@ VERBS: dict[str, Any] = {
 }
 
 LIMIT = 10.0
+T = TypeVar("T")
 
 
 class Supervised(Supervision):
@@ -89,6 +91,7 @@ class MemoryView:
     def __init__(self, graph: Graph, context: Context) -> None:
         self._graph, self._context = graph, context
         self._loop = asyncio.get_running_loop()
+        self._working: list[asyncio.Future[None]] = []
         self.domain = 0
 
     def __enter__(self) -> Self:
@@ -109,8 +112,7 @@ class MemoryView:
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:
         type_: Any = registry.interface_class(type_name)
-        calling = self._graph.call(type_, name, request)
-        return asyncio.run_coroutine_threadsafe(calling, self._loop).result(LIMIT)
+        return self._on_loop(lambda: self._graph.call(type_, name, request))
 
     def ask(self, key: str, request: bytes, timeout: float) -> Answer:
         answered: asyncio.Queue[Answer | None] = asyncio.Queue()
@@ -120,10 +122,23 @@ class MemoryView:
             caller.call(request, b"", answered.put_nowait)
             return await answered.get()
 
-        answer = asyncio.run_coroutine_threadsafe(asking(), self._loop).result(LIMIT)
+        answer = self._on_loop(asking)
         if answer is None:
             raise ServerLost("nobody")
         return answer
+
+    def _on_loop(self, work: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """What the work comes to; nothing is begun when the loop has ended meanwhile."""
+        done: Future[T] = Future()
+
+        async def working() -> None:
+            try:
+                done.set_result(await work())
+            except BaseException as error:  # the thread that waits has it
+                done.set_exception(error)
+
+        self._loop.call_soon_threadsafe(lambda: self._working.append(asyncio.ensure_future(working())))
+        return done.result(LIMIT)
 
 
 def _character(key: str) -> str | None:

@@ -170,6 +170,7 @@ class Prompt(View):
         finally:
             if process.returncode is None:
                 process.kill()
+                await process.communicate()  # to its end, so that nothing of it stays open
             self._process = None
 
     async def _read(self, stream: asyncio.StreamReader, style: str) -> None:
