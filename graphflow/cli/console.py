@@ -28,13 +28,24 @@ COMMAND = (sys.executable, "-m", "graphflow")
 """The words that start this program again."""
 
 
-def show(run: GraphRun | None, domain: int, prefix: str | None = None) -> int:
-    """Open the console and say how it was left; returns the exit code."""
+def open_console(
+    run: GraphRun | None, domain: int, prefix: str | None = None, layout: dict[str, Any] | None = None
+) -> Any:
+    """Open the console; returns how it was left, a `tui.main.Left`.
+
+    Args:
+        layout: The windows to begin with; None for those kept with the run, the graph file's, or the usual ones.
+    """
     if run is not None:
         os.environ["GRAPHFLOW_DOMAIN"], os.environ[_RENDEZVOUS] = str(run.domain), run.endpoint
     # The one place where a door opens the other; nothing of the console is imported before.
     tui = import_module("graphflow.tui.main")
-    left = tui.open_console(run, domain, command=COMMAND, verbs=verbs, prefix=prefix)
+    return tui.open_console(run, domain, command=COMMAND, verbs=verbs, prefix=prefix, layout=layout)
+
+
+def show(run: GraphRun | None, domain: int, prefix: str | None = None) -> int:
+    """Open the console and say how it was left; returns the exit code."""
+    left = open_console(run, domain, prefix)
     if left.run is None:
         output.talk(f"[left domain {domain}: its nodes run on]")
         return exits.OK

@@ -1,4 +1,4 @@
-"""`graphflow demo`: walks through graphs that come with graphflow, step by step."""
+"""`graphflow demo`: walks through graphs that come with graphflow, step by step: in the console, or as text."""
 
 from __future__ import annotations
 
@@ -11,36 +11,15 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import IO
 
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.examples import DEADLOCKS, Step, graph_file, heading
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
-
-class Step(NamedTuple):
-    """One pair of graphs, `NAME_broken` and `NAME_fixed`."""
-
-    name: str
-    seconds: float
-    """How long the fixed graph is shown, and the broken one when nothing is found."""
-
-
-DEADLOCKS = (
-    Step("self_call", 3.5),
-    Step("classic", 3.5),
-    Step("blocked_loop", 3.5),
-    Step("crossing", 3.5),
-    Step("event", 4.0),
-    Step("recursion", 2.0),
-    Step("goal_on_loop", 6.0),
-    Step("goal_in_threads", 6.0),
-    Step("goal_async", 6.0),
-    Step("arrival_race", 9.0),
-    Step("arrival", 9.0),
-)
 _AFTER_REPORT = 1.0
 """Seconds that a broken graph stays on screen after its report has begun."""
 _END_LIMIT = 20.0
@@ -54,15 +33,17 @@ def demo() -> None:
 @demo.command()
 @click.argument("steps", nargs=-1, metavar="[STEP]...")
 @click.option("-l", "--list", "only_list", is_flag=True, help="Only list the steps.")
-@click.option("-y", "--yes", is_flag=True, help="Do not ask before each step.")
-def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
+@click.option("--no-console", is_flag=True, help="Print everything instead of opening the console.")
+@click.option("-y", "--yes", is_flag=True, help="Print everything, and do not ask before each step.")
+def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, yes: bool) -> int:
     """Show eleven deadlocks and races, each explained as it happens and then fixed by a change to its graph file.
 
-    Each runs in its own domain and on its own port. Name STEPs to run only those.
+    In the console you end them yourself; it says what to press. Without a terminal, or with --no-console, what they
+    print is shown. They run in a domain and on a port of their own. Name STEPs to run only those.
     """
     known = {step.name: step for step in DEADLOCKS}
     if only_list:
-        output.lines(f"{step.name:16} {_title(_file(step.name, 'broken'))}" for step in DEADLOCKS)
+        output.lines(f"{step.name:16} {heading(graph_file(step.name, 'broken'))}" for step in DEADLOCKS)
         return exits.OK
     for name in steps:
         if name not in known:
@@ -72,6 +53,10 @@ def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
 
     os.environ[ENDPOINT_VARIABLE] = free_endpoint()
     os.environ["GRAPHFLOW_DOMAIN"] = str(1000 + os.getpid())
+    if not (no_console or yes) and output.is_terminal():
+        from graphflow.cli.tour import tour
+
+        return tour([known[name] for name in steps or known])
     asks = sys.stdin.isatty() and not yes
     for i, step in enumerate(known[name] for name in steps or known):
         if i and asks:
@@ -80,22 +65,12 @@ def deadlock(steps: tuple[str, ...], only_list: bool, yes: bool) -> int:
     return exits.OK
 
 
-def _file(name: str, kind: str) -> Path:
-    from graphflow.graph.project import demos_root
-
-    return demos_root() / "graphs" / "deadlock" / f"{name}_{kind}.yaml"
-
-
-def _title(file: Path) -> str:
-    return file.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
-
-
 def _show(step: Step, *, asks: bool) -> None:
     for kind in ("broken", "fixed"):
-        file = _file(step.name, kind)
+        file = graph_file(step.name, kind)
         if kind == "fixed" and asks:
             click.prompt("\nEnter to see it fixed", default="", show_default=False)
-        output.data(f"\n=== {step.name}, {kind}: {_title(file)}")
+        output.data(f"\n=== {step.name}, {kind}: {heading(file)}")
         output.data(f"--- {file}")
         output.lines(f"    {line}" for line in file.read_text(encoding="utf-8").splitlines()[1:])
         output.data("--- graphflow up")

@@ -26,7 +26,7 @@ import os
 import secrets
 import socket
 import struct
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -320,18 +320,48 @@ class ControlClient:
         return [json.loads(line) for line in lines]
 
 
-async def open_control(
-    address: str, line_limit: int
-) -> tuple[asyncio.StreamReader, asyncio.StreamWriter, dict[str, str]]:
-    """Connect to a supervisor from an event loop; returns also what every request must carry.
+class ControlStream:
+    """A door's side, for an event loop."""
 
-    Args:
-        line_limit: Bytes that a line may have.
+    def __init__(self, reader: asyncio.StreamReader, writers: Sequence[asyncio.StreamWriter], token: Mapping[str, str]):
+        self._reader, self._writers, self._token = reader, writers, token
 
-    Raises:
-        OSError: Nothing answers at the address.
-    """
-    if address.startswith(_TCP):
-        port, _, token = address.removeprefix(_TCP).partition("/")
-        return *await asyncio.open_connection("127.0.0.1", int(port), limit=line_limit), {"token": token}
-    return *await asyncio.open_unix_connection(address, limit=line_limit), {}
+    @classmethod
+    async def open(cls, address: str, line_limit: int) -> Self:
+        """Connect to a supervisor.
+
+        Args:
+            line_limit: Bytes that a line may have.
+
+        Raises:
+            OSError: Nothing answers at the address.
+        """
+        connection, token = _connect(address)
+        # A stream that fails to write reads no more either, and what a supervisor says last would be lost.
+        for_writing = connection.dup()
+        reader, kept_open = await asyncio.open_connection(sock=connection, limit=line_limit)
+        _, writer = await asyncio.open_connection(sock=for_writing)
+        writer.transport.pause_reading()  # type: ignore[attr-defined]
+        return cls(reader, (writer, kept_open), token)
+
+    def send(self, **request: Any) -> bool:
+        """Send a request; returns whether there was anybody to send it to."""
+        writer = self._writers[0]
+        if writer.is_closing():
+            return False
+        writer.write(json.dumps({**request, **self._token}).encode() + b"\n")
+        return True
+
+    async def receive(self) -> AsyncIterator[dict[str, Any]]:
+        """Events as they come, until the supervisor closes the connection.
+
+        Raises:
+            OSError: The connection broke.
+            ValueError: A line is too long, or no JSON.
+        """
+        while line := await self._reader.readline():
+            yield json.loads(line)
+
+    def close(self) -> None:
+        for writer in self._writers:
+            writer.close()

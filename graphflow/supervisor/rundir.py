@@ -47,12 +47,16 @@ def runtime_root() -> Path:
     return root
 
 
-def log_root() -> Path:
-    """The folder of all logs."""
-    if os.environ.get("ROS_LOG_DIR"):
-        return Path(os.environ["ROS_LOG_DIR"])
+def state_root() -> Path:
+    """The folder of what is kept for this user from one run to the next."""
     state = os.environ.get("XDG_STATE_HOME")
     return (Path(state) if state else Path.home() / ".local" / "state") / "graphflow"
+
+
+def log_root() -> Path:
+    """The folder of all logs."""
+    given = os.environ.get("ROS_LOG_DIR")
+    return Path(given) if given else state_root()
 
 
 def new_run_id() -> str:

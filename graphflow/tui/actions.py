@@ -19,6 +19,7 @@ class Action:
         keys: Keys without the prefix, any of them; for a view's action while the view is focused.
         verb: The command that does the same, with {node}, {topic}, ... for what is chosen.
         hint: Whether the bottom line shows it.
+        label: Keys and title in the bottom line, where one entry stands for several actions.
         short: What the bar after the prefix calls it; empty for leaving it out. Actions of one word share an entry.
     """
 
@@ -28,6 +29,7 @@ class Action:
     keys: tuple[str, ...] = ()
     verb: str = ""
     hint: bool = False
+    label: str = ""
     short: str = ""
 
 
@@ -89,6 +91,7 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
         Action("command", "command line: any verb", ("colon",), ("colon",), hint=True, short="command"),
     ),
     "Console": (
+        Action("put_away", "hide the line for newcomers", keys=("escape",)),
         Action("help", "all keys", ("question_mark",), ("question_mark", "f1"), hint=True, short="all keys"),
         Action("clients", "who else is attached", ("D",), verb="graphflow ls"),
         Action("clock", "the time", ("t",)),

@@ -18,13 +18,14 @@ from graphflow.tui.actions import by_chord, console_actions, shown
 from graphflow.tui.bars import Hints, Status, WhichKey
 from graphflow.tui.deeds import Deeds
 from graphflow.tui.desk import Desk
-from graphflow.tui.home import home
+from graphflow.tui.home import open_home
 from graphflow.tui.hub import Hub
 from graphflow.tui.ink import DARK, LIGHT, make_ink
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
 from graphflow.tui.view import View
+from graphflow.tui.welcome import Welcome
 from graphflow.tui.workspace import Workspace
 
 PULSE = 0.05
@@ -47,6 +48,7 @@ class Console(Desk):
         layout: The windows to begin with; None for the usual ones.
         prefix: The prefix key.
         theme: The name of a theme.
+        welcome: Whether to say what a newcomer must know.
     """
 
     CSS_PATH = "app.tcss"
@@ -57,12 +59,22 @@ class Console(Desk):
         for key in action.keys[:1]
     ]
 
-    def __init__(self, hub: Hub, layout: Layout | None = None, prefix: str = "ctrl+b", theme: str = DARK.name) -> None:
+    def __init__(
+        self,
+        hub: Hub,
+        layout: Layout | None = None,
+        prefix: str = "ctrl+b",
+        theme: str = DARK.name,
+        *,
+        welcome: bool = False,
+    ) -> None:
         super().__init__(hub, layout or Layout(), prefix)
         self.deeds = Deeds(self)
         self.hints = Hints()
         self.status = Status()
         self.which_key = WhichKey()
+        self.welcome = Welcome()
+        self.welcome.display = welcome
         self._chords = by_chord()
         self._chord_open = False
         self._which_timer: Timer | None = None
@@ -76,9 +88,10 @@ class Console(Desk):
 
     def compose(self) -> ComposeResult:
         if not self.windows.windows:
-            self.windows.current = self.windows.open("home", home(self.windows, self.hub))
+            open_home(self.windows, self.hub)
         self.workspace = Workspace(self.windows, self._make_view)
         yield self.workspace
+        yield self.welcome
         yield self.hints
         yield self.status
         yield self.which_key
@@ -140,9 +153,8 @@ class Console(Desk):
                 self.say(f"{event['text']} by {event['by']}")
             case "note" | "stopping":
                 self.say(event.get("text") or f"stopping ({event['reason']})")
-            case "step":
-                done = "done" if event["ok"] else "FAILED"
-                self.say(f"step {event['step']} {done}: {event['text']}", bad=not event["ok"])
+            case "step" if not event["ok"]:
+                self.say(f"step {event['step']} FAILED: {event['text']}", bad=True)
             case "error":
                 self.say(event["message"], bad=True)
             case "exited" if event["unexpected"]:

@@ -90,11 +90,12 @@ class Hints(Bar):
         found = []
         for action in view.ACTIONS if view is not None else ():
             if action.hint and action.keys:
-                key = shown(action.keys[0])
-                room -= len(key) + len(action.title) + 3
+                label = action.label or f"{shown(action.keys[0])} {action.title}"
+                key, _, title = label.partition(" ")
+                room -= len(key) + len(title) + 3
                 if room < 0:
                     break
-                found.append((action.name, key, action.title))
+                found.append((action.name, key, title))
         return found
 
     def on_click(self, event: events.Click) -> None:
@@ -146,6 +147,8 @@ class Status(Bar):
             return [("no supervisor here ", ink.warn)]
         if supervision.exit_code is not None:
             return [(f"ended, exit code {supervision.exit_code} ", ink.bad if supervision.exit_code else ink.warn)]
+        if supervision.is_lost:
+            return [("✖ supervisor gone ", ink.bad)]
         counts = Counter(row["state"] for row in supervision.nodes.values())
         for state, mark in MARKS.items():
             if counts[state]:

@@ -73,6 +73,11 @@ class Deeds(PaneDeeds):
         """Stop the graph and leave when it has ended."""
         self._app.run_worker(self._app.leave("stop"))
 
+    def do_put_away(self) -> None:
+        """Hide the line for newcomers."""
+        if self._app.welcome.display:
+            self._app.welcome.put_away()
+
     def do_sessions(self) -> None:
         from graphflow.supervisor.rundir import running
 

@@ -16,6 +16,7 @@ from graphflow.tui.ink import Ink
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Window
 from graphflow.tui.view import View
+from graphflow.tui.welcome import Welcome
 from graphflow.tui.workspace import Workspace
 
 MESSAGES = 500
@@ -24,6 +25,8 @@ KEEP_AFTER = 1.0
 """Seconds after the last change at which the windows are kept with the run."""
 STOP_WITHIN = 2.0
 """Seconds in which a second Ctrl-C stops the graph without asking."""
+LASTING = "lasting"
+"""Workers that run until the console is left."""
 LEAVE_WITHIN = 2.0
 """Seconds for what is under way in the panes to end."""
 
@@ -33,6 +36,7 @@ class Desk(App[str]):
 
     hints: Hints
     status: Status
+    welcome: Welcome
     workspace: Workspace
     ink: Ink
 
@@ -49,16 +53,12 @@ class Desk(App[str]):
         """The command that would have done what was done last."""
         self.said: list[str] = []
         """Messages so far."""
-        self.tasks: set[asyncio.Task[None]] = set()
-        """What runs as long as the console does."""
         self._keep_timer: Timer | None = None
         self._asked_to_stop = 0.0
 
     def spawn(self, work: Any) -> None:
         """Run something until the console is left."""
-        task = asyncio.create_task(work)
-        self.tasks.add(task)
-        task.add_done_callback(self.tasks.discard)
+        self.run_worker(work, group=LASTING)
 
     async def leave(self, how: str) -> None:
         """End the console; the graph is another matter."""
@@ -71,8 +71,7 @@ class Desk(App[str]):
         await asyncio.wait_for(asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True), LEAVE_WITHIN)
         if self.hub.live is not None:
             await self.hub.live.close()
-        for task in self.tasks:
-            task.cancel()
+        self.workers.cancel_group(self, LASTING)
         self.exit(how)
 
     @property

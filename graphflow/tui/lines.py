@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any, ClassVar, NamedTuple
@@ -21,6 +22,10 @@ from graphflow.tui.ink import Ink
 KEPT = 20_000
 WRAPS_INTO = 50
 """Lines that one row becomes at most where long ones are wrapped."""
+_INDENT = re.compile(r"[ │]*")
+"""What stands at the beginning of each line of a wrapped row: a frame's border goes on."""
+_DEEPEST = 24
+"""Columns that an indent has at most."""
 
 
 class Part(NamedTuple):
@@ -29,6 +34,27 @@ class Part(NamedTuple):
     row: Any
     start: int
     """The column of the row at which the piece begins."""
+    end: int
+    indent: int
+    """Columns of the row's beginning that stand before the piece."""
+
+
+def breaks(text: str, width: int) -> Iterator[tuple[int, int, int]]:
+    """Where to break a row, between words if need be in them: start, end and indent of each piece, in columns."""
+    found = _INDENT.match(text)
+    indent = found.end() if found and found.end() <= min(_DEEPEST, width // 2) else 0
+    if cell_len(text) != len(text):  # columns are not characters: cut where the line is full
+        yield from ((at, at + width, 0) for at in range(0, min(cell_len(text), width * WRAPS_INTO), width))
+        return
+    start, room = 0, width
+    for _ in range(WRAPS_INTO):
+        if len(text) - start <= room:
+            yield start, len(text), indent if start else 0
+            return
+        space = text.rfind(" ", start + 1, start + room + 1)
+        end = space if space > start + room // 2 else start + room
+        yield start, end, indent if start else 0
+        start, room = end + (text[end] == " "), width - indent
 
 
 class Lines(ScrollView, can_focus=True):
@@ -90,8 +116,17 @@ class Lines(ScrollView, can_focus=True):
         """The row that is chosen; None for none."""
         if self.cursor is None or not 0 <= self.cursor < len(self.rows):
             return None
-        row = self.rows[self.cursor]
-        return row.row if isinstance(row, Part) else row
+        return _whole(self.rows[self.cursor])
+
+    @property
+    def whole_rows(self) -> Iterator[Any]:
+        """The rows as they were given, each once."""
+        return (_whole(row) for row in self.rows if not isinstance(row, Part) or row.start == 0)
+
+    def row_that_begins(self, index: int) -> Any:
+        """The row that begins in a line; None where one goes on."""
+        row = self.rows[index]
+        return None if isinstance(row, Part) and row.start else _whole(row)
 
     def _parts(self, rows: Iterable[Any]) -> Iterator[Any]:
         """The rows as lines: the long ones in parts, if they wrap."""
@@ -100,14 +135,16 @@ class Lines(ScrollView, can_focus=True):
             yield from rows
             return
         for row in rows:
-            length = sum(cell_len(text) for text, _ in self.draw(row))
-            yield row
-            yield from (Part(row, start) for start in range(width, min(length, width * WRAPS_INTO), width))
+            text = "".join(text for text, _ in self.draw(row))
+            if cell_len(text) <= width:
+                yield row
+            else:
+                yield from (Part(row, *piece) for piece in breaks(text, width))
 
     def wrap(self, wraps: bool) -> None:
         """Let long rows go on in the next line, or not."""
         self.wraps = wraps
-        self.replace([row for row in self.rows if not isinstance(row, Part)])
+        self.replace(list(self.whole_rows))
 
     def _moved(self, lost: int) -> None:
         self.virtual_size = Size(self._widest, len(self.rows))
@@ -132,9 +169,9 @@ class Lines(ScrollView, can_focus=True):
         ink = self.ink
         style = base + ink.cursor if index == self.cursor else base
         row = self.rows[index]
+        strip = Strip([Segment(text, style + piece) for text, piece in self.draw(_whole(row))])
         if isinstance(row, Part):
-            row, left = row
-        strip = Strip([Segment(text, style + piece) for text, piece in self.draw(row)])
+            strip = Strip.join([strip.crop(0, row.indent), strip.crop(row.start, row.end)])
         return strip.crop_extend(left, left + width, style)
 
     def on_resize(self, event: events.Resize) -> None:
@@ -202,3 +239,7 @@ class Lines(ScrollView, can_focus=True):
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
         return container.width
+
+
+def _whole(row: Any) -> Any:
+    return row.row if isinstance(row, Part) else row

@@ -18,6 +18,7 @@ from graphflow.tui.hub import Hub, Verbs
 from graphflow.tui.ink import DARK
 from graphflow.tui.layout import Layout
 from graphflow.tui.supervision import Supervision
+from graphflow.tui.welcome import is_first_visit
 
 FAILED = "failed"
 """How a console was left whose own code has failed."""
@@ -38,6 +39,7 @@ def open_console(
     command: tuple[str, ...],
     verbs: Callable[[], Verbs],
     prefix: str | None = None,
+    layout: dict[str, Any] | None = None,
 ) -> Left:
     """Show the console until it is left; by then it may have gone to another graph.
 
@@ -46,6 +48,7 @@ def open_console(
         command: The words that start `graphflow`.
         verbs: Reads the verbs of the command line.
         prefix: The prefix key, from the command line.
+        layout: The windows to begin with; None for those kept with the run, the graph file's, or the usual ones.
 
     Raises:
         SupervisorError: The supervisor does not answer.
@@ -53,7 +56,7 @@ def open_console(
     while True:
         if run is not None:
             _log_to(Path(run.logs) / f"console-{os.getpid()}.log")
-        how, exit_code = _show(run, domain, command, verbs, prefix)
+        how, exit_code = _show(run, domain, command, verbs, prefix, layout)
         if not how.startswith("switch "):
             return Left(how, run, exit_code)
         socket = how.removeprefix("switch ")
@@ -64,7 +67,12 @@ def open_console(
 
 
 def _show(
-    run: GraphRun | None, domain: int, command: tuple[str, ...], verbs: Callable[[], Verbs], prefix: str | None
+    run: GraphRun | None,
+    domain: int,
+    command: tuple[str, ...],
+    verbs: Callable[[], Verbs],
+    prefix: str | None,
+    layout: dict[str, Any] | None,
 ) -> tuple[str, int | None]:
     hub = Hub(domain, None, command, verbs)
     hello: dict[str, Any] = {}
@@ -82,9 +90,10 @@ def _show(
     section = hello.get("console") or {}
     app = Console(
         hub,
-        _layout(hello),
+        _layout(layout, hello.get("layout"), hello.get("console")),
         prefix or os.environ.get(PREFIX_VARIABLE) or section.get("prefix") or _usual_prefix(),
         os.environ.get(THEME_VARIABLE) or section.get("theme") or DARK.name,
+        welcome=is_first_visit(),
     )
     how = app.run() or FAILED
     return how, hub.supervision.exit_code if hub.supervision is not None else None
@@ -106,9 +115,9 @@ def _first_word(run: GraphRun) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     return hello, rows
 
 
-def _layout(hello: dict[str, Any]) -> Layout | None:
-    """The windows kept with the run, else the graph file's."""
-    for data in (hello.get("layout"), hello.get("console")):
+def _layout(*choices: dict[str, Any] | None) -> Layout | None:
+    """The first of several forms of the windows that can be read."""
+    for data in choices:
         if data and data.get("windows"):
             try:
                 return Layout.from_json(data)

@@ -8,10 +8,13 @@ from graphflow.graph.console import PLUGINS, VIEWS, known_views
 from graphflow.names import did_you_mean
 from graphflow.tui.view import View
 
+TOUR = "tour"
+"""The view of `graphflow demo`, which is in no list."""
+
 
 def view_class(name: str) -> type[View]:
     """The class of a view; a view that says what is wrong where there is none."""
-    if name in VIEWS:
+    if name in VIEWS or name == TOUR:
         found: type[View] = import_module(f"graphflow.tui.views.{name}").VIEW
         return found
     from importlib.metadata import entry_points

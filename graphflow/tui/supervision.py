@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import os
 from collections import deque
 from collections.abc import Callable
@@ -12,7 +11,7 @@ from typing import Any
 
 from graphflow import __version__
 from graphflow.graph.plan import Plan
-from graphflow.supervisor.control import open_control
+from graphflow.supervisor.control import ControlStream
 from graphflow.supervisor.rundir import GraphRun
 
 ASK_EVERY = 1.0
@@ -44,32 +43,36 @@ class Supervision:
         self.folder = Path()
         """What the plan's file names are relative to."""
         self.is_connected = False
+        self.is_lost = False
+        """Whether nothing more is to be heard of the graph."""
         self.exit_code: int | None = None
         """The graph's exit code, once it has ended."""
         self._heard = heard
-        self._writer: asyncio.StreamWriter | None = None
-        self._token: dict[str, str] = {}
+        self._stream: ControlStream | None = None
 
     async def follow(self) -> None:
         """Stay connected until the graph has ended or its supervisor has gone."""
-        reader, self._writer, self._token = await open_control(self.run.socket, LINE_LIMIT)
+        why = "the supervisor has gone"
+        asking: asyncio.Task[None] | None = None
         try:
+            stream = self._stream = await ControlStream.open(self.run.socket, LINE_LIMIT)
             self.is_connected = True
             self.send(do="follow", console=self.name)
             self.send(do="ps")
             self.send(do="plan")
             asking = asyncio.create_task(self._ask())
-            try:
-                while line := await reader.readline():
-                    self._take(json.loads(line))
-            finally:
-                asking.cancel()
+            async for event in stream.receive():
+                self._take(event)
         except (OSError, ValueError) as error:
-            self._heard({"event": "lost", "message": str(error)})
+            why = f"the connection to the supervisor is lost: {error}"
         finally:
             self.is_connected = False
-            self._writer.close()
-            self._heard({"event": "lost", "message": "the supervisor has gone"})
+            if asking is not None:
+                asking.cancel()
+            if self._stream is not None:
+                self._stream.close()
+        self.is_lost = True
+        self._heard({"event": "lost", "message": why})
 
     async def _ask(self) -> None:
         while True:
@@ -78,10 +81,7 @@ class Supervision:
 
     def send(self, **request: Any) -> bool:
         """Send a request; returns whether there was anybody to send it to."""
-        if self._writer is None or self._writer.is_closing():
-            return False
-        self._writer.write(json.dumps({**request, "by": self.name, **self._token}).encode() + b"\n")
-        return True
+        return self._stream is not None and self._stream.send(**request, by=self.name)
 
     def announce(self, text: str) -> None:
         """Tell other consoles what this one has done."""

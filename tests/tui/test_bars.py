@@ -67,3 +67,12 @@ async def test_after_the_end() -> None:
         supervision.exit_code = 1
         await s.look()
         assert "ended, exit code 1" in s.text
+
+
+async def test_a_supervisor_that_died() -> None:
+    """Its last word is not taken for the truth."""
+    async with stage() as s:
+        supervision: Any = s.console.hub.supervision
+        supervision.is_lost = True
+        await s.look()
+        assert "✖ supervisor gone" in s.text

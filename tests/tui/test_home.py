@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.tui.home import home
+from graphflow.tui.home import open_home
 from graphflow.tui.hub import Hub
 from graphflow.tui.layout import Layout
 from tests.tui.stage import Supervised
@@ -15,14 +15,18 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 @pytest.mark.parametrize(
-    ("class_path", "views"),
-    [("nodes.turtlesim:TurtleSim", ["nodes", "log", "turtle"]), ("nodes.talker:Talker", ["nodes", "log"])],
+    ("class_path", "views", "focused"),
+    [
+        ("nodes.turtlesim:TurtleSim", ["nodes", "log", "turtle"], "turtle"),
+        ("nodes.talker:Talker", ["nodes", "log"], "nodes"),
+    ],
 )
-async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], tmp_path: Path) -> None:
+async def test_the_turtle_where_there_is_one(class_path: str, views: list[str], focused: str, tmp_path: Path) -> None:
     """Else the nodes and their logs."""
     supervision = Supervised(["/a"], tmp_path)
     supervision.nodes["/a"]["class"] = class_path
     layout = Layout()
-    layout.open("home", home(layout, Hub(0, supervision, (), dict)))
+    open_home(layout, Hub(0, supervision, (), dict))
     assert [pane.content.view for pane in layout.window.panes()] == views
+    assert layout.window.pane(layout.window.focused).content.view == focused
     assert len(layout.window.places(80, 22)) == len(views), "it fits 80 x 24"

@@ -10,7 +10,7 @@ import pytest
 from rich.text import Text
 from textual.widget import Widget
 
-from graphflow.tui.lines import Lines
+from graphflow.tui.lines import Lines, breaks
 from graphflow.tui.panes import Content
 from tests.tui.stage import Stage, stage
 
@@ -54,6 +54,23 @@ async def test_long_rows_wrap() -> None:
         assert len(made.rows) == 3
         made.wrap(False)
         assert len(made.rows) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "lines"),
+    [
+        ("one two three", 9, ["one two", "three"]),
+        ("   │   one two three", 16, ["   │   one two", "   │   three"]),
+        ("a" * 15, 10, ["a" * 10, "a" * 5]),
+        ("日本" * 3, 7, ["日本日", "本日本"]),
+        ("", 10, [""]),
+    ],
+)
+def test_breaking_between_words(text: str, width: int, lines: list[str]) -> None:
+    """A line's indent and a frame's border go on; a word that is too long is cut."""
+    scale = 2 if text.startswith("日") else 1
+    found = [text[:indent] + text[start // scale : end // scale] for start, end, indent in breaks(text, width)]
+    assert found == lines
 
 
 async def test_moving() -> None:

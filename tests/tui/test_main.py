@@ -31,7 +31,7 @@ class Shown:
     made: list[tuple[Any, Layout | None, str, str]] = []  # noqa: RUF012
     ways: list[str] = []  # noqa: RUF012
 
-    def __init__(self, hub: Any, layout: Layout | None, prefix: str, theme: str) -> None:
+    def __init__(self, hub: Any, layout: Layout | None, prefix: str, theme: str, *, welcome: bool) -> None:
         self.made.append((hub, layout, prefix, theme))
 
     def run(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -54,6 +55,32 @@ async def until(holds: Callable[[], bool]) -> None:
     async with asyncio.timeout(5.0):
         while not holds():
             await asyncio.sleep(0.01)
+
+
+async def test_the_end_is_heard_by_who_was_asleep(tmp_path: Path) -> None:
+    """What the supervisor said last is read even when requests can no longer be sent."""
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "s"))
+        server.listen()
+        heard: list[dict[str, Any]] = []
+        one = Supervision(run_at(str(tmp_path / "s")), heard.append)
+        task = asyncio.ensure_future(one.follow())
+        await until(lambda: one.is_connected)
+        connection, _ = server.accept()
+        connection.sendall(b'{"event": "exited", "unexpected": false}\n{"event": "end", "exit_code": 3}\n')
+        connection.close()
+        assert one.send(do="ps")
+        assert not one.send(do="ps")
+        await asyncio.wait_for(task, 5.0)
+    assert one.exit_code == 3
+    assert [event["event"] for event in heard] == ["exited", "end", "lost"]
+
+
+async def test_nobody_there(tmp_path: Path) -> None:
+    """That is told, too."""
+    heard: list[dict[str, Any]] = []
+    await Supervision(run_at(str(tmp_path / "s")), heard.append).follow()
+    assert "the connection to the supervisor is lost: " in heard[0]["message"]
 
 
 @pytest.mark.parametrize("portable", ["", "1"])

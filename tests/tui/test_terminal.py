@@ -202,3 +202,17 @@ def test_waiting_never_ends_in_silence(machine: Machine, terminal: Open) -> None
     t = terminal("attach")
     t.until("no graph is running; start one with: graphflow up GRAPH.yaml")
     t.until("ended with 3")
+
+
+def test_the_tour_of_the_deadlocks(machine: Machine, terminal: Open) -> None:
+    """It says what to press: f ends the ring, n leaves for the next; then nothing is left."""
+    t = terminal("demo deadlock self_call")
+    t.until("tour 1/1 self_call")
+    t.until("f  end it")
+    t.press("f")
+    t.until("It moves again")
+    t.until("1 + 2 = 3")
+    t.press("n")
+    t.until("the tour is over, and its graph is down")
+    t.until("ended with 0")
+    assert not list(machine.run_directory.glob("graphflow/*/*/run.json"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from rich.style import Style
 from rich.text import Text
@@ -54,7 +54,7 @@ class Groups(View):
     NAME = "groups"
     DOC = "who holds and who waits; deadlocks, and the key that ends them"
     EVERY = 0.5
-    ACTIONS = (
+    ACTIONS: ClassVar[tuple[Action, ...]] = (
         Action("fix", "end the deadlock", keys=("f",), verb="graphflow groups move NODE HANDLER GROUP", hint=True),
         Action("write", "keep the fix in the graph file", keys=("w",), hint=True),
         Action("source", "go to the line of source", keys=("enter",), hint=True),
@@ -302,7 +302,7 @@ class Groups(View):
         row: Row | None = self._lines.chosen
         place = row.place if row is not None else ""
         if not place:
-            place = next((r.place for r in self._lines.rows if isinstance(r, Row) and r.place), "")
+            place = next((r.place for r in self._lines.whole_rows if r.place), "")
         if place:
             self.open("source", place)
         else:

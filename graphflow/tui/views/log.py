@@ -235,7 +235,7 @@ class Log(View):
         lines = self._lines
         at = lines.cursor if lines.cursor is not None else len(lines.rows) - (step > 0)
         for i in range(at + step, len(lines.rows) if step > 0 else -1, step):
-            record = lines.rows[i]
+            record = lines.row_that_begins(i)
             if isinstance(record, Record) and (self.pattern is not None or record.level >= 2):
                 lines.hold()
                 lines.cursor = i

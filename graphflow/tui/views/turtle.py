@@ -12,8 +12,9 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from graphflow.errors import GraphflowError
+from graphflow.names import is_hidden
 from graphflow.tui.actions import Action
-from graphflow.tui.canvas import Drawing, TurtleCanvas, read_picture
+from graphflow.tui.canvas import WORLD, Drawing, TurtleCanvas, read_picture
 from graphflow.tui.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.tap import Tap
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 # What messages need is imported when there is a graph: this view is in the first window that is drawn.
 
 POSES = ("turtlesim/msg/Pose", "turtlesim_msgs/msg/Pose")
+SPAWN = ("turtlesim/srv/Spawn", "turtlesim_msgs/srv/Spawn")
 TURTLES = 50
 """Turtles that are followed."""
 PICTURE_EVERY = 3.0
@@ -37,6 +39,7 @@ LINEAR, ANGULAR = 2.0, 2.0
 """What one press of an arrow commands, in m/s and rad/s, as teleop does."""
 TURNS = {"g": 0, "t": 45, "r": 90, "e": 135, "d": 180, "c": -135, "v": -90, "b": -45}
 """Teleop's keys and the degrees they turn to: where they lie around the f."""
+TURN_LABEL = f"{''.join(TURNS)} turn"
 
 
 class Turtles(View):
@@ -46,12 +49,16 @@ class Turtles(View):
     DOC = "turtlesim live: trails, and arrow keys that drive"
     EVERY = 0.05
     ACTIONS = (
-        Action("forward", "drive: ↑↓←→", keys=("up",), hint=True),
+        Action("forward", "drive", keys=("up",), hint=True, label="↑↓←→ drive"),
         Action("backward", "drive backwards", keys=("down",)),
         Action("left", "turn left", keys=("left",)),
         Action("right", "turn right", keys=("right",)),
-        *(Action(f"turn:{degrees}", f"turn to {degrees}°", keys=(key,)) for key, degrees in TURNS.items()),
-        Action("stop_turning", "stop turning; gbvcdert turn", keys=("f",), hint=True),
+        *(
+            Action(f"turn:{degrees}", f"turn to {degrees}°", keys=(key,), hint=not degrees, label=TURN_LABEL)
+            for key, degrees in TURNS.items()
+        ),
+        Action("stop_turning", "stop turning", keys=("f",)),
+        Action("add", "add a turtle", keys=("a",), verb="graphflow service call /spawn", hint=True),
         Action("next_turtle", "next turtle", keys=("n",), hint=True),
         Action("clear", "clear", keys=("C",), verb="graphflow service call /clear", hint=True),
     )
@@ -64,6 +71,8 @@ class Turtles(View):
         self._drawing = Drawing()
         self._canvas = TurtleCanvas(self._drawing)
         self._driven = self.about
+        self._wanted = ""
+        """A turtle that was asked for, to be driven as soon as it is there."""
         self._picture_at = 0.0
         self._seen = -1
         self._empty = Static("waiting for a turtle: no node publishes a turtlesim pose yet", classes="hint")
@@ -122,6 +131,8 @@ class Turtles(View):
                 tap = self._taps[name] = Tap(self.hub.live, topic)
                 tap.heard = self._heard(name)
                 self.hub.live.publisher(Twist, f"/{name}/cmd_vel")  # so that it is known when a key is pressed
+        if self._wanted in self._taps:
+            self._driven, self._wanted = self._wanted, ""
         if self._driven not in self._taps and self._taps:
             self._driven = self.about if self.about in self._taps else next(iter(self._taps))
 
@@ -170,6 +181,17 @@ class Turtles(View):
         publisher.publish(Twist(linear=Vector3(x=linear), angular=Vector3(z=angular)))
         values = f"{{linear: {{x: {linear}}}, angular: {{z: {angular}}}}}"
         self.did(f"graphflow topic pub --once {topic} geometry_msgs/msg/Twist '{values}'")
+        others = self._drivers(topic)
+        if others:
+            self.say(f"{others[0]} drives {self._driven} too; a adds a turtle of your own")
+
+    def _drivers(self, topic: str) -> list[str]:
+        """The nodes that drive a turtle; consoles, which are hidden nodes, left out."""
+        from graphflow.wire.liveliness import Kind
+
+        assert self.hub.live is not None
+        found = {e.node_name for e in self.hub.live.cache.endpoints(Kind.PUBLISHER) if e.name == topic}
+        return sorted(name for name in found if not is_hidden(name))
 
     def do_forward(self) -> None:
         self._drive(LINEAR, 0.0)
@@ -214,6 +236,27 @@ class Turtles(View):
         if names:
             at = names.index(self._driven) + 1 if self._driven in names else 0
             self._driven = names[at % len(names)]
+
+    def do_add(self) -> None:
+        self.work(self._add, group="add")
+
+    async def _add(self) -> None:
+        from graphflow.msgs import registry
+
+        live = self.hub.live
+        if live is None or live.context is None:
+            return
+        found = [(n, t) for n, types in live.cache.services().items() for t in types if t in SPAWN]
+        if not found:
+            self.say("no node offers /spawn", bad=True)
+            return
+        name, type_name = found[0]
+        type_: Any = registry.interface_class(type_name)
+        middle = WORLD / 2
+        self.did(f"graphflow service call {name} {type_name} '{{x: {middle}, y: {middle}}}'")
+        answer = await live.ask(lambda g: g.call(name, type_name, type_.Request(x=middle, y=middle), 2.0))
+        self._wanted = answer.name
+        live.changes += 1
 
     def do_clear(self) -> None:
         from graphflow.msgs.std_srvs.srv import Empty

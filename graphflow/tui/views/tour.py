@@ -1,0 +1,88 @@
+"""A deadlock to look at and to end: the groups, and above them what this example is about and what to press next."""
+
+from __future__ import annotations
+
+import time
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.widgets import Static
+
+from graphflow.tui.actions import Action
+from graphflow.tui.hub import Hub
+from graphflow.tui.panes import Content
+from graphflow.tui.views.groups import Groups
+
+
+class Tour(Groups):
+    """The groups of an example, with a guide.
+
+    Options: `title`, what goes wrong here; `step`, such as `3/11 classic`; `seconds` until it has; `fixed`, what the
+    graph file says where this is the repaired example.
+    """
+
+    NAME = "tour"
+    DOC = "an example of `graphflow demo`, with what to press next"
+    ACTIONS = (Action("go_on", "go on", keys=("n",), hint=True), *Groups.ACTIONS)
+
+    def __init__(self, hub: Hub, content: Content) -> None:
+        super().__init__(hub, content)
+        self._guide = Static(classes="guide")
+        self._began = time.monotonic()
+
+    def compose(self) -> ComposeResult:
+        yield self._guide
+        yield from super().compose()
+
+    @property
+    def title(self) -> str:
+        return f"tour {self.options.get('step', '')}".rstrip()
+
+    def look(self, now: float) -> None:
+        super().look(now)
+        ink = self.ink
+        text = Text(f"{self.options.get('title', '')}\n\n", style=ink.strong)
+        said, keys = self._advice()
+        text.append(f"{said}\n", style=ink.text)
+        for key, what in keys:
+            text.append(f"  {key}", style=ink.accent)
+            text.append(f"  {what}\n", style=ink.text)
+        self._guide.update(text)
+
+    def _advice(self) -> tuple[str, list[tuple[str, str]]]:
+        """What there is to see now, and the keys that lead on."""
+        go_on = ("n", "the next example")
+        repaired = ("n", "the same graph, repaired in its file")
+        fixed = str(self.options.get("fixed", ""))
+        if fixed:
+            return f"Repaired, and it runs; see the log. What its file now says:\n{fixed}", [go_on]
+        if self._deadlocks and self._moves:
+            return "It stands still. The ring below says who waits for whom, and in which line.", [
+                ("f", "end it: give one handler a group of its own, while the graph runs"),
+                ("enter", "look at the line of source"),
+            ]
+        if self._deadlocks:
+            return "It stands still. The ring below says why. To move a handler would not help here.", [
+                ("enter", "look at the line of source"),
+                repaired,
+            ]
+        if self._unfrozen and self._moved:
+            return "It moves again; see the log. The change lasts until the graph stops.", [
+                ("w", "keep it: write it into the graph file"),
+                go_on,
+            ]
+        if self._unfrozen:
+            return "It moves again, and the graph file keeps it that way.", [go_on]
+        if self._moved:
+            return "The handler is being moved ...", []
+        if time.monotonic() - self._began < float(self.options.get("seconds", 0.0)) + 2.0:
+            return "Everything runs. In a moment it will not: wait.", []
+        return "No ring: nothing waits for ever here, things happen in the wrong order. See the log.", [repaired]
+
+    def do_go_on(self) -> None:
+        """Leave for what comes next."""
+        is_done = bool(self.options.get("fixed")) or bool(self._unfrozen)
+        self.console.run_worker(self.console.leave("next" if is_done else "fixed"))
+
+
+VIEW = Tour
