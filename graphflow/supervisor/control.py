@@ -325,6 +325,7 @@ class ControlStream:
 
     def __init__(self, reader: asyncio.StreamReader, writers: Sequence[asyncio.StreamWriter], token: Mapping[str, str]):
         self._reader, self._writers, self._token = reader, writers, token
+        self._has_ended = False
 
     @classmethod
     async def open(cls, address: str, line_limit: int) -> Self:
@@ -347,10 +348,16 @@ class ControlStream:
     def send(self, **request: Any) -> bool:
         """Send a request; returns whether there was anybody to send it to."""
         writer = self._writers[0]
-        if writer.is_closing():
+        if self._has_ended or writer.is_closing():
             return False
         writer.write(json.dumps({**request, **self._token}).encode() + b"\n")
         return True
+
+    def end_requests(self) -> None:
+        """Say that no more come: once it has read them all, the supervisor closes the connection."""
+        self._has_ended = True
+        if not self._writers[0].is_closing():
+            self._writers[0].write_eof()
 
     async def receive(self) -> AsyncIterator[dict[str, Any]]:
         """Events as they come, until the supervisor closes the connection.

@@ -68,9 +68,12 @@ class Desk(App[str]):
         for view in views:
             view.closed()
         under_way = [worker for view in views for worker in self.workers.cancel_node(view)]
-        await asyncio.wait_for(asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True), LEAVE_WITHIN)
+        ends = asyncio.gather(*(w.wait() for w in under_way), return_exceptions=True)
+        await asyncio.wait([ends], timeout=LEAVE_WITHIN)
         if self.hub.live is not None:
             await self.hub.live.close()
+        if self.hub.supervision is not None:
+            await self.hub.supervision.leave()
         self.workers.cancel_group(self, LASTING)
         self.exit(how)
 

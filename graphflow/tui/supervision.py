@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 from collections import deque
 from collections.abc import Callable
@@ -19,6 +20,10 @@ ASK_EVERY = 1.0
 LINE_LIMIT = 1 << 22
 """Bytes that one line of the supervisor's may have."""
 EVENTS = 500
+LEAVE_WITHIN = 1.0
+"""Seconds in which a supervisor reads what it was asked last."""
+
+logger = logging.getLogger("graphflow.console")
 
 
 class Supervision:
@@ -43,6 +48,8 @@ class Supervision:
         self.folder = Path()
         """What the plan's file names are relative to."""
         self.is_connected = False
+        self._over = asyncio.Event()
+        self._is_leaving = False
         self.is_lost = False
         """Whether nothing more is to be heard of the graph."""
         self.exit_code: int | None = None
@@ -71,8 +78,23 @@ class Supervision:
                 asking.cancel()
             if self._stream is not None:
                 self._stream.close()
+            self._over.set()
+        if self._is_leaving:
+            return
         self.is_lost = True
         self._heard({"event": "lost", "message": why})
+
+    async def leave(self) -> None:
+        """Hang up once the supervisor has read all requests; what it was asked last counts, too."""
+        if self._stream is None or self._over.is_set():
+            return
+        self._is_leaving = True
+        self._stream.end_requests()
+        try:
+            async with asyncio.timeout(LEAVE_WITHIN):
+                await self._over.wait()
+        except TimeoutError:
+            logger.warning("the supervisor is not listening: what it was asked last may be lost")
 
     async def _ask(self) -> None:
         while True:

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphflow.tui.drawing import Box, Drawing, draw
+from tests.cases import cases, count
 
 N = 9
 GRAPHS = st.lists(st.tuples(st.integers(0, N - 1), st.integers(0, N - 1)), max_size=20)
@@ -43,6 +44,7 @@ def reached(drawing: Drawing, source: str) -> set[str]:
     return found
 
 
+@cases(count(few=40, full=150))
 @given(GRAPHS)
 def test_whatever_the_graph(pairs: list[tuple[int, int]]) -> None:
     """No two boxes share a cell, no line runs through a box, and all targets are reached."""

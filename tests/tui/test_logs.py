@@ -10,12 +10,14 @@ from hypothesis import strategies as st
 
 from graphflow.tui import logs
 from graphflow.tui.logs import LEVELS, LogFile, Logs, plain_text
+from tests.cases import cases, count
 
 
 def line(number: int, node: str = "talker", level: str = "INFO") -> str:
     return f"[{level}] [{1700000000 + number / 1000:.9f}] [{node}]: line {number}\n"
 
 
+@cases(count(few=40, full=150))
 @given(cuts=st.lists(st.integers(1, 400), max_size=60))
 def test_each_line_comes_once_whatever_the_pieces(cuts: list[int], tmp_path_factory: pytest.TempPathFactory) -> None:
     """A writer that is cut off anywhere, a reader that reads at any moment: no gap, no duplicate."""

@@ -110,6 +110,41 @@ async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.M
     await server.close()
 
 
+@pytest.mark.parametrize("portable", ["", "1"])
+async def test_what_was_asked_last_is_done(portable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaving waits until the supervisor has read it all; that is not taken for the supervisor's end."""
+    monkeypatch.setenv("GRAPHFLOW_PORTABLE", portable)
+    graph = Graph()
+    server = ControlServer(graph)
+    heard: list[dict[str, Any]] = []
+    one = Supervision(run_at(await server.open(tmp_path / "c.sock")), heard.append)
+    task = asyncio.ensure_future(one.follow())
+    await until(lambda: bool(one.nodes))
+    for i in range(100):
+        graph.doors.tell(event="note", text=str(i))
+        one.send(do="keep_layout", layout={"windows": [i]})
+    await one.leave()
+    assert graph.doors.layout == {"windows": [99]}
+    assert not one.send(do="ps")
+    await asyncio.wait_for(task, 5.0)
+    assert "lost" not in [event["event"] for event in heard]
+    await server.close()
+
+
+async def test_leaving_a_supervisor_that_does_not_listen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes no longer than its limit."""
+    monkeypatch.setattr(module, "LEAVE_WITHIN", 0.05)
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "s"))
+        server.listen()
+        one = Supervision(run_at(str(tmp_path / "s")), lambda _: None)
+        await one.leave()
+        task = asyncio.ensure_future(one.follow())
+        await until(lambda: one.is_connected)
+        await one.leave()
+    await asyncio.wait_for(task, 5.0)
+
+
 async def test_a_supervisor_that_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is told, and nothing can be sent any more."""
     monkeypatch.setattr(module, "ASK_EVERY", 0.01)

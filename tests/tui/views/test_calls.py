@@ -44,7 +44,7 @@ async def test_calling(graph: Graph) -> None:
         await s.press("ctrl+up")
         assert line(s, "a").value == "40"
         await s.press("escape")
-        assert "services" in s.text
+        await s.until("services")
 
 
 async def test_a_service_by_name(graph: Graph) -> None:
