@@ -131,6 +131,8 @@ class Workspace(Widget):
         self.frames: dict[int, Frame] = {}
         self._make_view = make_view
         self._dragged: Divider | None = None
+        self._focus_is_due = False
+        """Whether the focus is on its way: what is told of where it was counts no more."""
         self._places = _Places(self)
 
     @property
@@ -169,8 +171,9 @@ class Workspace(Widget):
             frame.title_line.refresh_if_changed()
         self._place_again()
         if focus:
+            self._focus_is_due = True
             self._focus()
-            self.call_after_refresh(self._focus)  # a new pane can take it only now
+            self.call_after_refresh(self._focus_now)  # a new pane can take it only now
 
     def _place_again(self) -> None:
         """Have the panes placed anew: it is a child's wish that makes Textual ask `layout` again."""
@@ -182,6 +185,10 @@ class Workspace(Widget):
         frame = self.focused
         if frame is not None and frame.display and frame.is_mounted and not frame.has_focus_within:
             frame.view.focus_inside()
+
+    def _focus_now(self) -> None:
+        self._focus()
+        self._focus_is_due = False
 
     def replace_view(self, number: int, content: object) -> None:
         """Show something else in a pane."""
@@ -209,7 +216,7 @@ class Workspace(Widget):
 
     def on_frame_focused(self, event: Frame.Focused) -> None:
         frame = self.frames.get(event.number)
-        if frame is None or not frame.has_focus_within:  # it has gone on meanwhile
+        if frame is None or not frame.has_focus_within or self._focus_is_due:  # it goes on, or has gone on
             return
         if event.number in self.window.numbers and event.number != self.window.focused:
             self.window.focus(event.number)
