@@ -11,6 +11,7 @@ from graphflow.graph.resolve import load
 from graphflow.supervisor.classes import add_root
 from graphflow.supervisor.worker import make_node
 from graphflow.testing import Graph
+from tests.cases import some
 from tests.conftest import PROJECT, Machine
 from tests.graphs.lab import end_at_once
 
@@ -157,7 +158,7 @@ async def test_a_fixed_graph_works(graph: Graph, caplog: pytest.LogCaptureFixtur
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("name", REAL)
+@pytest.mark.parametrize("name", some(REAL, "crossing", "goal_in_threads"))
 def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: str) -> None:
     """The same, by processes that have found it together."""
     pair = PAIRS[name]
@@ -169,7 +170,7 @@ def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: s
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("name", REAL)
+@pytest.mark.parametrize("name", some(REAL, "crossing", "goal_in_threads"))
 def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> None:
     """And nothing is reported there either."""
     up = machine.start("up", str(FOLDER / f"{name}_fixed.yaml"))
