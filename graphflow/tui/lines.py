@@ -91,8 +91,9 @@ class Lines(ScrollView, can_focus=True):
     def draw(self, row: Any) -> Iterable[tuple[str, Style]]:
         """One row as pieces of text; for subclasses whose rows are not plain text."""
         if isinstance(row, Text):
-            for segment in row.render(self.app.console):
-                yield segment.text, segment.style or self.ink.text
+            whole = row.style if isinstance(row.style, Style) else self.ink.text
+            for segment in row.render(self.app.console):  # it leaves the style of the whole to who draws
+                yield segment.text, segment.style or whole
         else:
             yield str(row), self.ink.text
 

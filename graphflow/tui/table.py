@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from rich.cells import cell_len
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
@@ -28,6 +29,8 @@ class TableView(View):
     """
 
     COLUMNS: ClassVar[tuple[str, ...]] = ()
+    KEEPS: ClassVar[int | None] = None
+    """Columns that stay where there is no room; the others go, from the last. None: the table scrolls sideways."""
     EMPTY: ClassVar[str] = "nothing there yet"
 
     def __init__(self, hub: Hub, content: Content) -> None:
@@ -36,16 +39,13 @@ class TableView(View):
         self._find = Input(placeholder="find; enter keeps, esc clears", classes="find")
         self._shown: dict[str, Cells] = {}
         self._hidden = 0
+        self._columns: tuple[str, ...] = ()
         self._filled = False
         """Whether rows have come since they were drawn last."""
 
     def compose(self) -> ComposeResult:
         yield self.table
         yield self._find
-
-    def on_mount(self) -> None:
-        for column in self.COLUMNS:
-            self.table.add_column(column, key=column)
 
     def rows(self) -> Mapping[str, Cells]:
         """The rows as they should be, in order."""
@@ -68,14 +68,34 @@ class TableView(View):
         if self._filled:
             self._filled = False
             self.call_after_refresh(self._draw_again)
-        if list(rows) != [k for k in self._shown if k in rows] or any(k not in rows for k in self._shown):
+        columns = self._fitting(rows)
+        if columns != self._columns:
+            self._columns = columns
+            self.table.clear(columns=True)
+            for column in columns:
+                self.table.add_column(column, key=column)
+            self._fill(rows)
+        elif list(rows) != [k for k in self._shown if k in rows] or any(k not in rows for k in self._shown):
             self._fill(rows)
         else:
             for key, cells in rows.items():
-                for column, cell, before in zip(self.COLUMNS, cells, self._shown[key], strict=True):
+                for column, cell, before in zip(columns, cells, self._shown[key], strict=False):
                     if cell != before:
                         self.table.update_cell(key, column, cell, update_width=True)
         self._shown = rows
+
+    def _fitting(self, rows: dict[str, Cells]) -> tuple[str, ...]:
+        """The columns for which there is room."""
+        room = self.table.size.width
+        if self.KEEPS is None or not room:
+            return self.COLUMNS
+        found = 0
+        for i, column in enumerate(self.COLUMNS):
+            room -= 2 + max(cell_len(text) for text in (column, *(str(cells[i]) for cells in rows.values())))
+            if room < 0 and i >= self.KEEPS:
+                break
+            found += 1
+        return self.COLUMNS[:found]
 
     def _draw_again(self) -> None:
         """Have the rows drawn anew: the table keeps what it has drawn between their coming and its measuring them."""
@@ -88,7 +108,7 @@ class TableView(View):
         top = self.table.scroll_offset.y
         self.table.clear()
         for key, cells in rows.items():
-            self.table.add_row(*cells, key=key)
+            self.table.add_row(*cells[: len(self._columns)], key=key)
         if kept in rows:
             self.table.move_cursor(row=list(rows).index(kept), animate=False, scroll=False)
         self.table.scroll_to(y=top, animate=False)

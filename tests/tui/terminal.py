@@ -39,6 +39,17 @@ class Terminal:
         return self._do("capture-pane", "-p")
 
     @property
+    def styled_text(self) -> str:
+        """What is on the screen with its colours, as escape sequences that run on from line to line."""
+        return self._do("capture-pane", "-epN")
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Columns and rows."""
+        width, height = self._do("display", "-p", "#{pane_width} #{pane_height}").split()
+        return int(width), int(height)
+
+    @property
     def pid(self) -> int:
         """The process that runs in the terminal: the shell's child."""
         shell = int(self._do("display", "-p", "#{pane_pid}"))

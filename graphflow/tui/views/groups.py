@@ -241,7 +241,7 @@ class Groups(View):
     def _activity_row(self, activity: ActivityView, deed: str, is_dead: bool) -> Row:
         ink = self.ink
         place = _place(activity)
-        text = Text(f"     {activity.label}", style=ink.bad if is_dead else ink.text)
+        text = Text.assemble((f"     {activity.label}", ink.bad if is_dead else ink.text))
         if deed:
             text.append(f" {deed}", style=ink.dim)
         waits = concurrency.words(activity.wait, self._graph)

@@ -50,6 +50,7 @@ class Nodes(TableView):
     NAME = "nodes"
     DOC = "every node: its state, rate, cost and loop lag"
     COLUMNS = ("node", "state", "rate", "cpu", "mem", "lag", "up", "↻")
+    KEEPS = 2
     EMPTY = "no nodes yet"
     EVERY = 1.0
     ACTIONS = (

@@ -46,7 +46,7 @@ class Params(TableView):
 
     NAME = "params"
     DOC = "parameters: value, range, source; changed in place"
-    COLUMNS = ("parameter", "value", "type", "range", "from", "what it is")
+    COLUMNS = ("parameter", "value", "from", "range", "type", "what it is")
     EVERY = 0.5
     ACTIONS = (
         Action("change", "change", keys=("enter", "e"), verb="graphflow param set {node} {parameter} VALUE", hint=True),
@@ -140,9 +140,9 @@ class Params(TableView):
             found[key] = (
                 Text(row.name if self.about else f"  {row.name}", style=ink.dim if row.read_only else ink.text),
                 Text(plain_text(flow(row.value))[:60], style=ink.accent if source == "changed" else ink.strong),
-                Text(TYPE_NAMES[row.type] + (", read-only" if row.read_only else ""), style=ink.dim),
-                Text(row.limits, style=ink.dim),
                 Text(source, style=ink.accent if source == "changed" else ink.dim),
+                Text(row.limits, style=ink.dim),
+                Text(TYPE_NAMES[row.type] + (", read-only" if row.read_only else ""), style=ink.dim),
                 Text(row.doc, style=ink.dim),
             )
         return found
@@ -283,7 +283,8 @@ def _limits(declared: Any) -> str:
     if declared is None:
         return ""
     for limits in [*declared.integer_range, *declared.floating_point_range]:
-        return f"{limits.from_value:g} to {limits.to_value:g}"
+        low, high = f"{limits.from_value:g}", f"{limits.to_value:g}"
+        return f"{low} or more" if high == "inf" else f"{high} or less" if low == "-inf" else f"{low} to {high}"
     return plain_text(str(declared.additional_constraints))[:40]
 
 
