@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import click
@@ -18,6 +19,7 @@ from graphflow.cli.streaming import take_down
 from graphflow.cli.tree import verbs
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError, UsageFault
+from graphflow.graph.project import shown
 from graphflow.supervisor import rundir
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.rundir import GraphRun
@@ -149,7 +151,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
             ", ".join(f"{n} {'running' if state == 'ready' else state}" for state, n in row["nodes"].items()),
             output.ago(time.time() - row["began"]),
             ", ".join(row["consoles"]) or "none",
-            row["file"],
+            shown(Path(row["file"])),
         )
         for row in rows
     ]

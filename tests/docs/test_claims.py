@@ -13,13 +13,17 @@ import click
 import pytest
 
 import graphflow
+import graphflow.tui
 from graphflow import errors
 from graphflow.cli.main import cli
 from tests.conftest import PROJECT
 from tests.docs.test_docs import PAGES, blocks
 
-PUBLIC_MODULES = ("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.")
-"""What users import beside `graphflow` itself; `graphflow.qos` has ROS 2's named profiles."""
+PUBLIC_MODULES = (
+    *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos."),
+    *(f"graphflow.tui.{name}." for name in graphflow.tui.__all__),
+)
+"""What users import beside `graphflow` itself; `graphflow.qos` has ROS 2's named profiles, `tui` the views."""
 NODES = sorted((PROJECT / "nodes").rglob("*.py"))
 
 

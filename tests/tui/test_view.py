@@ -9,16 +9,20 @@ from textual.app import ComposeResult
 from textual.widgets import Static
 
 from graphflow.errors import GraphflowError
+from graphflow.msgs.sensor_msgs.msg import BatteryState
+from graphflow.testing import Graph
 from graphflow.tui.actions import Action
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
+from tests.conftest import PROJECT
+from tests.docs.test_docs import blocks
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Battery(View):
-    """As docs/console.md shows it."""
+    """Counts how often it is looked at."""
 
     NAME = "battery"
     DOC = "how full the battery is"
@@ -76,3 +80,22 @@ async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
         await s.prefix("o")
         await s.prefix("x")
         await s.until(lambda: Battery.ended)
+
+
+async def test_the_view_of_the_page(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What docs/console.md shows works: it waits for its topic, shows its messages, and its key acts."""
+    [example] = blocks(PROJECT / "docs" / "console.md", "python")
+    made: dict[str, Any] = {"__name__": "my_robot.views"}
+    exec(example.text, made)
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: made["Battery"])
+    async with stage(Content("battery", "/main"), graph=graph) as s:
+        await s.until("nobody publishes /main yet")
+        publisher = graph.publisher(BatteryState, "/main")
+        await s.until(lambda: s.view.tap.is_open)  # type: ignore[attr-defined]
+        await graph.settle()
+        publisher.publish(BatteryState(percentage=0.42))
+        await graph.settle()
+        await s.until("/main: 42 %")
+        assert "m its messages" in s.text
+        await s.press("m")
+        assert [str(p.content) for p in s.console.window.panes()] == ["battery /main", "echo /main"]

@@ -30,7 +30,7 @@ class Echo(View):
     ACTIONS = (
         Action("stream", "one after the other, or the latest", keys=("s",), hint=True),
         Action("pause", "pause", keys=("space",), hint=True),
-        Action("hz", "rate", keys=("h",), verb="graphflow topic hz {topic}", hint=True),
+        Action("hz", "rate", keys=("h",), hint=True),
         Action("plot", "plot", keys=("p",), hint=True),
         Action("copy", "copy the message", keys=("y",)),
     )

@@ -19,7 +19,7 @@ class Topics(TableView):
     EVERY = 1.0
     ACTIONS = (
         Action("echo", "echo", keys=("enter", "e"), verb="graphflow topic echo {topic}", hint=True),
-        Action("hz", "rate", keys=("h",), verb="graphflow topic hz {topic}", hint=True),
+        Action("hz", "rate", keys=("h",), hint=True),
         Action("plot", "plot", keys=("p",), hint=True),
         Action("info", "info", keys=("i",), verb="graphflow topic info -v {topic}", hint=True),
         Action("hidden", "hidden ones too", keys=("a",)),
