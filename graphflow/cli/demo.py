@@ -34,8 +34,9 @@ def demo() -> None:
 @click.argument("steps", nargs=-1, metavar="[STEP]...")
 @click.option("-l", "--list", "only_list", is_flag=True, help="Only list the steps.")
 @click.option("--no-console", is_flag=True, help="Print everything instead of opening the console.")
+@click.option("--from", "first", metavar="STEP", help="Begin with STEP and go on to the last.")
 @click.option("-y", "--yes", is_flag=True, help="Print everything, and do not ask before each step.")
-def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, yes: bool) -> int:
+def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, first: str | None, yes: bool) -> int:
     """Show eleven deadlocks and races, each explained as it happens and then fixed by a change to its graph file.
 
     In the console you end them yourself; it says what to press. Without a terminal, or with --no-console, what they
@@ -45,9 +46,11 @@ def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, yes: boo
     if only_list:
         output.lines(f"{step.name:16} {heading(graph_file(step.name, 'broken'))}" for step in DEADLOCKS)
         return exits.OK
-    for name in steps:
+    for name in (*steps, *([first] if first else [])):
         if name not in known:
             raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
+    if first:
+        steps = tuple(known)[list(known).index(first) :]
     from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 

@@ -35,7 +35,8 @@ def tour(steps: Sequence[Step]) -> int:
                 left = _visit(root, step, "fixed", where)
             if left != "next":
                 break
-    output.talk("the tour is over, and its graph is down; go on another time: graphflow demo deadlock STEP")
+    on = f"; go on another time: graphflow demo deadlock --from {step.name}" if left != "next" else ""
+    output.talk(f"the tour is over, and its graph is down{on}")
     return exits.FAILED if left == "failed" else exits.OK
 
 

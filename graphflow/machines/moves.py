@@ -42,14 +42,16 @@ def moves(deadlock: Deadlock, graph: WaitGraph) -> list[Move]:
 
 
 def _queues(deadlock: Deadlock, graph: WaitGraph) -> Iterator[QueueView]:
-    """Queues in the ring that wait for a named group which another handler holds."""
-    for name, edge in zip(deadlock.ring, deadlock.edges, strict=True):
+    """Queues in the ring that wait for a named group, of handlers that hold nothing there themselves.
+
+    One that does, because it calls itself in the end, would wait for its own earlier run in the new group, too.
+    """
+    holders = {(a.node, method_of(a.label)) for a in (graph.activities[name] for name in deadlock.ring)}
+    for edge in deadlock.edges:
         queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
         if queue is None or group is None or not group.name or edge.loop or queue.label.startswith("reply "):
             continue
-        holder = graph.activities[edge.to]
-        same = (queue.node, method_of(queue.label)) == (holder.node, method_of(holder.label))
-        if not same or name != edge.to:
+        if (queue.node, method_of(queue.label)) not in holders:
             yield queue
 
 

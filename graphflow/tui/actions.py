@@ -102,6 +102,14 @@ CONSOLE: dict[str, tuple[Action, ...]] = {
 }
 """The console's own actions by section, in the order of the help."""
 
+OPTION_KEYS = {
+    "inverted_exclamation_mark": "alt+1",
+    "trade_mark_sign": "alt+2",
+    "pound_sign": "alt+3",
+    "cent_sign": "alt+4",
+    "infinity": "alt+5",
+}
+"""What Textual makes of alt and a digit where the terminal has no better way to send it: a Mac's option keys."""
 _NAMES = {
     "percent_sign": "%",
     "quotation_mark": '"',

@@ -14,7 +14,7 @@ from textual.screen import Screen
 from textual.timer import Timer
 
 from graphflow.system import is_portable
-from graphflow.tui.actions import by_chord, console_actions, shown
+from graphflow.tui.actions import OPTION_KEYS, by_chord, console_actions, shown
 from graphflow.tui.bars import Hints, Status, WhichKey
 from graphflow.tui.deeds import Deeds
 from graphflow.tui.desk import Desk
@@ -211,11 +211,12 @@ class Console(Desk):
 
     def _takes(self, event: events.Key) -> bool:
         """Whether a key is the prefix, or follows it."""
+        self.hints.look(time.monotonic(), pressed=True)
         if self._chord_open:
             self._close_chord()
             if event.key == self.prefix:
                 return False  # twice: for what has the focus
-            action = self._chords.get(event.key)
+            action = self._chords.get(OPTION_KEYS.get(event.key, event.key))
             if action is not None:
                 self.call_later(self.deeds.do, action.name)
             elif event.key != "escape":

@@ -17,6 +17,8 @@ from graphflow.tui.actions import console_actions, shown
 
 MESSAGE_SECONDS = 6.0
 """How long a message stays in place of the hints."""
+SEEN_AFTER = 1.5
+"""Seconds after which a key takes it away."""
 
 
 class StateMark(NamedTuple):
@@ -67,17 +69,20 @@ class Hints(Bar):
         self._message = (text, ink, time.monotonic() + MESSAGE_SECONDS)
         self.refresh()
 
-    def look(self, now: float) -> None:
-        """Take a message down when its time is over."""
-        if self._message is not None and now > self._message[2]:
+    def look(self, now: float, *, pressed: bool = False) -> None:
+        """Take a message down when its time is over, or when it has been seen and a key is pressed."""
+        if self._message is not None and now > self._message[2] - (MESSAGE_SECONDS - SEEN_AFTER if pressed else 0.0):
             self._message = None
             self.refresh()
 
     def pieces(self, y: int, width: int) -> list[tuple[str, Style]]:
         ink = self.console_app.ink
         if self._message is not None:
-            text, name, _ = self._message
-            return [(" ", ink.text), (text.replace("\n", " "), getattr(ink, name))]
+            text, name = self._message[0].replace("\n", " "), self._message[1]
+            if len(text) > width - 1:
+                more = f" … {shown(self.console_app.prefix)} ~ shows all"
+                text = text[: max(0, width - 1 - len(more))] + more
+            return [(" ", ink.text), (text, getattr(ink, name))]
         found: list[tuple[str, Style]] = [(" ", ink.text)]
         for _, key, title in self._shown(width):
             found += [(key, ink.accent), (f" {title}  ", ink.text)]
@@ -89,7 +94,7 @@ class Hints(Bar):
         room = width - 1
         found = []
         for action in view.ACTIONS if view is not None else ():
-            if action.hint and action.keys:
+            if view.offers(action) and action.keys:
                 label = action.label or f"{shown(action.keys[0])} {action.title}"
                 key, _, title = label.partition(" ")
                 room -= len(key) + len(title) + 3

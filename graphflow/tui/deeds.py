@@ -32,7 +32,8 @@ class Deeds(PaneDeeds):
         live.want("concurrency")
         if live.concurrency is not None:
             found = len(live.concurrency.reports)
-            if found > app.deadlocks:
+            seen = any(frame.view.NAME in ("groups", "tour") for frame in app.workspace.visible_frames)
+            if found > app.deadlocks and not seen:
                 app.say(f"DEADLOCK found; {shown(app.prefix)} g shows it and how to end it", bad=True)
             app.deadlocks = found
 
@@ -77,6 +78,7 @@ class Deeds(PaneDeeds):
         """Hide the line for newcomers."""
         if self._app.welcome.display:
             self._app.welcome.put_away()
+            self._app.say(f"the line for newcomers is put away; {shown(self._app.prefix)} ? has all keys")
 
     def do_sessions(self) -> None:
         from graphflow.supervisor.rundir import running
@@ -97,13 +99,19 @@ class Deeds(PaneDeeds):
     # the graph
 
     def do_find(self) -> None:
-        from graphflow.tui.pickable import things
+        from graphflow.tui.pickable import parameters, things
 
         def picked(content: Content | None) -> None:
             if content is not None:
                 self.open_beside(content)
 
-        self._app.push_screen(Pick("Find in the graph", things(self._app.hub), "not connected yet"), picked)
+        pick: Pick = Pick("Find in the graph", things(self._app.hub), "not connected yet")
+        self._app.push_screen(pick, picked)
+
+        async def add_parameters() -> None:
+            pick.add(await parameters(self._app.hub))
+
+        self._app.spawn(add_parameters())
 
     def do_groups(self) -> None:
         self._app.did("graphflow waits")
@@ -174,13 +182,18 @@ class Deeds(PaneDeeds):
         self._app.say(f"{node} is {'muted' if node in muted else 'heard again'} in merged logs")
 
     def do_palette(self) -> None:
+        from graphflow.tui.pickable import contents
+
         app, view = self._app, self._app.focused_view
         mine = view.ACTIONS if view is not None else ()
         items = [Item(a.title, ", ".join(map(shown, a.keys)), (view, a.name)) for a in mine]
         items += [Item(a.title, keys_of(a, app.prefix), (self, a.name)) for a in console_actions()]
+        items += [Item(item.text, f"show: {item.detail}", item.value) for item in contents(app.hub)]
 
-        def picked(chosen: tuple[object, str] | None) -> None:
-            if chosen is not None:
+        def picked(chosen: tuple[object, str] | Content | None) -> None:
+            if isinstance(chosen, Content):
+                self.open_beside(chosen)
+            elif chosen is not None:
                 carry_out(*chosen)
 
         app.push_screen(Pick("Everything that can be done here", items), picked)

@@ -44,6 +44,10 @@ class Ask(ModalScreen[str | None]):
                     yield Button(f"[{choice.key}] {choice.word}".replace("[", r"\["), name=choice.key)
                 yield Button(r"\[esc] back", name="")
 
+    def on_mount(self) -> None:
+        """Enter, pressed by mistake, goes back."""
+        list(self.query(Button))[-1].focus()
+
     def on_button_pressed(self, event: Button.Pressed) -> None:
         self.dismiss(event.button.name or None)
 
@@ -122,10 +126,18 @@ class Pick(ModalScreen[Any]):
         options.clear_options()
         width = max((len(item.text) for item in self._found), default=0)
         dim = self.app.ink.dim  # type: ignore[attr-defined]
+        room = min(100, int(self.app.size.width * 0.95)) - 10
+        nothing = f"nothing here is called {wanted!r}" if wanted and self._items else self._empty
         options.add_options(
-            [Option(_line(item, width, dim)) for item in self._found] or [Option(self._empty, disabled=True)]
+            [Option(_line(item, width, room, dim)) for item in self._found] or [Option(nothing, disabled=True)]
         )
         options.highlighted = 0 if self._found else None
+
+    def add(self, items: Iterable[Item]) -> None:
+        """Offer more, as it becomes known."""
+        self._items += items
+        if self.is_mounted:
+            self._show(self.query_one(Input).value)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._show(event.value)
@@ -145,9 +157,10 @@ class Pick(ModalScreen[Any]):
             self.dismiss(self._found[event.option_index].value)
 
 
-def _line(item: Item, width: int, dim: Style) -> Text:
-    text = Text(item.text.ljust(width + 2), no_wrap=True, overflow="ellipsis")
-    return text.append(item.detail, style=dim)
+def _line(item: Item, width: int, room: int, dim: Style) -> Text:
+    text = Text(item.text.ljust(width + 2), no_wrap=True).append(item.detail, style=dim)
+    text.truncate(max(10, room), overflow="ellipsis")
+    return text
 
 
 class Note(ModalScreen[None]):

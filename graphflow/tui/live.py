@@ -20,6 +20,8 @@ from graphflow.introspect.concurrency import ConcurrencyReport
 from graphflow.introspect.numbers import Numbers
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import Deadlock, explained
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime.context import Context
@@ -61,6 +63,7 @@ class Live:
         """Why there is no graph to see."""
         self.numbers = Numbers()
         self.concurrency: ConcurrencyReport | None = None
+        self.deadlocks: list[Deadlock] = []
         self.processes: dict[str, ProcessToken] = {}
         """The graphflow processes of the domain, by session."""
         self.changes = 0
@@ -114,6 +117,14 @@ class Live:
         return self._nothing if self.context is None else self.context.cache
 
     @property
+    def stuck_nodes(self) -> set[str]:
+        """The nodes in the rings that were found."""
+        if self.concurrency is None:
+            return set()
+        activities = self.concurrency.graph.activities
+        return {activities[name].node for deadlock in self.deadlocks for name in deadlock.ring}
+
+    @property
     def node(self) -> Node | None:
         """The console's own hidden node, once it is in the graph."""
         return self._node
@@ -130,7 +141,8 @@ class Live:
                 replies = await self._ask(NUMBERS)
                 self.numbers.take(replies, time.monotonic())
             if "concurrency" in wanted:
-                self.concurrency = concurrency.read(await self._ask(WAITS))
+                self.concurrency = found = concurrency.read(await self._ask(WAITS))
+                self.deadlocks = explained(found.graph, deadlocked(found.graph)) if found.reports else []
             await asyncio.sleep(max(0.1, LOOK_EVERY - (time.monotonic() - now)) if wanted else 0.1)
 
     async def _ask(self, what: str) -> list[bytes]:

@@ -54,6 +54,7 @@ class PaneDeeds:
         if (room.width >= 60 or room.height >= 16) and any(self._split(axis, content) for axis in axes):
             return
         self.open_window(content)
+        app.say(f"opened in a window of its own; {shown(app.prefix)} l goes back")
 
     def open_window(self, content: Content, name: str = "") -> None:
         """Show something in a window of its own, or go to the one that has it."""
@@ -144,7 +145,13 @@ class PaneDeeds:
             self._app.say("nothing has been copied yet")
 
     def do_change_view(self) -> None:
-        self._pick_view("Show in this pane", lambda c: self._app.workspace.replace_view(self._app.window.focused, c))
+        self._pick_view("Show in this pane", self._replace_view)
+
+    def _replace_view(self, content: Content) -> None:
+        window = self._app.window
+        if window.name == window.pane(window.focused).content.view:  # a name that nobody gave
+            window.name = content.view
+        self._app.workspace.replace_view(window.focused, content)
 
     # windows
 

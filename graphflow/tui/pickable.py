@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import TYPE_CHECKING
+
+from graphflow.errors import GraphflowError
 from graphflow.graph.console import VIEWS, known_views
 from graphflow.names import is_hidden
 from graphflow.tui.dialogs import Item
@@ -9,6 +13,13 @@ from graphflow.tui.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import describe
 from graphflow.wire.liveliness import Kind
+
+if TYPE_CHECKING:
+    from graphflow.introspect.view import View as Graph
+
+NODES = 100
+"""Nodes that are asked for their parameters."""
+ANSWER_LIMIT = 1.0
 
 
 def contents(hub: Hub) -> list[Item]:
@@ -34,4 +45,28 @@ def things(hub: Hub) -> list[Item]:
             found.append(Item(f"call {entity.name}", entity.type, Content("calls", entity.name)))
     for action, types in cache.actions().items():
         found.append(Item(f"goals {action}", ", ".join(types), Content("goals", action)))
+    return found
+
+
+def _names(graph: Graph, node: str) -> list[str]:
+    from graphflow.introspect.parameters import RemoteParameters
+
+    return RemoteParameters(graph, node, ANSWER_LIMIT).names()
+
+
+async def parameters(hub: Hub) -> list[Item]:
+    """The parameters of all nodes that answer, each with the view of its node's."""
+    live = hub.live
+    if live is None or live.context is None:
+        return []
+    found: list[Item] = []
+    servers = {e.node_name for e in live.cache.endpoints(Kind.SERVICE) if e.name.endswith("/list_parameters")} & set(
+        hub.nodes()
+    )
+    for node in sorted(servers)[:NODES]:
+        try:
+            names = await live.ask(partial(_names, node=node))
+        except GraphflowError:
+            continue  # it is missing from a list of what can be found
+        found += [Item(f"param {name}", node, Content("params", node)) for name in names]
     return found

@@ -76,6 +76,10 @@ class View(Widget):
         """End what runs in the view, as Ctrl-C does; returns whether anything did."""
         return False
 
+    def offers(self, action: Action) -> bool:
+        """Whether the bottom line should show an action now."""
+        return action.hint
+
     def chosen(self) -> dict[str, str]:
         """What is chosen in the view, for commands: `{"node": "/turtlesim"}`."""
         return {}

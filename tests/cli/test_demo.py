@@ -54,6 +54,19 @@ def test_a_step_is_shown_broken_and_fixed(machine: Machine, monkeypatch: pytest.
     assert "    event_fixed is at work\n" in text
 
 
+def test_going_on_from_a_step(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It and those after it."""
+    ran: list[str] = []
+
+    def run(file: Path, seconds: float) -> Iterator[str]:
+        ran.append(file.stem)
+        yield ""
+
+    monkeypatch.setattr(demo, "_run", run)
+    machine.look("demo", "deadlock", "--from", "arrival_race")
+    assert ran == ["arrival_race_broken", "arrival_race_fixed", "arrival_broken", "arrival_fixed"]
+
+
 GRAPH = """\
 import signal, sys, threading
 ended = threading.Event()

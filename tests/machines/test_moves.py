@@ -48,6 +48,20 @@ def test_where_no_move_helps(graph: WaitGraph) -> None:
     assert found(graph)[1] == []
 
 
+def test_a_handler_that_calls_itself_is_not_moved() -> None:
+    """In its new group it would wait for its own earlier run again."""
+    graph = WaitGraph(
+        {
+            "tick": ActivityView("tick", "timer tick", "/a", (), Call("0", "/a/fact")),
+            "three": ActivityView("three", "service fact", "/a", ("ga",), Call("1", "/a/fact"), serves="0"),
+            "two": ActivityView("two", "service fact", "/a", ("ga",), Call("2", "/a/fact"), serves="1"),
+        },
+        {"ga": GroupView("ga", "main", "/a", limit=2)},
+        {"q": QueueView("q", "service fact", "/a", ("ga",), ("2",), 1)},
+    )
+    assert found(graph)[1] == []
+
+
 def test_a_move_that_leaves_the_ring_is_not_offered() -> None:
     """The handler would go on and wait for the same again."""
     graph = ring(QueueView("q", "service reset", "/a", ("ga", "gb"), ("2",), 1))

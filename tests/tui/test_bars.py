@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
 
 from graphflow.machines.process import State
-from graphflow.tui.bars import MARKS
+from graphflow.tui.bars import MARKS, SEEN_AFTER
 from graphflow.tui.panes import Content
 from tests.tui.stage import stage
 
@@ -76,3 +77,16 @@ async def test_a_supervisor_that_died() -> None:
         supervision.is_lost = True
         await s.look()
         assert "✖ supervisor gone" in s.text
+
+
+async def test_a_message_that_is_too_long() -> None:
+    """It says where the rest is; a key takes it away once it has been seen."""
+    async with stage(size=(60, 20)) as s:
+        s.console.say("word " * 30)
+        await s.look()
+        assert s.text.split("\n")[-2].endswith("… ^b ~ shows all")
+        await s.press("down")
+        assert "word word" in s.text
+        s.console.hints.look(time.monotonic() + SEEN_AFTER, pressed=True)
+        await s.look()
+        assert "word word" not in s.text

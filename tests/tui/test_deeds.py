@@ -8,6 +8,7 @@ from graphflow.testing import Graph
 from graphflow.tui.actions import CONSOLE, console_actions
 from graphflow.tui.dialogs import Ask, Note, Pick
 from graphflow.tui.panes import Content
+from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -74,6 +75,32 @@ async def test_the_palette_does_everything() -> None:
         await s.type("split, new pane on the right")
         await s.press("enter")
         assert "prompt" in [p.content.view for p in s.console.window.panes()]
+
+
+async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -> None:
+    """Views in the menu; parameters among what is found; and what is called by no name of the graph says so."""
+    await graph.start(Talker())
+    async with stage(Content("nodes"), graph=graph) as s:
+        await s.press("ctrl+p")
+        await s.type("nodes and topics as boxes")
+        await s.press("enter")
+        await s.until(lambda: str(s.view.content) == "graph")
+        await s.press("ctrl+f")
+        await s.type("zzz")
+        assert "nothing here is called 'zzz'" in s.text
+        await s.press("ctrl+u")
+        await s.type("shout")
+        await s.until("param shout")
+        await s.press("enter")
+        await s.until(lambda: str(s.view.content) == "params /talker")
+
+
+async def test_alt_and_a_digit_as_old_terminals_send_it() -> None:
+    """Textual takes it for what a Mac's option key types."""
+    async with stage(Content("nodes")) as s:
+        await s.prefix("percent_sign")
+        await s.prefix("trade_mark_sign")
+        assert s.console.window.layout == "even-vertical"
 
 
 async def test_the_prefix_itself() -> None:

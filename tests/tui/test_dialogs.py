@@ -11,9 +11,11 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
-@pytest.mark.parametrize(("keys", "answer"), [(["d"], "d"), (["s"], "s"), (["escape"], None), (["down", "enter"], "s")])
+@pytest.mark.parametrize(
+    ("keys", "answer"), [(["d"], "d"), (["s"], "s"), (["escape"], None), (["up", "enter"], "s"), (["enter"], None)]
+)
 async def test_a_question(keys: list[str], answer: str | None) -> None:
-    """Answered by a key, by a button, or not at all."""
+    """Answered by a key, by a button, or not at all; enter by mistake goes back."""
     async with stage() as s:
         answers: list[str | None] = []
         s.console.push_screen(

@@ -26,6 +26,8 @@ from graphflow.wire.liveliness import Entity, Kind
 
 BOXES = 120
 """Boxes that are laid out; a larger graph is collapsed by its namespaces first."""
+SIDEWAYS = 20
+"""Columns that one press of an arrow key scrolls."""
 _EVERYWHERE = ("/rosout", "/parameter_events", "/clock")
 """Topics that every node has: they would be in every picture."""
 
@@ -87,7 +89,6 @@ def box_of(node: str, collapsed: Iterable[str]) -> str:
 class Boxes(Lines):
     """The drawn graph, which scrolls both ways."""
 
-    DEFAULT_CSS = "Boxes { overflow-x: auto; scrollbar-size-horizontal: 1; }"
     wide = 0
 
     @property
@@ -109,6 +110,8 @@ class Graph(View):
         Action("previous_box", "box before", keys=("N",)),
         Action("open_box", "open it", keys=("enter",), hint=True),
         Action("collapse", "collapse its namespace, or all back", keys=("space",), hint=True),
+        Action("sideways:-1", "to the left", keys=("left", "h"), hint=True, label="←→ sideways"),
+        Action("sideways:1", "to the right", keys=("right", "l")),
         Action("everything", "unconnected topics too", keys=("a",), hint=True),
         Action("mermaid", "copy as Mermaid", keys=("M",)),
     )
@@ -134,7 +137,8 @@ class Graph(View):
     @property
     def note(self) -> str:
         bad = sum(arrow.is_bad for arrow in self._picture.arrows)
-        return f"{len(self._picture.nodes)} nodes{f', {bad} misfits' if bad else ''}"
+        more = ", ←→ more" if self._boxes.wide > self._boxes.size.width > 0 else ""
+        return f"{len(self._picture.nodes)} nodes{f', {bad} misfits' if bad else ''}{more}"
 
     def chosen(self) -> dict[str, str]:
         if self._chosen in self._picture.topics:
@@ -172,7 +176,7 @@ class Graph(View):
             return
         parts = {n: Box((n,)) for n in made.nodes} | {t: Box(tuple(labels[t].split("\n")), False) for t in made.topics}
         self._drawing = draw(parts, ((arrow.source, arrow.target) for arrow in made.arrows))
-        boxes.wide = max((len(row) for row in self._drawing.rows), default=0)
+        boxes.wide = max((sum(len(cell.text) for cell in row) for row in self._drawing.rows), default=0)
         boxes.replace(_rows(self._drawing, made, self._chosen, ink))
         boxes.scroll_to(x=left, y=top, animate=False, immediate=True)
 
@@ -194,6 +198,9 @@ class Graph(View):
 
     def do_previous_box(self) -> None:
         self._step(-1)
+
+    def do_sideways(self, step: str) -> None:
+        self._boxes.scroll_relative(x=int(step) * SIDEWAYS, animate=False, immediate=True)
 
     def do_open_box(self) -> None:
         if self._chosen in self._picture.topics:

@@ -17,8 +17,7 @@ from graphflow.introspect import concurrency
 from graphflow.introspect.view import View as Graph
 from graphflow.machines.explain import explanation, group_of, title, wanted
 from graphflow.machines.moves import Move, moves
-from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import Deadlock, explained
+from graphflow.machines.rings import Deadlock
 from graphflow.machines.wait_graph import FREE, ActivityView, GroupView, WaitGraph
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
@@ -89,7 +88,9 @@ class Groups(View):
     @property
     def note(self) -> str:
         if self._deadlocks:
-            return f"✖ {len(self._deadlocks)} DEADLOCK{'S' if len(self._deadlocks) > 1 else ''}, f ends it"
+            return f"✖ {len(self._deadlocks)} DEADLOCK{'S' if len(self._deadlocks) > 1 else ''}" + (
+                ", f ends it" if self._moves else ""
+            )
         waiting = sum(a.wait is not FREE for a in self._graph.activities.values())
         return f"{waiting} waiting"
 
@@ -106,9 +107,11 @@ class Groups(View):
             return
         self._graph = report.graph
         before = len(self._deadlocks)
-        self._deadlocks = explained(report.graph, deadlocked(report.graph)) if report.reports else []
+        self._deadlocks = live.deadlocks
         self._moves = [move for d in self._deadlocks for move in moves(d, report.graph)]
-        if before and not self._deadlocks and self._moved:
+        if self._deadlocks:
+            self._unfrozen = ""
+        elif before and self._moved:
             self._unfrozen = "It moves again."
         kept = self._lines.cursor
         rows = [*self._deadlock_rows(), *self._mended_rows(), *self._group_rows(report)]
@@ -139,7 +142,7 @@ class Groups(View):
                 yield Row(Text(f"     $ {move.command}", style=ink.dim))
                 yield Row(Text(f"     in the graph file: {move.yaml}", style=ink.dim))
             else:
-                yield Row(Text("   no move of a handler ends it; what does:", style=ink.warn))
+                yield Row(Text("   no handler that could be moved now would end it; what does:", style=ink.warn))
                 _, _, fixes = explanation(deadlock, graph).partition("Any one of these ends it:\n")
                 for line in (fixes or "  see the report: ?").split("\n"):
                     yield Row(Text(f"   {plain_text(line)}", style=ink.text))
@@ -255,9 +258,17 @@ class Groups(View):
 
     # actions
 
+    def offers(self, action: Action) -> bool:
+        has = {"fix": self._moves, "write": self._moved}
+        return action.hint and bool(has.get(action.name, True))
+
     def do_fix(self) -> None:
         if not self._moves:
-            self.say("no deadlock that moving a handler would end")
+            self.say(
+                "no handler that could be moved now would end it; what does stands below the ring"
+                if self._deadlocks
+                else "there is no deadlock"
+            )
             return
         move = self._moves[0]
         self.work(lambda: self._move(move), group="move")

@@ -14,6 +14,9 @@ from graphflow.tui.hub import Hub
 from graphflow.tui.panes import Content
 from graphflow.tui.table import FIND, Cells, TableView
 
+WORDS = {"foreign": "not ours", "ready": "running"}
+"""States of which users know another word."""
+
 
 def ago(seconds: float) -> str:
     """A span in two units at most: `12s`, `3m04s`, `2h05m`."""
@@ -75,6 +78,7 @@ class Nodes(TableView):
         supervision, live, ink = self.hub.supervision, self.hub.live, self.ink
         if live is not None:
             live.want("numbers")
+        dead = live.stuck_nodes if live is not None else set()
         known = supervision.nodes if supervision is not None else {}
         pids = self._pids_of_others()
         found: dict[str, Cells] = {}
@@ -87,8 +91,8 @@ class Nodes(TableView):
             pid = row["pid"] if row is not None else pids.get(name)
             is_up = row is None or state in ("ready", "starting", "stopping", "restarting")
             cost = costs.get(pid) if pid is not None and is_up else None
-            mark = MARKS[state]
-            word = "not ours" if state == "foreign" else "running" if state == "ready" else state
+            mark = MARKS["failed" if name in dead else state]
+            word = "deadlock" if name in dead else WORDS.get(state, state)
             rate = live.numbers.fastest(name) if live is not None and is_up else None
             lag = live.numbers.lags.get(name) if live is not None and is_up else None
             found[name] = (

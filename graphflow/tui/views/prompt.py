@@ -48,7 +48,7 @@ class Prompt(View):
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
         self._lines = Lines(10_000, wraps=True)
-        self._input = Input(placeholder="topic list", classes="line")
+        self._input = Input(placeholder="a command, such as: topic list", classes="line")
         self._completer = Completer(hub)
         self._runs_at_once = bool(self.options.pop("run", False))
         self._process: asyncio.subprocess.Process | None = None

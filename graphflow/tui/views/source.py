@@ -33,6 +33,7 @@ class Source(View):
     ACTIONS = (
         Action("edit", "open in $EDITOR", keys=("e",), hint=True),
         Action("back", "back to the line", keys=("b",), hint=True),
+        Action("close", "close", keys=("escape",), hint=True),
         Action("copy", "copy file:line", keys=("y",)),
     )
 
@@ -87,6 +88,9 @@ class Source(View):
             return
         at = (self._lines.cursor or 0) + 1
         edit(self, self._file, at)
+
+    def do_close(self) -> None:
+        self.console.deeds.do_close_pane()
 
     def do_copy(self) -> None:
         place = f"{self._file or self.about}:{(self._lines.cursor or 0) + 1}"

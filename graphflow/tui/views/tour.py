@@ -44,14 +44,15 @@ class Tour(Groups):
         text = Text(f"{self.options.get('title', '')}\n\n", style=ink.strong)
         said, keys = self._advice()
         text.append(f"{said}\n", style=ink.text)
-        for key, what in keys:
+        for key, what in [*keys, ("q", "leave the tour; its graph goes down")]:
             text.append(f"  {key}", style=ink.accent)
             text.append(f"  {what}\n", style=ink.text)
         self._guide.update(text)
 
     def _advice(self) -> tuple[str, list[tuple[str, str]]]:
         """What there is to see now, and the keys that lead on."""
-        go_on = ("n", "the next example")
+        is_last = str(self.options.get("step", "")).partition(" ")[0].partition("/")[::2]
+        go_on = ("n", "end the tour" if is_last[0] == is_last[1] else "the next example")
         repaired = ("n", "the same graph, repaired in its file")
         fixed = str(self.options.get("fixed", ""))
         if fixed:
@@ -62,10 +63,13 @@ class Tour(Groups):
                 ("enter", "look at the line of source"),
             ]
         if self._deadlocks:
-            return "It stands still. The ring below says why. To move a handler would not help here.", [
-                ("enter", "look at the line of source"),
-                repaired,
-            ]
+            return (
+                "It stands still. The ring below says why. What runs keeps its slot: no move ends it now.",
+                [
+                    ("enter", "look at the line of source"),
+                    repaired,
+                ],
+            )
         if self._unfrozen and self._moved:
             return "It moves again; see the log. The change lasts until the graph stops.", [
                 ("w", "keep it: write it into the graph file"),

@@ -81,3 +81,15 @@ async def test_the_drawing_and_its_keys(graph: Graph) -> None:
         assert s.console.clipboard_text.count("-->") == 2
         await s.press("enter")
         assert str(s.view.content) == "echo /chatter"
+
+
+async def test_what_is_wider_than_the_pane(graph: Graph) -> None:
+    """It says so, and scrolls sideways."""
+    await graph.start(Talker(), Listener())
+    async with stage(Content("graph"), graph=graph, size=(34, 30)) as s:
+        await s.until("←→ more")
+        assert "/listener" not in s.text
+        await s.press("right", "right")
+        await s.until("/listener")
+        await s.press("left", "left")
+        await s.until("/talker")

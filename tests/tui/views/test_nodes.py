@@ -6,6 +6,9 @@ import os
 
 import pytest
 
+from graphflow.introspect.concurrency import ConcurrencyReport
+from graphflow.machines.rings import Deadlock
+from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.nodes import Costs, ago
@@ -110,3 +113,25 @@ def test_costs() -> None:
     assert found is not None
     assert found[1] > 1e6
     assert costs.look(2**30) is None
+
+
+async def test_columns_go_where_there_is_no_room_for_them() -> None:
+    """A number is whole, or not there."""
+    async with stage(Content("nodes"), size=(32, 20)) as s:
+        await s.until("● running")
+        head = s.text.split("\n")[1]
+        assert head.split() == ["node", "state", "rate"]
+        await s.pilot.resize_terminal(100, 20)
+        await s.until("cpu")
+
+
+async def test_a_node_in_a_ring_says_so(graph: Graph) -> None:
+    """However well its process runs."""
+    async with stage(Content("nodes"), graph=graph) as s:
+        live = s.console.hub.live
+        assert live is not None
+        activity = ActivityView("a", "timer tick", "/talker", ("g",), Call("1", "/x"))
+        live.concurrency = ConcurrencyReport(WaitGraph({"a": activity}), ["a ring"], {})
+        live.deadlocks = [Deadlock(("a",), (), (), is_likely=False)]
+        live.want = lambda what: None  # type: ignore[method-assign]
+        await s.until("✖ deadlock")

@@ -25,6 +25,16 @@ async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
         assert s.console.clipboard_text == f"{file}:200"
 
 
+async def test_escape_closes_it(tmp_path: Path) -> None:
+    """And goes back to what it was opened from."""
+    (tmp_path / "a.py").write_text("x = 1\n")
+    async with stage(Content("nodes")) as s:
+        s.view.open("source", f"{tmp_path / 'a.py'}:1")
+        await s.until("x = 1")
+        await s.press("escape")
+        await s.until(lambda: [p.content.view for p in s.console.window.panes()] == ["nodes"])
+
+
 async def test_a_file_that_is_not_there() -> None:
     """It says so."""
     async with stage(Content("source", "nowhere.py:3")) as s:
