@@ -91,6 +91,16 @@ class Boxes(Lines):
 
     wide = 0
 
+    def action_scroll_left(self) -> None:
+        self.sideways(-1)
+
+    def action_scroll_right(self) -> None:
+        self.sideways(1)
+
+    def sideways(self, step: int) -> None:
+        """Scroll by so many steps to the right."""
+        self.scroll_relative(x=step * SIDEWAYS, animate=False, immediate=True)
+
     @property
     def _widest(self) -> int:
         return max(self.wide, super()._widest)
@@ -200,7 +210,7 @@ class Graph(View):
         self._step(-1)
 
     def do_sideways(self, step: str) -> None:
-        self._boxes.scroll_relative(x=int(step) * SIDEWAYS, animate=False, immediate=True)
+        self._boxes.sideways(int(step))
 
     def do_open_box(self) -> None:
         if self._chosen in self._picture.topics:
