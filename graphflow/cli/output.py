@@ -9,7 +9,9 @@ from typing import Any
 
 
 def is_terminal() -> bool:
-    """Whether there is a terminal on which a console can be opened."""
+    """Whether there is a terminal on which a console can be opened; a browser that Textual serves counts as one."""
+    if "web_driver" in os.environ.get("TEXTUAL_DRIVER", ""):
+        return True
     return sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM", "") not in ("", "dumb")
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("TEXTUAL_FPS", "20")  # Textual reads it when it is imported
+os.environ["TEXTUAL_FPS"] = "20"  # Textual reads it when it is imported
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient

@@ -3,11 +3,33 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
+from urllib.parse import urlsplit
 
+from aiohttp import web
 from textual_serve.server import Server
 
 HOST = "127.0.0.1"
+
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class OwnPageServer(Server):
+    """A server that only its own page can talk to: there is no password, and any page in the browser may try."""
+
+    async def _make_app(self) -> web.Application:
+        app: web.Application = await super()._make_app()
+        hosts = {f"{name}:{self.port}" for name in (HOST, "localhost")}
+
+        @web.middleware
+        async def refuse_others(request: web.Request, handler: Handler) -> web.StreamResponse:
+            origin = request.headers.get("Origin")
+            if request.host not in hosts or (origin is not None and urlsplit(origin).netloc not in hosts):
+                raise web.HTTPForbidden(text="this console can be used from its own page only")
+            return await handler(request)
+
+        app.middlewares.append(refuse_others)
+        return app
 
 
 def serve(words: Sequence[str], port: int) -> None:
@@ -16,4 +38,4 @@ def serve(words: Sequence[str], port: int) -> None:
     Args:
         words: The command.
     """
-    Server(shlex.join(words), host=HOST, port=port, title="graphflow").serve()
+    OwnPageServer(shlex.join(words), host=HOST, port=port, title="graphflow").serve()

@@ -20,6 +20,6 @@ def test_it_listens_on_this_machine_only(monkeypatch: pytest.MonkeyPatch) -> Non
         def serve(self) -> None:
             """Nobody comes."""
 
-    monkeypatch.setattr(web, "Server", Server)
+    monkeypatch.setattr(web, "OwnPageServer", Server)
     web.serve(["python", "-m", "graphflow", "attach", "--graph", "a b"], 8147)
     assert made == [("python -m graphflow attach --graph 'a b'", "127.0.0.1", 8147)]
