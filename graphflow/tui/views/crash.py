@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sysconfig
 import time
 from collections.abc import Iterator
 
@@ -11,6 +10,7 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
 
+from graphflow.graph.project import INSTALLED_DEMOS, PACKAGE
 from graphflow.tui.actions import Action
 from graphflow.tui.bars import MARKS
 from graphflow.tui.hub import Hub
@@ -22,6 +22,8 @@ from graphflow.tui.views.nodes import ago
 from graphflow.tui.views.source import edit, find_file
 
 LAST_LINES = 20
+_LIBRARY = re.compile(r"/lib\d*/python3|/(site|dist)-packages/")
+"""What is in the path of every file that is not the user's own."""
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
 
 
@@ -73,7 +75,8 @@ class Crash(View):
         yield Text.assemble((f"{mark.glyph} {self.about} {state}", getattr(ink, mark.ink)), (f", {since} ago", ink.dim))
         if row["detail"]:
             yield Text(f"  {row['detail']}", style=ink.bad)
-        yield Text(f"  process {row['pid']}, restarted {row['restarts'] or 'never'}", style=ink.dim)
+        process = f"process {row['pid']}" if row["pid"] else "no process"
+        yield Text(f"  {process}, restarts: {row['restarts'] or 'none'}", style=ink.dim)
         yield Text(f"  {row['log']}", style=ink.dim)
         records = [r for r in self.hub.logs.since(0) if r.node == self.about]
         trace = traceback_of(records)
@@ -134,8 +137,9 @@ def _is_own(text: str) -> bool:
     found = _FRAME.search(text + ", line 0")
     if found is None:
         return False
-    library = sysconfig.get_paths()["purelib"], sysconfig.get_paths()["stdlib"]
-    return not found[1].startswith((*library, "<")) and "/graphflow/" not in found[1].replace("/graphflow/demos/", "/")
+    path = found[1]
+    is_graphflow = path.startswith(f"{PACKAGE}/") and not path.startswith(f"{INSTALLED_DEMOS}/")
+    return not (is_graphflow or path.startswith("<") or _LIBRARY.search(path))
 
 
 VIEW = Crash

@@ -32,6 +32,7 @@ async def test_the_evidence() -> None:
         assert "✖ /talker failed" in s.text
         assert "exit code 70" in s.text
         assert '▌   File "/home/me/lab/nodes/arm.py", line 41, in tick' in s.text
+        assert '▌   File "/usr/lib' not in s.text
         assert "bye" in s.text
         await s.press("r")
         assert s.asked == [{"do": "restart", "node": "/talker"}]
