@@ -86,7 +86,7 @@ def _rows(run: GraphRun) -> dict[str, Any]:
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a; else GRAPHFLOW_PREFIX, or ctrl+b.")
 @reach_options
 def attach(graph: str | None, name: str | None, prefix: str | None, connect: tuple[str, ...], net: str | None) -> int:
-    """Open the console on a running graph. Leaving it (ctrl+b d) stops nothing.
+    """Open the console on a running graph, the newest if there are several. Leaving it (ctrl+b d) stops nothing.
 
     Where no graph of yours runs, it shows the nodes that others have started in the domain, such as a robot's with
     --connect; without control of their processes.
@@ -95,12 +95,18 @@ def attach(graph: str | None, name: str | None, prefix: str | None, connect: tup
     if not output.is_terminal():
         raise UsageFault("the console needs a terminal; without one, see graphflow ps, logs -f and waits")
     try:
-        run = rundir.choose(name or graph)
+        run = _choose(name or graph)
     except SupervisorError as error:
         if error.exit_code != exits.NOT_RUNNING or name or graph or not _anybody(bool(connect or net)):
             raise
         return show(None, domain_id(), prefix)
     return show(run, run.domain, prefix)
+
+
+def _choose(name: str | None) -> GraphRun:
+    """The run to attach to: where several run and none is named, the newest, as in tmux."""
+    runs = rundir.running()
+    return max(runs, key=lambda run: run.began) if name is None and len(runs) > 1 else rundir.choose(name)
 
 
 def _anybody(reaches_out: bool) -> bool:

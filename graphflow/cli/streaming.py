@@ -182,7 +182,10 @@ class _Stream:
         for command, what in hints.items():
             output.talk(f"  {command:32}  {what}")
         output.talk(f"Logs are in {run['logs']}")
-        output.talk("Stop with: graphflow down" if self._detach else "Stop with Ctrl-C.")
+        if self._detach:
+            output.talk("Open the console with: graphflow attach\nStop with: graphflow down")
+        else:
+            output.talk("Stop with Ctrl-C.")
         output.talk("")
 
 

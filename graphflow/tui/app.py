@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import sys
 import time
 from typing import Any, ClassVar
 
@@ -13,7 +14,7 @@ from textual.binding import Binding
 from textual.screen import Screen
 from textual.timer import Timer
 
-from graphflow.system import is_portable
+from graphflow.supervisor.rundir import running
 from graphflow.tui.actions import OPTION_KEYS, by_chord, console_actions, shown
 from graphflow.tui.bars import Hints, Status, WhichKey
 from graphflow.tui.deeds import Deeds
@@ -77,6 +78,7 @@ class Console(Desk):
         self.welcome.display = welcome
         self._chords = by_chord()
         self._chord_open = False
+        self._held: list[events.Key] = []
         self._which_timer: Timer | None = None
         self._beats = 0
         self.register_theme(DARK)
@@ -101,7 +103,7 @@ class Console(Desk):
 
     def on_mount(self) -> None:
         self.ink = make_ink(self)
-        if not (self.is_headless or self.is_web or is_portable()):
+        if not (self.is_headless or self.is_web or sys.platform == "win32"):
             self._hear_signals()
         self.theme_changed_signal.subscribe(self, lambda _: self._new_ink())
         self.set_interval(PULSE, self._pulse)
@@ -123,10 +125,13 @@ class Console(Desk):
 
     def _begin(self) -> None:
         """The first screen is drawn: now what takes longer."""
+        others = len(running()) - 1 if self.hub.supervision is not None else 0
+        if others > 0:
+            self.say(f"{others} more running; {shown(self.prefix)} s goes to another graph")
         if self.hub.supervision is not None:
-            self.spawn(self.hub.supervision.follow())
+            self.spawn(self.hub.supervision.follow)
         if self.hub.live is None:
-            self.spawn(self._join())
+            self.spawn(self._join)
 
     async def _join(self) -> None:
         from graphflow.tui.live import Live
@@ -205,9 +210,18 @@ class Console(Desk):
     # keys
 
     async def on_event(self, event: events.Event) -> None:
-        if isinstance(event, events.Key) and not event.is_forwarded and self._takes(event):
-            return
+        if isinstance(event, events.Key) and not event.is_forwarded:
+            if self.workspace.focus_is_due and len(self.screen_stack) == 1:
+                self._held.append(event)  # it is meant for the pane that is about to have the focus
+                return
+            if self._takes(event):
+                return
         await super().on_event(event)
+
+    def on_workspace_focus_arrived(self) -> None:
+        held, self._held = self._held, []
+        for event in held:
+            self.post_message(event)
 
     def _takes(self, event: events.Key) -> bool:
         """Whether a key is the prefix, or follows it."""

@@ -111,7 +111,7 @@ class Deeds(PaneDeeds):
         async def add_parameters() -> None:
             pick.add(await parameters(self._app.hub))
 
-        self._app.spawn(add_parameters())
+        self._app.spawn(add_parameters)
 
     def do_groups(self) -> None:
         self._app.did("graphflow waits")

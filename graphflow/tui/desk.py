@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from typing import Any
+from collections.abc import Awaitable, Callable
 
 from textual.app import App
 from textual.timer import Timer
@@ -56,7 +56,7 @@ class Desk(App[str]):
         self._keep_timer: Timer | None = None
         self._asked_to_stop = 0.0
 
-    def spawn(self, work: Any) -> None:
+    def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
         """Run something until the console is left."""
         self.run_worker(work, group=LASTING)
 

@@ -126,7 +126,8 @@ class View(Widget):
             except GraphflowError as error:
                 self.say(str(error), bad=True)
 
-        self.run_worker(guarded(), group=group or "work", exclusive=bool(group), exit_on_error=True)
+        run: Callable[[], Awaitable[None]] = guarded
+        self.run_worker(run, group=group or "work", exclusive=bool(group), exit_on_error=True)
 
     def action_act(self, name: str) -> None:
         carry_out(self, name)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _NO_MARGIN = Spacing()
+TRIES, TRY_AGAIN_AFTER = 20, 0.02
+"""How often, and after how many seconds, a pane that is not there yet is given the focus again."""
 
 
 class Title(Widget):
@@ -125,14 +127,17 @@ class Workspace(Widget):
         make_view: Makes the view of a pane.
     """
 
+    class FocusArrived(Message):
+        """The pane that should have the focus has it, or cannot take it."""
+
     def __init__(self, windows: Windows, make_view: Callable[[object], View]) -> None:
         super().__init__()
         self.windows = windows
         self.frames: dict[int, Frame] = {}
         self._make_view = make_view
         self._dragged: Divider | None = None
-        self._focus_is_due = False
-        """Whether the focus is on its way: what is told of where it was counts no more."""
+        self.focus_is_due = False
+        """Whether the focus is on its way: what is told of where it was counts no more, and keys wait."""
         self._places = _Places(self)
 
     @property
@@ -171,9 +176,9 @@ class Workspace(Widget):
             frame.title_line.refresh_if_changed()
         self._place_again()
         if focus:
-            self._focus_is_due = True
+            self.focus_is_due = True
             self._focus()
-            self.call_after_refresh(self._focus_now)  # a new pane can take it only now
+            self.call_after_refresh(self._bring_focus, TRIES)  # a new pane can take it only now
 
     def _place_again(self) -> None:
         """Have the panes placed anew: it is a child's wish that makes Textual ask `layout` again."""
@@ -186,9 +191,14 @@ class Workspace(Widget):
         if frame is not None and frame.display and frame.is_mounted and not frame.has_focus_within:
             frame.view.focus_inside()
 
-    def _focus_now(self) -> None:
+    def _bring_focus(self, tries: int) -> None:
         self._focus()
-        self._focus_is_due = False
+        frame = self.focused
+        if tries and frame is not None and frame.display and not frame.has_focus_within:
+            self.set_timer(TRY_AGAIN_AFTER, lambda: self._bring_focus(tries - 1))
+            return
+        self.focus_is_due = False
+        self.post_message(self.FocusArrived())
 
     def replace_view(self, number: int, content: object) -> None:
         """Show something else in a pane."""
@@ -216,7 +226,7 @@ class Workspace(Widget):
 
     def on_frame_focused(self, event: Frame.Focused) -> None:
         frame = self.frames.get(event.number)
-        if frame is None or not frame.has_focus_within or self._focus_is_due:  # it goes on, or has gone on
+        if frame is None or not frame.has_focus_within or self.focus_is_due:  # it goes on, or has gone on
             return
         if event.number in self.window.numbers and event.number != self.window.focused:
             self.window.focus(event.number)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,23 @@ def test_nothing_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     for words in (["ls"], ["attach"], ["attach", "--graph", "x"], ["console"]):
         assert ends(*words) == exits.NOT_RUNNING
         assert "graphflow up" in capsys.readouterr().err
+
+
+def test_the_newest_of_several(run: GraphRun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As tmux does; by name, the one that is meant."""
+    newer = replace(run, graph="newer", began=run.began + 1)
+    shown: list[str] = []
+
+    def show(chosen: GraphRun, domain: int, prefix: str | None) -> int:
+        shown.append(chosen.graph)
+        return exits.OK
+
+    monkeypatch.setattr(rundir, "running", lambda: [newer, run])
+    monkeypatch.setattr("graphflow.cli.output.is_terminal", lambda: True)
+    monkeypatch.setattr(console, "show", show)
+    assert ends("attach") == exits.OK
+    assert ends("attach", "--graph", "lab") == exits.OK
+    assert shown == ["newer", "lab"]
 
 
 @pytest.mark.parametrize("verb", ["attach", "console"])

@@ -139,7 +139,7 @@ def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert streaming(tmp_path, detach=True)._show({"event": "up", "seconds": 0.25}) == exits.OK
     err = capsys.readouterr().err
     assert "  export GRAPHFLOW_DOMAIN=7  " in err
-    assert "Stop with: graphflow down\n" in err
+    assert "Open the console with: graphflow attach\nStop with: graphflow down\n" in err
 
 
 @pytest.mark.real

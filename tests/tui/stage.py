@@ -184,6 +184,8 @@ class Stage:
             self.console.post_message(events.Key(name, _character(name)))
             for _ in range(3):
                 await self.pilot._wait_for_screen()
+            while self.console.is_running and self.console.workspace.focus_is_due:
+                await self.pilot.pause(0.005)
 
     async def prefix(self, *keys: str) -> None:
         """Press the prefix, then keys."""

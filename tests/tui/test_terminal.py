@@ -158,7 +158,7 @@ def test_several_consoles_and_sizes(machine: Machine, terminal: Open, counting: 
     one.until("New window with")
     one.type("topics")
     one.press("Enter")
-    one.until("/number")
+    one.until("std_msgs/msg/Int64")
     assert "/number" not in two.text
     one.press("C-b", "0")
     one.until("● running")

@@ -48,9 +48,9 @@ async def test_arrows_drive(key: str, linear: float, angular: float, graph: Grap
         await s.until(lambda: s.view._driven == "turtle1")  # type: ignore[attr-defined]
         await graph.settle()
         await s.press(key)
+        await s.until("$ graphflow topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist")
         await graph.settle()
         assert (driven.latest.linear.x, driven.latest.angular.z) == (linear, angular)
-        assert "$ graphflow topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist" in s.text
 
 
 async def test_without_a_turtle() -> None:
