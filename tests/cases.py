@@ -35,7 +35,10 @@ def limit(number: int) -> pytest.MarkDecorator:
     return pytest.mark.timeout(120 + number // 5)
 
 
+slow = pytest.mark.skipif(_WANTED == "few", reason="one of several slow ones; CI tries all: --cases full")
+"""For a test that takes seconds and guards what seldom changes: it runs with `--cases full`, as in CI."""
+
+
 def some(names: Iterable[str], *always: str) -> list[Any]:
     """Parameters of a slow test: `always` these, the others with `--cases full`, as in CI."""
-    skipped = pytest.mark.skipif(_WANTED == "few", reason="one of several slow ones; CI tries all: --cases full")
-    return [pytest.param(name, marks=() if name in always else skipped) for name in names]
+    return [pytest.param(name, marks=() if name in always else slow) for name in names]

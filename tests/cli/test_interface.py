@@ -12,6 +12,7 @@ import pytest
 from graphflow.cli import exits
 from graphflow.cli.main import main
 from graphflow.msgs import registry
+from tests.cases import slow
 
 Show = Callable[..., tuple[int, str, str]]
 
@@ -149,6 +150,7 @@ def test_stubs_where_there_is_nothing_to_describe(
     assert f"{tmp_path / 'interfaces'} has no PACKAGE/msg" in capsys.readouterr().err
 
 
+@slow
 @pytest.mark.real
 def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
     """mypy finds a misspelt field of the project's own message, and nothing else to complain about."""

@@ -40,6 +40,7 @@ from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.transport.base import Answer
 from graphflow.wire import attachment, chain
+from tests.cases import slow
 from tests.deadlock.cast import Caplog, Sleeper, at, cleared, reports, say, the_report
 from tests.runtime.cast import Log
 
@@ -441,6 +442,7 @@ class Juggler(Node):
         return Empty.Response()
 
 
+@slow
 async def test_churn(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Hundreds of calls that cross each other make no phantom, however often somebody looks (row 23)."""
     monkeypatch.setattr(detector, "PROBE_AFTER", 0.004)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 pytestmark = pytest.mark.real
@@ -28,6 +29,7 @@ def acceptance(machine: Machine, folder: Path, ros2: str) -> subprocess.Complete
     )
 
 
+@slow
 def test_graphflow_passes_its_own_acceptance(machine: Machine, tmp_path: Path) -> None:
     """Every expectation that needs no node of ROS 2 is met."""
     done = acceptance(machine, tmp_path, "graphflow")

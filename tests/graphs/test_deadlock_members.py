@@ -10,6 +10,7 @@ import signal
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Program
 from tests.graphs.lab import (
     Lab,
@@ -76,6 +77,7 @@ def test_kill_minus_9_of_a_member(lab: Lab, is_reporter: bool) -> None:
     assert up.text.count("has cleared") == 1
 
 
+@slow
 def test_a_stopped_process_is_no_member(lab: Lab) -> None:
     """Of one that stands still nothing is claimed; the ring is told when it goes on and closes it (row 21)."""
     up = lab.up(ring_of("ab"))
@@ -149,6 +151,7 @@ def test_the_doctor_sees_a_loop_that_is_held(lab: Lab) -> None:
     let_go(lab)
 
 
+@slow
 def test_an_interpreter_that_is_held(lab: Lab) -> None:
     """A process of which no thread runs is in no deadlock; it is said to be silent, and shows where it is (row 22)."""
     up = hold(lab, "Greedy")

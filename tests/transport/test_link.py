@@ -15,6 +15,7 @@ from graphflow.errors import TransportError
 from graphflow.graph.net import read_profile
 from graphflow.transport import link
 from graphflow.transport.link import dial
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine, Program
 from tests.network.hosts import Hosts, why_not
 
@@ -118,6 +119,7 @@ def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, t
     assert graph.end() == 0
 
 
+@slow
 @pytest.mark.real
 def test_what_a_latched_topic_said_meanwhile_is_heard(
     hosts: Hosts, near: Machine, far: Machine, tmp_path: Path
@@ -144,6 +146,7 @@ def test_what_a_latched_topic_said_meanwhile_is_heard(
     assert [line for line in echo.text.splitlines() if "word" in line] == [f"data: word {n}" for n in (1, 2, 3)]
 
 
+@slow
 @pytest.mark.real
 def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """The graph starts without it, and says that nobody answers; then the robot is switched on."""
@@ -198,6 +201,7 @@ def profile(folder: Path, name: str, ca: trustme.CA, address: str, *, listen: st
     return str(path)
 
 
+@slow
 @pytest.mark.real
 def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     hosts: Hosts, near: Machine, far: Machine, tmp_path: Path

@@ -9,6 +9,7 @@ import psutil
 import pytest
 
 from graphflow.transport.rendezvous import address
+from tests.cases import slow
 from tests.conftest import Machine, Program
 
 pytestmark = pytest.mark.real
@@ -73,6 +74,7 @@ def test_a_node_that_is_killed_disappears_at_once(machine: Machine) -> None:
     machine.until(lambda: nodes(machine) == ["/listener"], "the talker is gone")
 
 
+@slow
 def test_a_stopped_rendezvous_is_named(machine: Machine) -> None:
     """Commands and nodes say which process does not answer, and how to continue it."""
     talker = machine.start("run", *TALKER)
