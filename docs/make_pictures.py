@@ -37,6 +37,8 @@ CELL_WIDTH, CELL_HEIGHT, FONT_SIZE, MARGIN = 8.43, 17.0, 14, 10
 GROUND, INK = "#0f151c", "#d9e2ec"
 FONTS = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 PNG_WIDTH = 1200
+GAP = 4
+"""Columns between two frames of a film."""
 FRAME = 0.25
 """Seconds between two looks at the screen while it is recorded."""
 
@@ -120,6 +122,7 @@ def deadlock() -> None:
     """A deadlock that is seen, ended by a key, and gone; recorded."""
     with stage() as s:
         t = s.open("up graphs/deadlock/crossing_broken.yaml", (100, 30))
+        t.until("● running")
         film = Film(t)
         film.run_until("DEADLOCK found", 30)
         film.run(2.5)
@@ -183,7 +186,7 @@ def svg(width: int, height: int, body: str, style: str = "") -> str:
     w, h = width * CELL_WIDTH + 2 * MARGIN, height * CELL_HEIGHT + 2 * MARGIN
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w:.0f} {h:.0f}" font-family="{FONTS}" '
-        f'font-size="{FONT_SIZE}" xml:space="preserve"><style>{style}</style>'
+        f'font-size="{FONT_SIZE}" xml:space="preserve"><style>text{{white-space:pre}}{style}</style>'
         f'<rect width="100%" height="100%" rx="8" fill="{GROUND}"/>'
         f'<svg x="{MARGIN}" y="{MARGIN}" width="{width * CELL_WIDTH:.0f}" height="{height * CELL_HEIGHT:.0f}">'
         f"{body}</svg></svg>\n"
@@ -259,14 +262,13 @@ class Film:
         rows: dict[str, int] = {}
         strip, stops = [], []
         for i, (at, lines, _) in enumerate(self._frames):
-            stops.append(
-                f"{100 * (at - first) / (total - first):.2f}%{{transform:translateX({-i * width * CELL_WIDTH:.0f}px)}}"
-            )
+            left = i * (width + GAP) * CELL_WIDTH
+            stops.append(f"{100 * (at - first) / (total - first):.2f}%{{transform:translateX({-left:.0f}px)}}")
             for y, line in enumerate(lines):
                 drawn = row(line)
                 if drawn:
                     number = rows.setdefault(drawn, len(rows))
-                    strip.append(f'<use href="#r{number}" x="{i * width * CELL_WIDTH:.0f}" y="{y * CELL_HEIGHT:.0f}"/>')
+                    strip.append(f'<use href="#r{number}" x="{left:.0f}" y="{y * CELL_HEIGHT:.0f}"/>')
         defs = "".join(f'<g id="r{number}">{drawn}</g>' for drawn, number in rows.items())
         style = f"@keyframes play{{{''.join(stops)}}}.film{{animation:play {total - first:.1f}s steps(1,end) infinite}}"
         body = f'<defs>{defs}</defs><g class="film">{"".join(strip)}</g>'
