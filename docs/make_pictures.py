@@ -60,7 +60,7 @@ class Stage:
     def open(self, words: str, size: tuple[int, int] = WIDE) -> Terminal:
         """Type `graphflow WORDS` in a new terminal."""
         socket = self._folder / f"t{len(self._terminals)}"
-        self._terminals.append(Terminal(self.machine, socket, f"graphflow {words}", size))
+        self._terminals.append(Terminal(self.machine, socket, f"{sys.executable} -m graphflow {words}", size))
         return self._terminals[-1]
 
     def close(self) -> None:

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -33,7 +34,7 @@ def terminal(machine: Machine, tmp_path: Path) -> Iterator[Open]:
     opened: list[Terminal] = []
 
     def open_(words: str, size: tuple[int, int] = (100, 30)) -> Terminal:
-        command = f"python -m graphflow {words}"
+        command = f"{sys.executable} -m graphflow {words}"
         opened.append(Terminal(machine, tmp_path / f"t{len(opened)}", command, size))
         return opened[-1]
 
