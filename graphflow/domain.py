@@ -6,6 +6,8 @@ import os
 
 from graphflow.errors import GraphflowError
 
+ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
+"""Where the nodes of a machine meet."""
 DOMAIN_VARIABLES = ("GRAPHFLOW_DOMAIN", "ROS_DOMAIN_ID")
 
 
@@ -24,3 +26,8 @@ def domain_id(given: int | None = None) -> int:
                 raise GraphflowError(f"{variable}={text!r}: a domain is a whole number, 0 or more")
             return int(text)
     return 0
+
+
+def go_to(domain: int, endpoint: str) -> None:
+    """Have whatever this process opens or starts from now on meet in a domain, at an endpoint."""
+    os.environ[DOMAIN_VARIABLES[0]], os.environ[ENDPOINT_VARIABLE] = str(domain), endpoint

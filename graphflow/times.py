@@ -14,6 +14,16 @@ def to_ns(seconds: float) -> int:
     return round(seconds * NANOSECONDS)
 
 
+def ago(seconds: float) -> str:
+    """A span in two units at most: `12s`, `3m04s`, `2h05m`."""
+    whole = max(0, int(seconds))
+    if whole < 60:
+        return f"{whole}s"
+    if whole < 3600:
+        return f"{whole // 60}m{whole % 60:02d}s"
+    return f"{whole // 3600}h{whole % 3600 // 60:02d}m"
+
+
 @dataclass(frozen=True, order=True, slots=True)
 class Duration:
     """A span of time; may be negative. Fits builtin_interfaces/msg/Duration."""

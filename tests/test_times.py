@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graphflow.times import NANOSECONDS, Duration, Time, to_ns
+from graphflow.times import NANOSECONDS, Duration, Time, ago, to_ns
 
 
 @pytest.mark.parametrize(
@@ -75,3 +75,20 @@ def test_large_times_stay_exact() -> None:
     now = Time(1_700_000_000_123_456_789)
     assert ((now + Duration(1)) - now).nanoseconds == 1
     assert (now.sec, now.nanosec) == (1_700_000_000, 123_456_789)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (-1.0, "0s"),
+        (0.9, "0s"),
+        (59.9, "59s"),
+        (60.0, "1m00s"),
+        (3599.0, "59m59s"),
+        (3600.0, "1h00m"),
+        (90000.0, "25h00m"),
+    ],
+)
+def test_spans_for_people(seconds: float, text: str) -> None:
+    """In seconds, then minutes, then hours, and never less than none."""
+    assert ago(seconds) == text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections import Counter
@@ -17,15 +16,14 @@ from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
 from graphflow.cli.streaming import take_down
 from graphflow.cli.tree import verbs
-from graphflow.domain import domain_id
+from graphflow.domain import domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.graph.project import shown
 from graphflow.supervisor import rundir
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.rundir import GraphRun
+from graphflow.times import ago
 
-_RENDEZVOUS = "GRAPHFLOW_RENDEZVOUS"
-"""As in transport.config, which imports Zenoh."""
 COMMAND = (sys.executable, "-m", "graphflow")
 """The words that start this program again."""
 
@@ -38,8 +36,6 @@ def open_console(
     Args:
         layout: The windows to begin with; None for those kept with the run, the graph file's, or the usual ones.
     """
-    if run is not None:
-        os.environ["GRAPHFLOW_DOMAIN"], os.environ[_RENDEZVOUS] = str(run.domain), run.endpoint
     # The one place where a door opens the other; nothing of the console is imported before.
     tui = import_module("graphflow.tui.main")
     return tui.open_console(run, domain, command=COMMAND, verbs=verbs, prefix=prefix, layout=layout)
@@ -62,6 +58,7 @@ def _say_goodbye(run: GraphRun, how: str, exit_code: int | None) -> int:
         return take_down(run, now=False)
     if not run.is_alive:
         output.error(f"the supervisor of {run.graph} died; its log is {run.logs}/supervisor.log")
+        output.talk(f"start the graph again with: graphflow up {shown(Path(run.file))}")
         return exits.FAILED
     nodes = len(_rows(run)["nodes"])
     which = f" --graph {run.graph}" if len(rundir.running()) > 1 else ""
@@ -155,7 +152,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
             row["graph"],
             str(row["domain"]),
             ", ".join(f"{n} {'running' if state == 'ready' else state}" for state, n in row["nodes"].items()),
-            output.ago(time.time() - row["began"]),
+            ago(time.time() - row["began"]),
             ", ".join(row["consoles"]) or "none",
             shown(Path(row["file"])),
         )
@@ -179,7 +176,7 @@ def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
     if find_spec("textual_serve") is None:
         raise UsageFault("--web needs the extra `web`: pip install 'graphflow-zenoh[web]'")
     words = [*COMMAND, "attach", "--graph", run.graph, *(["--prefix", prefix] if prefix else [])]
-    os.environ["GRAPHFLOW_DOMAIN"] = str(run.domain)
+    go_to(run.domain, run.endpoint)
     output.talk(
         f"the console of {run.graph} is at http://127.0.0.1:{port}; from another machine: "
         f"ssh -L {port}:127.0.0.1:{port} THIS_MACHINE\nCtrl-C ends the page; the graph runs on"

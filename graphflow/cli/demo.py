@@ -17,6 +17,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.examples import DEADLOCKS, Step, graph_file, heading
+from graphflow.domain import go_to
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
@@ -50,12 +51,12 @@ def deadlock(steps: tuple[str, ...], only_list: bool, no_console: bool, first: s
         if name not in known:
             raise UsageFault(f"there is no step {name!r}{did_you_mean(name, known) or '; --list shows all'}")
     if first:
+        if steps:
+            raise UsageFault(f"either the steps to show, or --from; for one step: graphflow demo deadlock {first}")
         steps = tuple(known)[list(known).index(first) :]
-    from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 
-    os.environ[ENDPOINT_VARIABLE] = free_endpoint()
-    os.environ["GRAPHFLOW_DOMAIN"] = str(1000 + os.getpid())
+    go_to(1000 + os.getpid(), free_endpoint())
     if not (no_console or yes) and output.is_terminal():
         from graphflow.cli.tour import tour
 

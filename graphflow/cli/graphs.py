@@ -12,7 +12,9 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.files import find_graph
 from graphflow.cli.reaching import reach, reach_options
+from graphflow.domain import ENDPOINT_VARIABLE, domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
+from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
@@ -57,8 +59,6 @@ def up(
     if private:
         domain = _go_private(domain)
     if domain is None and os.environ.get("GRAPHFLOW_DOMAIN"):
-        from graphflow.domain import domain_id
-
         domain = domain_id()
     # Nothing heavy may be imported before the fork: the children share what this process has.
     from graphflow.supervisor.launch import launch
@@ -85,13 +85,11 @@ def _open_console(run: dict[str, Any]) -> int:
 def _go_private(domain: int | None) -> int:
     from random import SystemRandom
 
-    from graphflow.transport.config import ENDPOINT_VARIABLE
     from graphflow.transport.rendezvous import free_endpoint
 
     endpoint = free_endpoint()
     chosen = domain if domain is not None else SystemRandom().randrange(1000, 1_000_000)
-    os.environ[ENDPOINT_VARIABLE] = endpoint
-    os.environ["GRAPHFLOW_DOMAIN"] = str(chosen)
+    go_to(chosen, endpoint)
     output.talk(
         f"private: in other terminals first type\n  export {ENDPOINT_VARIABLE}={endpoint} GRAPHFLOW_DOMAIN={chosen}"
     )
@@ -165,7 +163,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
             row["node"],
             row["state"] + (f" ({row['detail']})" if row["detail"] else ""),
             str(row["pid"] or "-"),
-            output.ago(now - row["since"]),
+            ago(now - row["since"]),
             row["class"],
         )
         for row in rows

@@ -23,7 +23,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.errors import Place
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from graphflow.graph import source
@@ -194,8 +194,9 @@ class _Section:
     def _choice(self, data: dict[str, Any], at: source.Path, key: str, choices: tuple[str, ...]) -> None:
         value = data.get(key)
         if value is not None and value not in choices:
-            near = did_you_mean(str(value), choices)
-            text = f"{key}: expected one of {', '.join(choices)}, got {value!r}{near}"
+            near = nearest(str(value), choices)
+            guess = f"; did you mean {near!r}?" if near else ""
+            text = f"{key}: expected one of {', '.join(choices)}, got {value!r}{guess}"
             self._complain(self._src.place((*at, key)), text)
 
     def _mapping(self, data: Any, at: source.Path, keys: tuple[str, ...], example: str) -> dict[str, Any] | None:

@@ -9,9 +9,9 @@ from functools import cache
 
 import zenoh
 
+from graphflow.domain import ENDPOINT_VARIABLE
 from graphflow.errors import TransportError
 
-ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 """Where a ROS 2 node with default settings looks for its router."""
 CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"

@@ -12,16 +12,16 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.screen import Screen
-from textual.timer import Timer
 
 from graphflow.supervisor.rundir import running
-from graphflow.tui.actions import OPTION_KEYS, by_chord, console_actions, shown
-from graphflow.tui.bars import Hints, Status, WhichKey
+from graphflow.tui.actions import console_actions, shown
+from graphflow.tui.bars import Hints, Status
 from graphflow.tui.deeds import Deeds
 from graphflow.tui.desk import Desk
 from graphflow.tui.home import open_home
 from graphflow.tui.hub import Hub
 from graphflow.tui.ink import DARK, LIGHT, make_ink
+from graphflow.tui.keyboard import Keyboard, Typed
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import Content
 from graphflow.tui.registry import view_class
@@ -31,8 +31,6 @@ from graphflow.tui.workspace import Workspace
 
 PULSE = 0.05
 """Seconds between two looks at what is new: at most twenty times a second anything is drawn."""
-WHICH_KEY_AFTER = 0.4
-"""Seconds after the prefix at which the keys that may follow are shown."""
 
 
 class MainScreen(Screen[object], inherit_bindings=False):
@@ -42,7 +40,7 @@ class MainScreen(Screen[object], inherit_bindings=False):
 
 
 class Console(Desk):
-    """The console. Its result says how it was left: `detach`, `stop`, or `switch NAME`.
+    """The console. Its result says how it was left: `detach`, `stop`, `switch SOCKET`, or what a tour calls it.
 
     Args:
         hub: What there is to see.
@@ -70,16 +68,15 @@ class Console(Desk):
         welcome: bool = False,
     ) -> None:
         super().__init__(hub, layout or Layout(), prefix)
+        if not self.windows.windows:
+            open_home(self.windows, hub)
+        self.workspace = Workspace(self.windows, self._make_view)
         self.deeds = Deeds(self)
         self.hints = Hints()
         self.status = Status()
-        self.which_key = WhichKey()
+        self.keyboard = Keyboard(self, super().on_event, self.deeds.do)
         self.welcome = Welcome()
         self.welcome.display = welcome
-        self._chords = by_chord()
-        self._chord_open = False
-        self._held: list[events.Key] = []
-        self._which_timer: Timer | None = None
         self._beats = 0
         self.register_theme(DARK)
         self.register_theme(LIGHT)
@@ -89,14 +86,11 @@ class Console(Desk):
     # life
 
     def compose(self) -> ComposeResult:
-        if not self.windows.windows:
-            open_home(self.windows, self.hub)
-        self.workspace = Workspace(self.windows, self._make_view)
         yield self.workspace
         yield self.welcome
         yield self.hints
         yield self.status
-        yield self.which_key
+        yield self.keyboard.which_key
 
     def get_default_screen(self) -> Screen[object]:
         return MainScreen(id="_default")
@@ -178,8 +172,9 @@ class Console(Desk):
 
     # the pulse
 
-    def _pulse(self) -> None:
+    async def _pulse(self) -> None:
         now = time.monotonic()
+        await self.keyboard.look(now)
         self._beats += 1
         if self._beats % 2 == 0:
             self.hub.logs.read()
@@ -210,48 +205,19 @@ class Console(Desk):
     # keys
 
     async def on_event(self, event: events.Event) -> None:
-        if isinstance(event, events.Key) and not event.is_forwarded:
-            if self.workspace.focus_is_due and len(self.screen_stack) == 1:
-                self._held.append(event)  # it is meant for the pane that is about to have the focus
-                return
-            if self._takes(event):
-                return
-        await super().on_event(event)
+        if isinstance(event, Typed) and not event.is_forwarded:
+            await self.keyboard.type(event)
+        else:
+            await super().on_event(event)
 
-    def on_workspace_focus_arrived(self) -> None:
-        held, self._held = self._held, []
-        for event in held:
-            self.post_message(event)
+    async def on_workspace_focus_arrived(self) -> None:
+        await self.keyboard.go_on()
 
-    def _takes(self, event: events.Key) -> bool:
-        """Whether a key is the prefix, or follows it."""
-        self.hints.look(time.monotonic(), pressed=True)
-        if self._chord_open:
-            self._close_chord()
-            if event.key == self.prefix:
-                return False  # twice: for what has the focus
-            action = self._chords.get(OPTION_KEYS.get(event.key, event.key))
-            if action is not None:
-                self.call_later(self.deeds.do, action.name)
-            elif event.key != "escape":
-                self.say(
-                    f"{shown(self.prefix)} {shown(event.key)} means nothing; {shown(self.prefix)} ? lists all keys"
-                )
-            return True
-        if event.key == self.prefix and len(self.screen_stack) == 1:
-            self._chord_open = True
-            self._which_timer = self.set_timer(WHICH_KEY_AFTER, self.which_key.open)
-            return True
-        return False
-
-    def _close_chord(self) -> None:
-        self._chord_open = False
-        if self._which_timer is not None:
-            self._which_timer.stop()
-        self.which_key.display = False
+    async def on_keyboard_followed(self, event: Keyboard.Followed) -> None:
+        await self.keyboard.followed(event)
 
     def action_do(self, name: str) -> None:
-        self.call_later(self.deeds.do, name)
+        self.deeds.do(name)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """The console's bare keys are for its own screen, not for dialogs above it."""

@@ -65,7 +65,9 @@ class Hints(Bar):
         self._message: tuple[str, str, float] | None = None
 
     def say(self, text: str, ink: str) -> None:
-        """Show a message for a while."""
+        """Show a message for a while; but what went wrong gives way only when it has been seen."""
+        if ink == "text" and self._message is not None and self._message[1] == "bad":
+            return
         self._message = (text, ink, time.monotonic() + MESSAGE_SECONDS)
         self.refresh()
 

@@ -149,7 +149,7 @@ def read_picture(svg: str) -> list[Line]:
     return lines
 
 
-class TurtleCanvas(Widget, can_focus=True):
+class TurtleCanvas(Widget):
     """A drawing on the screen, as large as fits, its height as its width."""
 
     def __init__(self, drawing: Drawing) -> None:

@@ -80,7 +80,7 @@ class Desk(App[str]):
     @property
     def focused_view(self) -> View | None:
         """The view in the focused pane."""
-        frame = self.workspace.focused if hasattr(self, "workspace") else None
+        frame = self.workspace.focused
         return None if frame is None else frame.view
 
     def say(self, text: str, *, bad: bool = False) -> None:

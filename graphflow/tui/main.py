@@ -10,6 +10,7 @@ from typing import Any
 
 os.environ["TEXTUAL_FPS"] = "20"  # Textual reads it when it is imported
 
+from graphflow.domain import go_to
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.rundir import GraphRun, running
@@ -26,7 +27,10 @@ PREFIX_VARIABLE, THEME_VARIABLE = "GRAPHFLOW_PREFIX", "GRAPHFLOW_THEME"
 
 
 class Left:
-    """How a console was left: `detach`, `stop` or `failed`; and the graph's exit code, if it has ended meanwhile."""
+    """How a console was left, and the graph's exit code, if it has ended meanwhile.
+
+    `how` is `detach`, `stop` or `failed`; from a guided tour also `next`, or `fixed` for the repaired example.
+    """
 
     def __init__(self, how: str, run: GraphRun | None, exit_code: int | None) -> None:
         self.how, self.run, self.exit_code = how, run, exit_code
@@ -55,6 +59,7 @@ def open_console(
     """
     while True:
         if run is not None:
+            go_to(run.domain, run.endpoint)
             _log_to(Path(run.logs) / f"console-{os.getpid()}.log")
         how, exit_code = _show(run, domain, command, verbs, prefix, layout)
         if not how.startswith("switch "):
@@ -62,8 +67,7 @@ def open_console(
         socket = how.removeprefix("switch ")
         run = next((r for r in running() if r.socket == socket), run)
         assert run is not None
-        domain = run.domain
-        os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
+        domain, layout = run.domain, None
 
 
 def _show(

@@ -9,7 +9,7 @@ from rich.cells import cell_len
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
-from textual.widgets import DataTable, Input
+from textual.widgets import DataTable, Input, Static
 
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
@@ -32,10 +32,12 @@ class TableView(View):
     KEEPS: ClassVar[int | None] = None
     """Columns that stay where there is no room; the others go, from the last. None: the table scrolls sideways."""
     EMPTY: ClassVar[str] = "nothing there yet"
+    """What stands in place of the rows where there are none."""
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
         self.table: DataTable[Text | str] = DataTable(cursor_type="row", zebra_stripes=False, cell_padding=1)
+        self._empty = Static("", classes="hint", markup=False)
         self._find = Input(placeholder="find; enter keeps, esc clears", classes="find")
         self._shown: dict[str, Cells] = {}
         self._hidden = 0
@@ -45,6 +47,7 @@ class TableView(View):
 
     def compose(self) -> ComposeResult:
         yield self.table
+        yield self._empty
         yield self._find
 
     def rows(self) -> Mapping[str, Cells]:
@@ -57,6 +60,12 @@ class TableView(View):
         self._hidden = max(0, len(rows) - ROWS)
         self.show_rows(dict(list(rows.items())[:ROWS]))
 
+    def why_empty(self) -> str:
+        """Why there are no rows."""
+        if self._find.value:
+            return f"no row has {self._find.value!r}; esc shows all"
+        return self.EMPTY
+
     @property
     def note(self) -> str:
         more = f", {self._hidden} more not shown" if self._hidden else ""
@@ -65,6 +74,9 @@ class TableView(View):
 
     def show_rows(self, rows: dict[str, Cells]) -> None:
         """Change what differs; the cursor stays on its row."""
+        self.set_class(not rows, "-empty")
+        if not rows:
+            self._empty.update(self.why_empty())
         if self._filled:
             self._filled = False
             self.call_after_refresh(self._draw_again)

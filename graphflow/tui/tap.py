@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import GraphflowError
+from graphflow.names import nearest
 from graphflow.qos import BEST_AVAILABLE
 
 if TYPE_CHECKING:
@@ -54,9 +55,11 @@ class Tap:
         """Begin to listen as soon as the topic is there."""
         if self._subscription is not None or self._live.node is None:
             return
-        types = self._live.cache.topics(hidden=True).get(self.topic)
+        topics = self._live.cache.topics(hidden=True)
+        types = topics.get(self.topic)
         if not types:
-            self.trouble = f"nobody publishes {self.topic} yet"
+            near = nearest(self.topic, topics)
+            self.trouble = f"nobody publishes {self.topic} yet" + (f"; did you mean {near}?" if near else "")
             return
         self.type_name, self.trouble = types[0], ""
         from graphflow.msgs import registry

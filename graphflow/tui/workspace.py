@@ -136,7 +136,7 @@ class Workspace(Widget):
         self.frames: dict[int, Frame] = {}
         self._make_view = make_view
         self._dragged: Divider | None = None
-        self.focus_is_due = False
+        self.focus_is_due = True
         """Whether the focus is on its way: what is told of where it was counts no more, and keys wait."""
         self._places = _Places(self)
 
@@ -176,15 +176,27 @@ class Workspace(Widget):
             frame.title_line.refresh_if_changed()
         self._place_again()
         if focus:
-            self.focus_is_due = True
-            self._focus()
-            self.call_after_refresh(self._bring_focus, TRIES)  # a new pane can take it only now
+            self.bring_focus()
 
     def _place_again(self) -> None:
         """Have the panes placed anew: it is a child's wish that makes Textual ask `layout` again."""
         self.refresh()
         for frame in self.frames.values():
             frame.refresh(layout=True)
+
+    def bring_focus(self) -> None:
+        """Give the focus to the pane that should have it."""
+        self.focus_is_due = True
+        self._focus()
+        self.call_after_refresh(self._bring_focus, TRIES)  # a new pane can take it only now
+
+    def regain_focus(self) -> bool:
+        """Give the focus to its pane again; returns whether it can take it."""
+        frame = self.focused
+        if frame is None or not frame.view.heart.focusable:
+            return False
+        self.bring_focus()
+        return True
 
     def _focus(self) -> None:
         frame = self.focused

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from graphflow.cli.graphs import _table
-from graphflow.cli.output import ago
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -64,23 +63,6 @@ def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
     machine.env |= dict(word.split("=", 1) for word in line.split()[1:])
     assert machine.look("node", "list").split() == ["/listener", "/talker"]
     machine.look("down")
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [
-        (-1.0, "0s"),
-        (0.9, "0s"),
-        (59.9, "59s"),
-        (60.0, "1m00s"),
-        (3599.0, "59m59s"),
-        (3600.0, "1h00m"),
-        (90000.0, "25h00m"),
-    ],
-)
-def test_how_long_a_node_has_been_so(seconds: float, text: str) -> None:
-    """In seconds, then minutes, then hours, and never less than none."""
-    assert ago(seconds) == text
 
 
 def test_the_table_of_ps() -> None:

@@ -90,12 +90,16 @@ def test_a_graph_that_does_not_end_is_killed(tmp_path: Path, monkeypatch: pytest
 
     file = tmp_path / "x.yaml"
     run = GraphRun("id", "x", 0, 1, 0.0, 0.0, str(file), "", "", "", "")
-    stays = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); time.sleep(60)"
+    ready = tmp_path / "ready"
+    stays = f"import signal, time; signal.signal(2, signal.SIG_IGN); open({str(ready)!r}, 'w'); time.sleep(60)"
     monkeypatch.setattr(subprocess, "Popen", start)
     monkeypatch.setattr(tour, "running", lambda: [run])
     monkeypatch.setattr(tour, "COMMAND", (sys.executable, "-c", stays))
     monkeypatch.setattr(tour, "_END_LIMIT", 0.5)
     with tour._up(file) as found:
         assert found is run
-        time.sleep(0.3)
+        deadline = time.monotonic() + tour._START_LIMIT
+        while not ready.exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
     assert started[0].returncode is not None

@@ -184,7 +184,7 @@ class Stage:
             self.console.post_message(events.Key(name, _character(name)))
             for _ in range(3):
                 await self.pilot._wait_for_screen()
-            while self.console.is_running and self.console.workspace.focus_is_due:
+            while self.console.is_running and not self.console.keyboard.is_quiet:
                 await self.pilot.pause(0.005)
 
     async def prefix(self, *keys: str) -> None:

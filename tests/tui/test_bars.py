@@ -79,6 +79,17 @@ async def test_a_supervisor_that_died() -> None:
         assert "✖ supervisor gone" in s.text
 
 
+async def test_what_went_wrong_stays_until_it_is_seen() -> None:
+    """What is told after it is among the messages; what the user does is answered."""
+    async with stage(size=(80, 20)) as s:
+        s.console.say("/arm died", bad=True)
+        s.console.say("all nodes have ended")
+        assert "/arm died" in s.text
+        assert "all nodes have ended" in s.console.said[-1]
+        s.console.did("graphflow restart /arm")
+        assert "$ graphflow restart /arm" in s.text
+
+
 async def test_a_message_that_is_too_long() -> None:
     """It says where the rest is; a key takes it away once it has been seen."""
     async with stage(size=(60, 20)) as s:

@@ -107,14 +107,14 @@ async def test_the_prefix_itself() -> None:
     """Twice goes through; an unknown key says so; escape ends it; slow fingers see the keys."""
     async with stage(Content("prompt")) as s:
         await s.prefix("escape")
-        assert not s.console.which_key.display
+        assert not s.console.keyboard.which_key.display
         await s.prefix("J")
         assert "^b J means nothing" in s.text
         await s.press("ctrl+b")
-        await s.until(lambda: s.console.which_key.display)
+        await s.until(lambda: s.console.keyboard.which_key.display)
         assert "d detach" in s.text
         await s.press("z")
-        assert not s.console.which_key.display
+        assert not s.console.keyboard.which_key.display
         await s.type("ab")
         await s.press("ctrl+b", "ctrl+b")
         assert s.view.query_one("Input.line").value == "ab"  # type: ignore[attr-defined]

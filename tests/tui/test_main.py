@@ -44,6 +44,8 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     Shown.ways[:] = ["detach"]
     monkeypatch.setattr(main, "Console", Shown)
     monkeypatch.delenv("TMUX", raising=False)
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "0")
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "")
     logger = logging.getLogger()
     before, logger.handlers[:] = list(logger.handlers), []
     yield
@@ -53,7 +55,7 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def run_in(folder: Path, socket: str = "s") -> GraphRun:
-    return GraphRun("id", "lab", 7, os.getpid(), 0.0, time.time(), "lab.yaml", socket, str(folder), "", "")
+    return GraphRun("id", "lab", 7, os.getpid(), 0.0, time.time(), "lab.yaml", socket, str(folder), f"tcp/{socket}", "")
 
 
 def opened(hello: dict[str, Any], folder: Path, monkeypatch: pytest.MonkeyPatch, **options: Any) -> main.Left:
@@ -108,10 +110,12 @@ def test_which_prefix(
 
 def test_going_to_another_graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The console opens again, on the other; how it was left is told of that one."""
-    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
     Shown.ways[:] = ["switch other", "stop"]
     monkeypatch.setattr(main, "running", lambda: [run_in(tmp_path), run_in(tmp_path, "other")])
-    left = opened({}, tmp_path, monkeypatch)
+    tour = {"windows": [{"name": "tour", "root": {"view": "tour"}}]}
+    left = opened({}, tmp_path, monkeypatch, layout=tour)
+    assert [layout.window.name if layout else None for _, layout, *_ in Shown.made] == ["tour", None]
+    assert os.environ["GRAPHFLOW_RENDEZVOUS"] == "tcp/other"
     assert [hub.supervision.run.socket for hub, *_ in Shown.made] == ["s", "other"]
     assert (left.how, left.run and left.run.socket) == ("stop", "other")
 

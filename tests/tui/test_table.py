@@ -7,7 +7,7 @@ from textual.widgets import DataTable
 
 from graphflow.tui import table
 from graphflow.tui.panes import Content
-from graphflow.tui.table import Cells, TableView
+from graphflow.tui.table import FIND, Cells, TableView
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -18,6 +18,7 @@ class Numbers(TableView):
 
     NAME = "numbers"
     COLUMNS = ("name", "value")
+    ACTIONS = (FIND,)
     now: dict[str, Cells] = {}  # noqa: RUF012
 
     def rows(self) -> dict[str, Cells]:
@@ -44,6 +45,20 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
         Numbers.now = {}
         await s.look()
         assert view.key == ""
+        assert "nothing there yet" in s.text
+
+
+async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It says what was sought, and how all rows come back."""
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
+    Numbers.now = {"a": ("a", "1")}
+    async with stage(Content("numbers")) as s:
+        await s.look()
+        assert "nothing there yet" not in s.text
+        await s.press("slash", "z")
+        assert "no row has 'z'; esc shows all" in s.text
+        await s.press("enter", "escape")
+        assert "esc shows all" not in s.text
 
 
 async def test_long_tables_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,6 +41,13 @@ async def test_messages_and_their_arrival(graph: Graph) -> None:
         assert tap.count == 2
 
 
+async def test_a_misspelt_topic(graph: Graph) -> None:
+    """The nearest name is offered."""
+    await graph.start(Talker())
+    async with stage(Content("echo", "/chater"), graph=graph) as s:
+        await s.until("nobody publishes /chater yet; did you mean /chatter?")
+
+
 async def test_without_a_graph() -> None:
     """It waits."""
     async with stage(Content("help")) as s:

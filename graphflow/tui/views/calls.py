@@ -44,6 +44,7 @@ class Calls(TableView):
 
     NAME = "calls"
     DOC = "services: a form for the request, the answers so far"
+    EMPTY = "no node offers a service of its own; a shows those that every node has"
     COLUMNS = ("service", "type", "node")
     EVERY = 1.0
     ACTIONS = (

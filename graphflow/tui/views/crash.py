@@ -11,6 +11,7 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from graphflow.graph.project import INSTALLED_DEMOS, PACKAGE
+from graphflow.times import ago
 from graphflow.tui.actions import Action
 from graphflow.tui.bars import MARKS
 from graphflow.tui.hub import Hub
@@ -18,7 +19,6 @@ from graphflow.tui.lines import Lines
 from graphflow.tui.logs import Record
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
-from graphflow.tui.views.nodes import ago
 from graphflow.tui.views.source import edit, find_file
 
 LAST_LINES = 20

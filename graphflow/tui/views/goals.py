@@ -15,6 +15,7 @@ from textual.widgets import DataTable, Input, Static
 from graphflow.errors import EncodeError, GraphflowError
 from graphflow.introspect.echo import flow, plain, truncated
 from graphflow.msgs import registry
+from graphflow.times import ago
 from graphflow.tui.actions import Action
 from graphflow.tui.dialogs import Item, Pick
 from graphflow.tui.form import Form, form_for
@@ -23,7 +24,6 @@ from graphflow.tui.logs import plain_text
 from graphflow.tui.panes import Content
 from graphflow.tui.table import FIND, Cells, TableView
 from graphflow.tui.tap import Tap
-from graphflow.tui.views.nodes import ago
 
 STATES = ("unknown", "accepted", "executing", "canceling", "succeeded", "canceled", "aborted")
 _INKS = ("dim", "warn", "accent", "warn", "good", "dim", "bad")
@@ -51,6 +51,7 @@ class Goals(TableView):
 
     NAME = "goals"
     DOC = "goals: state, feedback, cancel; a form for a new one"
+    EMPTY = "no goals yet"
     COLUMNS = ("goal", "action", "state", "for", "feedback")
     EVERY = 0.25
     ACTIONS = (

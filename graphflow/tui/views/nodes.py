@@ -8,6 +8,7 @@ import psutil
 from rich.text import Text
 
 from graphflow.system import host_name
+from graphflow.times import ago
 from graphflow.tui.actions import Action
 from graphflow.tui.bars import MARKS
 from graphflow.tui.hub import Hub
@@ -16,16 +17,6 @@ from graphflow.tui.table import FIND, Cells, TableView
 
 WORDS = {"foreign": "not ours", "ready": "running"}
 """States of which users know another word."""
-
-
-def ago(seconds: float) -> str:
-    """A span in two units at most: `12s`, `3m04s`, `2h05m`."""
-    whole = max(0, int(seconds))
-    if whole < 60:
-        return f"{whole}s"
-    if whole < 3600:
-        return f"{whole // 60}m{whole % 60:02d}s"
-    return f"{whole // 3600}h{whole % 3600 // 60:02d}m"
 
 
 class Costs:

@@ -46,6 +46,7 @@ class Params(TableView):
 
     NAME = "params"
     DOC = "parameters: value, range, source; changed in place"
+    EMPTY = "no node here has parameters"
     COLUMNS = ("parameter", "value", "from", "range", "type", "what it is")
     EVERY = 0.5
     ACTIONS = (
@@ -68,6 +69,8 @@ class Params(TableView):
         self._stale = True
         self._of: list[str] = []
         self._trouble = ""
+        """What went wrong when a node was asked last."""
+        self._is_asking = True
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
@@ -79,7 +82,10 @@ class Params(TableView):
 
     @property
     def note(self) -> str:
-        return self._trouble or super().note
+        return self._trouble[:60] if self._trouble and self._rows else super().note
+
+    def why_empty(self) -> str:
+        return "asking..." if self._is_asking else self._trouble or super().why_empty()
 
     def chosen(self) -> dict[str, str]:
         row = self._rows.get(self.key)
@@ -125,8 +131,8 @@ class Params(TableView):
                 for row in await live.ask(partial(_read_node, node=node)):
                     rows[f"{row.node} {row.name}"] = row
             except GraphflowError as error:
-                self._trouble = plain_text(str(error))[:60]
-        self._rows = rows
+                self._trouble = plain_text(str(error))
+        self._rows, self._is_asking = rows, False
 
     def rows(self) -> dict[str, Cells]:
         ink = self.ink

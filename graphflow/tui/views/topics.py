@@ -15,6 +15,7 @@ class Topics(TableView):
 
     NAME = "topics"
     DOC = "every topic: type, publishers, subscriptions, rate"
+    EMPTY = "no topics yet; a shows hidden ones"
     COLUMNS = ("topic", "type", "pub", "sub", "rate", "fits")
     EVERY = 1.0
     ACTIONS = (

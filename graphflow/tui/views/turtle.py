@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from textual.app import ComposeResult
-from textual.widget import Widget
 from textual.widgets import Static
 
 from graphflow.errors import GraphflowError
@@ -80,10 +79,6 @@ class Turtles(View):
     def compose(self) -> ComposeResult:
         yield self._canvas
         yield self._empty
-
-    @property
-    def heart(self) -> Widget:
-        return self._canvas if self._taps else self
 
     @property
     def title(self) -> str:

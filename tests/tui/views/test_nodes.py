@@ -11,7 +11,7 @@ from graphflow.machines.rings import Deadlock
 from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
-from graphflow.tui.views.nodes import Costs, ago
+from graphflow.tui.views.nodes import Costs
 from tests.tui.nodes import Talker
 from tests.tui.stage import Supervised, stage
 
@@ -98,12 +98,6 @@ async def test_finding(graph: Graph) -> None:
         await s.press("enter", "escape")
         await s.look()
         assert "/leg" in s.text
-
-
-@pytest.mark.parametrize(("seconds", "text"), [(0, "0s"), (59.9, "59s"), (184, "3m04s"), (7500, "2h05m"), (-1, "0s")])
-def test_spans(seconds: float, text: str) -> None:
-    """Two units at most."""
-    assert ago(seconds) == text
 
 
 def test_costs() -> None:
