@@ -244,6 +244,8 @@ class Interface:
     groups: dict[str, GroupInfo] = field(default_factory=dict)
     dynamic_names: bool | tuple[str, ...] = False
     """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
+    unread: tuple[Place, ...] = ()
+    """Where something is made whose name the source does not show."""
 
     def param(self, name: str) -> Parameter | None:
         """A parameter that nodes of the class have, by its name."""
@@ -268,6 +270,7 @@ class Interface:
             handlers=tuple(HandlerInfo(**{**h, "place": Place(*h["place"])}) for h in data["handlers"]),
             groups={name: GroupInfo(**group) for name, group in data["groups"].items()},
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
+            unread=tuple(Place(*place) for place in data["unread"]),
         )
 
 

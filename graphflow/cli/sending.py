@@ -26,7 +26,7 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
         client = node.create_action_client(type_, name)
         output.data("Waiting for an action server to become available...")
         try:
-            await client.wait_ready(timeout)
+            await client.expect_ready(timeout)
         except ServiceUnavailable as error:
             output.error(str(error))
             return exits.TIMEOUT

@@ -178,7 +178,7 @@ class ClassSource:
                     continue
                 for inner in ast.walk(item):
                     if isinstance(inner, FunctionNode):
-                        self._functions[file, _first_line(inner)] = Function(inner, item.name)
+                        self._functions[file, first_line(inner)] = Function(inner, item.name)
                 if item.name not in self.methods or item.name in continued:
                     self.methods.setdefault(item.name, []).append(item)
                     continued |= {node.attr for node in ast.walk(item) if _is_of_super(node)}  # type: ignore[attr-defined]
@@ -259,7 +259,7 @@ def _source_of(cls: Any) -> ClassSource:
             continue
         try:
             file = inspect.getsourcefile(parent) or ""
-            source._add(parent, file, _module(file), continued)
+            source._add(parent, file, module_of(file), continued)
         except (OSError, SyntaxError, TypeError, ValueError):  # there is none: what its methods do is not known
             source._is_known = False
     source._link()
@@ -394,14 +394,16 @@ def _is_of(cls: type, item: FunctionNode) -> bool:
     held: Any = vars(cls).get(item.name)
     held = held.fget if isinstance(held, property) else getattr(held, "__func__", held)
     code = getattr(inspect.unwrap(held), "__code__", None)
-    return code is not None and code.co_firstlineno == _first_line(item)
+    return code is not None and code.co_firstlineno == first_line(item)
 
 
-def _first_line(item: FunctionNode) -> int:
+def first_line(item: FunctionNode) -> int:
+    """Where a function begins, its decorators included, as its code says too."""
     return item.decorator_list[0].lineno if item.decorator_list else item.lineno
 
 
 @cache
-def _module(file: str) -> ast.Module:
+def module_of(file: str) -> ast.Module:
+    """The syntax of a file. Raises OSError, SyntaxError or ValueError if it cannot be read."""
     with tokenize.open(file) as source:
         return ast.parse(source.read())

@@ -13,7 +13,7 @@ _PYTHONS = sysconfig.get_path("stdlib")
 
 def is_users(file: str) -> bool:
     """Whether a source file is neither graphflow's nor Python's own."""
-    if file.startswith((_OURS, "<frozen")):
+    if file.startswith((_OURS, "<frozen")) or (file.startswith("<") and "/" in file):  # <std_msgs/msg/String>: a codec
         return False
     return not file.startswith(_PYTHONS) or "site-packages" in file
 

@@ -110,8 +110,17 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
             yield Problem(
                 rule.place,
                 f"{_class(interface)} has no topic or service {rule.match!r}{help_}"
-                + ("" if help_ else " (one that is made at run time belongs in the class's dynamic_names)"),
+                + ("" if help_ else _unread(interface, match)),
             )
+
+
+def _unread(interface: Interface, full_name: str) -> str:
+    """What the source does not show, and the line that says it."""
+    line = f'dynamic_names = ("*/{full_name.rpartition("/")[2]}",)'
+    if not interface.unread:
+        return f"; if it is made at run time, add to the class: {line}"
+    places = ", ".join(str(place) for place in interface.unread[:3])
+    return f"; the name made at {places} cannot be read there; if it is this one, add to the class: {line}"
 
 
 def resolver(node: PlannedNode) -> Resolver:
@@ -131,6 +140,8 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
         for endpoint in interface.endpoints:
             kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
             name = names.resolve(endpoint.name, kind)
+            if not endpoint.type:  # the source does not show it
+                continue
             type_, owner = first.setdefault((kind, name), (endpoint.type, node.name))
             if type_ != endpoint.type:
                 rule = next((r for r in node.remaps if names.full(r.replacement) == name), None)
@@ -175,6 +186,8 @@ def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterat
             f"no node of this graph offers the service {step.call}{did_you_mean(step.call, offered)}"
             " (for one outside the graph add type: package/srv/Name)",
         )
+        return
+    if not type_:  # it is offered, but the source does not show its type
         return
     try:
         request = registry.service_schema(registry.full_name(type_)).request

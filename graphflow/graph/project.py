@@ -14,8 +14,9 @@ INSTALLED_DEMOS = PACKAGE / "demos"
 def project_root(path: Path) -> Path:
     """The folder that a graph file's classes are imported from.
 
-    The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the file's own folder. The
-    graphs inside an installed graphflow have the nodes next to them as their project.
+    The nearest folder above with a `pyproject.toml` and a `graphs/` or `nodes/`, else the one with the file's `graphs/`
+    and a `nodes/` beside it, else the file's own folder. The graphs inside an installed graphflow have the nodes next
+    to them as their project.
     """
     start = path.resolve()
     if start.is_relative_to(INSTALLED_DEMOS):
@@ -23,7 +24,8 @@ def project_root(path: Path) -> Path:
     for folder in [start, *start.parents]:
         if (folder / "pyproject.toml").is_file() and ((folder / "graphs").is_dir() or (folder / "nodes").is_dir()):
             return folder
-    return start if start.is_dir() else start.parent
+    folder = start if start.is_dir() else start.parent
+    return folder.parent if folder.name == "graphs" and (folder.parent / "nodes").is_dir() else folder
 
 
 def add_interfaces(root: Path) -> None:

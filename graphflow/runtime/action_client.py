@@ -31,6 +31,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.names import did_you_mean
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.dictionary import SpeaksRos
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.service_client import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.topics import TopicSubscription
@@ -46,7 +47,7 @@ FEEDBACK_KEPT = 100
 """Feedback messages kept for a slow reader; the oldest go first."""
 
 
-class ClientGoalHandle(PendingGoal, Generic[Goal, Result, Feedback]):
+class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
     """A goal at its client."""
 
     def __init__(self, client: GoalClient[Goal, Result, Feedback], request: Goal) -> None:
@@ -197,17 +198,14 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         services = (self._send, self._cancel, self._get)
         return all(s.service_is_ready() for s in services) and bool(self._feedback.matched and self._status.matched)
 
-    async def wait_ready(self, timeout: float | None = None) -> None:
-        """Wait until there is a server.
+    async def wait_ready(self, timeout: float | None = None) -> bool:
+        """Wait until there is a server; returns whether there is one.
 
         Args:
             timeout: Seconds; None to wait as long as it takes.
-
-        Raises:
-            ServiceUnavailable: No server came in time.
         """
         if self.server_is_ready():
-            return
+            return True
         try:
             async with self.host.clock.timeout(timeout if timeout is not None else 1e9):
                 for service in (self._send, self._cancel, self._get):
@@ -215,7 +213,13 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
                 for topic in (self._feedback, self._status):
                     await topic.wait_matched()
         except TimeoutError:
-            raise ServiceUnavailable(self._nobody()) from None
+            return False
+        return True
+
+    async def expect_ready(self, timeout: float | None) -> None:
+        """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
+        if not await self.wait_ready(timeout):
+            raise ServiceUnavailable(self._nobody())
 
     def _nobody(self) -> str:
         actions = self.host.context.cache.actions()
@@ -263,7 +267,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
         try:
             if not self.server_is_ready():
-                await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+                await self.expect_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
             answer = await self._send.call(request, timeout=timeout)
         except (CancelledError, CallTimeout) as error:
             # The server may have it by now.
@@ -350,7 +354,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
                 patience = min(2 * patience, RESULT_LONGEST)
             except ServerLost:
                 # Only the connection may have been lost; then the server still knows the goal.
-                await self._get.wait_ready(LOST_GRACE)
+                await self._get.expect_ready(LOST_GRACE)
 
     def _forget(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         self._goals.pop(goal.goal_id, None)

@@ -28,6 +28,7 @@ from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRec
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
+from graphflow.runtime.dictionary import SpeaksRos
 from graphflow.runtime.direct import DirectRequest
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.services import NOTE_LIMIT, ServiceServer
@@ -44,7 +45,7 @@ RESULTS_KEPT = 1_000
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
 
-class ServedGoal(ServerGoalHandle[Goal, Result, Feedback]):
+class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
     """A goal at its server: what the action's handler gets."""
 
     def __init__(
@@ -439,7 +440,7 @@ class _GoalService(ServiceServer[Any, Any]):
 
     def _invoke(self, request: Any) -> Any:
         asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
-        return self._callback(self._requests.decode(request.payload), asked.gid)  # type: ignore[call-arg]
+        return self._callback(self._requests.decode(request.payload), asked.gid)
 
     def _note(self, request: Any) -> bytes:
         """A note that graphflow's own clients understand: why the goal whose result they request was aborted."""

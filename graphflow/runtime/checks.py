@@ -38,10 +38,15 @@ def check_type(type_: Any, kind: type, what: str, place: Place) -> None:
         raise DeclarationError(f"{place}: {what} needs {wanted}, not {type_!r}{hint}")
 
 
-def check_name(name: Any, what: str, place: Place) -> None:
-    """Check that a name is legal."""
+def check_text(name: Any, what: str, place: Place) -> None:
+    """Check that what stands in the place of a name is text."""
     if not isinstance(name, str):
         raise DeclarationError(f"{place}: {what}: the type comes first, then the name; {name!r} is not a name")
+
+
+def check_name(name: Any, what: str, place: Place) -> None:
+    """Check that a name is legal."""
+    check_text(name, what, place)
     try:
         expand(name, "/", "node")
     except InvalidName as error:
@@ -61,6 +66,45 @@ def check_qos(qos: Qos | int, depth: int | None, place: Place) -> Qos:
         raise DeclarationError(f"{place}: {error}") from None
 
 
+def positional(fn: Any) -> tuple[list[str], int] | None:
+    """The arguments that a function must be given by position, and how many it can be given; None: it does not say."""
+    try:
+        parameters = inspect.signature(fn).parameters.values()
+    except (TypeError, ValueError):
+        return None
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return None
+    taken = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    return [p.name for p in taken if p.default is p.empty], len(taken)
+
+
+def written_at(fn: Any) -> str:
+    """Where a function is written, as `file:line`; empty for one that is not written in Python."""
+    code = getattr(inspect.unwrap(fn), "__code__", None)
+    return "" if code is None else str(Place(code.co_filename, code.co_firstlineno))
+
+
+def check_callback(callback: Any, arguments: range, what: str, place: Place, hint: str = "") -> int:
+    """Check that a handler can be called, with as many arguments as it will be given; returns with how many."""
+    if not callable(callback):
+        if inspect.iscoroutine(callback):
+            callback.close()
+        hint = "" if isinstance(callback, str) else "; pass the method itself, as in self.tick, without parentheses"
+        raise DeclarationError(f"{place}: {what} needs a function to call, not {callback!r}{hint}")
+    takes = positional(callback)
+    if takes is None:
+        return arguments[0]
+    needed, most = takes
+    fitting = [n for n in arguments if len(needed) <= n <= most]
+    if not fitting:
+        wanted = " or ".join(["no argument", "one argument", "two arguments"][n] for n in arguments)
+        called = getattr(callback, "__qualname__", repr(callback))
+        raise DeclarationError(
+            f"{place}: {what}: {called} is called with {wanted}, but takes ({', '.join(needed)}){hint}"
+        )
+    return fitting[0]
+
+
 def check_on_event(on_event: Any, what: str, place: Place) -> None:
     """Check that `on_event` is a method."""
     if on_event is not None and not inspect.isfunction(on_event):
@@ -70,7 +114,7 @@ def check_on_event(on_event: Any, what: str, place: Place) -> None:
         )
 
 
-def check_group(group: Any, kind: type, what: str, place: Place) -> None:
+def check_group(group: Any, kind: type | tuple[type, ...], what: str, place: Place) -> None:
     """Check that a group is a declared one."""
     if group is not None and not isinstance(group, kind):
         raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")

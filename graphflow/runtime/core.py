@@ -31,10 +31,11 @@ from graphflow.runtime.declare import Group
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.failures import ErrorBudget, Failures
 from graphflow.runtime.host import Part
+from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import ParameterChange, Parameters
-from graphflow.runtime.rosout import Rosout, node_logger
+from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.topics import TopicSubscription
 from graphflow.times import NANOSECONDS, to_ns
@@ -206,7 +207,7 @@ class NodeCore:
             self._late.remove(part)
 
     def place(
-        self, callback: Callable[..., Any] | None, otherwise: str, group: Group | None, thread: bool
+        self, callback: Callable[..., Any] | None, otherwise: str, group: Group | HandlerGroup | None, thread: bool
     ) -> tuple[str, Any, HandlerGroup | None]:
         """A handler's name, how to call it, and the group whose slots its runs take.
 
@@ -352,6 +353,7 @@ class NodeCore:
                 await self._limited("on_shutdown", self.instance.on_shutdown)
             await self._limited("leaving what was entered", self.entered.aclose)
         finally:
+            self.log.say_gathered()
             # Even when this wait is cancelled: nothing stays open.
             if self._rosout is not None:
                 self._rosout.detach()
@@ -421,6 +423,8 @@ class NodeCore:
             # A deadlock's own text says where.
             place = "" if isinstance(error, DeadlockError) else place_in(error)
             self.log.error("%s: %s%s", label, error, place and f" ({place})")
+        elif not place_in(error):  # it was raised about the user's code, not in it
+            self.log.error("%s: %s: %s", label, type(error).__name__, error)
         else:
             trace = (type(error), error, users_part(error))
             self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)

@@ -190,6 +190,12 @@ def interface_of(cls: type[NodeClass]) -> Interface:
             kind = handler.kind
             endpoints.append(EndpointInfo(kind, handler.name, type_name, attribute, handler.place))
     dynamic = cls.dynamic_names
+    for pattern in () if isinstance(dynamic, bool) else dynamic:
+        if pattern[:1] not in ("/", "*", "?", "["):
+            raise DeclarationError(
+                f"{place}: dynamic_names: {pattern!r} would match nothing, since patterns are compared with full "
+                f"names; write '*/{pattern}'"
+            )
     return Interface(
         class_path=f"{cls.__module__}:{cls.__qualname__}",
         node_name=default_name(cls),

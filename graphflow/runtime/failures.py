@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
+from graphflow.deadlock.user_code import place_in
 from graphflow.errors import TooManyErrors
 from graphflow.interface import OnError
 from graphflow.runtime.host import Host
@@ -30,8 +31,8 @@ class Failures:
     def __init__(self, host: Host, budget: ErrorBudget | None, end: Callable[[BaseException], None]) -> None:
         self._host, self._budget, self._end = host, budget, end
         self._counted: deque[int] = deque()
-        self._silence: dict[str, tuple[int, int]] = {}
-        """Until when each handler's errors are not logged, and how many were not."""
+        self._silence: dict[tuple[str, str, str], tuple[int, int]] = {}
+        """Until when an error of a handler, of one kind and place, is not logged, and how many were not."""
 
     def failed(self, label: str, error: BaseException, on_error: OnError) -> None:
         """A handler has raised."""
@@ -43,12 +44,13 @@ class Failures:
             self._count(label, error, now, self._budget)
 
     def _say(self, label: str, error: BaseException, now: int) -> None:
-        """Log the first error of a handler, and then one a second."""
-        until, unsaid = self._silence.get(label, (0, 0))
+        """Log the first error of a kind and place in a handler, and then one a second."""
+        key = (label, type(error).__name__, place_in(error))
+        until, unsaid = self._silence.get(key, (0, 0))
         if now < until:
-            self._silence[label] = until, unsaid + 1
+            self._silence[key] = until, unsaid + 1
             return
-        self._silence[label] = now + NANOSECONDS, 0
+        self._silence[key] = now + NANOSECONDS, 0
         self._host.report_error(f"{label} ({unsaid} more before this)" if unsaid else label, error)
 
     def _count(self, label: str, error: BaseException, now: int, budget: ErrorBudget) -> None:

@@ -110,8 +110,7 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     if len(positional) not in arguments:
         wanted = " or ".join(["self", "self and one argument", "self and two arguments"][n - 1] for n in arguments)
         has = f"({', '.join(p.name for p in positional)})"
-        hint = "; it gets only the request and returns a new response" if handler.kind == "service" else ""
-        raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}{hint}")
+        raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}")
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
     # A separate record: `every = timer(1.0)` may decorate several methods.
@@ -191,6 +190,8 @@ def service(
 ) -> Callable[[F], F]:
     """Answer a service with the method: `async def add(self, request: X.Request) -> X.Response`.
 
+    As in ROS 2 it may take a second argument, an empty response to fill in and return.
+
     Args:
         introspection: What is published of each call on `name`/_service_event.
     """
@@ -199,7 +200,7 @@ def service(
     check_name(name, "@service", place)
     check_group(group, Group, "@service", place)
     handler = Handler("service", place, group, thread, type, name, introspection=introspection)
-    return lambda fn: _mark(fn, handler, range(2, 3))
+    return lambda fn: _mark(fn, handler, range(2, 4))
 
 
 def action(

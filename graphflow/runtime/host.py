@@ -13,6 +13,7 @@ from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import OnError
 from graphflow.runtime.context import Context
+from graphflow.runtime.dictionary import SpeaksRos
 
 
 class Host(Protocol):
@@ -61,7 +62,7 @@ class Host(Protocol):
         """Log an error: graphflow's own as a sentence, any other with its traceback."""
 
 
-class Part(ABC):
+class Part(SpeaksRos, ABC):
     """What a node opens, stops and closes: an endpoint, an action, a timer."""
 
     opens_last = False
@@ -93,5 +94,5 @@ class Part(ABC):
     def close(self) -> None:
         """Withdraw the part from the network. Closing twice is harmless."""
 
-    def clock_changed(self) -> None:  # noqa: B027 - most parts go by no clock
+    def clock_changed(self) -> None:
         """The node has switched to another clock."""

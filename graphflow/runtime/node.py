@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
-from typing import Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from graphflow.errors import DeclarationError
 from graphflow.executor.clock import Clock, period_ns
 from graphflow.executor.groups import HandlerGroup
 from graphflow.interface import GoalPolicy, GroupChange, Interface, OnClientLoss, OnError
@@ -14,15 +15,27 @@ from graphflow.machines.goal import GoalRules
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolution, Resolver
 from graphflow.qos import SERVICES, Qos
-from graphflow.runtime import declared
+from graphflow.runtime import declared, surroundings
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.actions import ActionServer
+from graphflow.runtime.checks import (
+    check_callback,
+    check_group,
+    check_on_error,
+    check_qos,
+    check_text,
+    check_type,
+    here,
+    written_at,
+)
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import NodeCore
 from graphflow.runtime.declare import Group, Param
+from graphflow.runtime.dictionary import SpeaksRos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
+from graphflow.runtime.made import with_made
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceServer
@@ -34,7 +47,7 @@ M = TypeVar("M", bound=Message)
 T = TypeVar("T")
 
 
-class Node:
+class Node(SpeaksRos):
     """A ROS 2 node as an async Python class. Subclass it, declare what it holds and does, and `graphflow.run` it.
 
     Args:
@@ -76,10 +89,12 @@ class Node:
         enable_logger_service: bool = True,
         **params: Any,
     ) -> None:
-        rules = [r if isinstance(r, Remap) else Remap.parse(r) for r in remap]
-        names = Resolver(name or declared.default_name(type(self)), namespace, rules)
-        values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}}
-        self._core = NodeCore(self, names, values, concurrency or {})
+        given = surroundings.take(self)
+        rules = [*given.remaps, *(r if isinstance(r, Remap) else Remap.parse(r) for r in remap)]
+        own_name = given.name or name or declared.default_name(type(self))
+        names = Resolver(own_name, namespace if given.namespace is None else given.namespace, rules)
+        values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}, **given.overrides}
+        self._core = NodeCore(self, names, values, {**(concurrency or {}), **given.concurrency})
         self.log = self._core.log
         """The node's logger; its records go to the console and to /rosout."""
         self.parameters = self._core.parameters
@@ -89,8 +104,8 @@ class Node:
 
     @classmethod
     def interface(cls) -> Interface:
-        """Everything the class declares, as data; known without making a node."""
-        return declared.interface_of(cls)
+        """Everything the class declares, and what its methods are seen to make, as data; known without a node."""
+        return with_made(cls, declared.interface_of(cls))
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -101,6 +116,14 @@ class Node:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.full_name}{' running' if self.is_running else ''}>"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Raise AttributeError, which says what rclpy's attributes are called here."""
+            if name in ("_core", "log", "parameters"):
+                raise AttributeError(f"{type(self).__name__}.__init__ must call super().__init__(...) first", name=name)
+            return super().__getattr__(name)
 
     @property
     def name(self) -> str:
@@ -171,7 +194,10 @@ class Node:
         self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
     ) -> TopicPublisher[M]:
         """A publisher on `name`, remapped; `on_event` is called with each `QosEvent`."""
-        core = self._core
+        core, place = self._core, here()
+        check_type(type_, Message, "create_publisher", place)
+        check_text(name, "create_publisher", place)
+        check_qos(qos, None, place)
         return core.add(TopicPublisher(core, type_, core.names.resolve(name), Qos.of(qos), on_event))
 
     def create_subscription(
@@ -181,7 +207,7 @@ class Node:
         callback: Callable[[M], Any] | Callable[[M, MessageInfo], Any] | None,
         qos: Qos | int = 10,
         *,
-        group: Group | None = None,
+        group: Group | HandlerGroup | None = None,
         thread: bool = False,
         takes_info: bool = False,
         ignore_local: bool = False,
@@ -197,6 +223,15 @@ class Node:
             on_event: Called with each `QosEvent`.
             on_error: What an error in the callback means for the node.
         """
+        what, place = "create_subscription", here()
+        check_type(type_, Message, what, place)
+        check_text(name, what, place)
+        check_qos(qos, None, place)
+        check_group(group, (Group, HandlerGroup), what, place)
+        check_on_error(on_error, place)
+        if callback is not None:
+            hint = "" if takes_info else "; with takes_info=True it gets the message and a MessageInfo"
+            check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
         core, resolved = self._core, self._core.names.resolve(name)
         label, call, slots = core.place(callback, f"subscription {name}", group, thread)
         options: dict[str, Any] = {"takes_info": takes_info, "ignore_local": ignore_local, "on_event": on_event}
@@ -207,22 +242,30 @@ class Node:
         self,
         type_: type[Service[Request, Response]],
         name: str,
-        callback: Callable[[Request], Any],
+        callback: Callable[[Request], Any] | Callable[[Request, Response], Any],
         *,
         qos: Qos | int = SERVICES,
-        group: Group | None = None,
+        group: Group | HandlerGroup | None = None,
         thread: bool = False,
         introspection: Introspection = "off",
     ) -> ServiceServer[Request, Response]:
         """A service on `name`, remapped; `callback` takes the request and returns the response.
 
+        As in ROS 2 it may take a second argument, an empty response to fill in and return.
+
         Args:
             introspection: What is published of each call on `name`/_service_event: nothing, its metadata, or
                 request and response as well.
         """
+        what, place = "create_service", here()
+        check_type(type_, Service, what, place)
+        check_text(name, what, place)
+        check_group(group, (Group, HandlerGroup), what, place)
+        arguments = check_callback(callback, range(1, 3), what, place)
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"service {name}", group, thread)
-        made = ServiceServer(core, type_, resolved, Qos.of(qos), call, label, slots)
+        takes: dict[str, Any] = {"takes_response": arguments == 2, "place": written_at(callback)}
+        made = ServiceServer(core, type_, resolved, Qos.of(qos), call, label, slots, **takes)
         made.configure_introspection(introspection)
         return core.add(made, late=True)
 
@@ -233,14 +276,17 @@ class Node:
         *,
         qos: Qos | int = SERVICES,
         introspection: Introspection = "off",
-        group: Group | None = None,
+        group: Group | HandlerGroup | None = None,
     ) -> ServiceClient[Request, Response]:
         """A client of the service `name`, remapped; `introspection` as for `create_service`.
 
         Args:
             group: Responses wait for a slot of it, as in ROS 2; without a group they need none.
         """
-        core = self._core
+        core, place = self._core, here()
+        check_type(type_, Service, "create_client", place)
+        check_text(name, "create_client", place)
+        check_group(group, (Group, HandlerGroup), "create_client", place)
         slots = None if group is None else core.groups.at_work(group)
         made = ServiceClient(core, type_, core.names.resolve(name, "service"), Qos.of(qos), slots)
         made.configure_introspection(introspection)
@@ -252,7 +298,7 @@ class Node:
         name: str,
         callback: Callable[[Any], Any],
         *,
-        group: Group | None = None,
+        group: Group | HandlerGroup | None = None,
         thread: bool = False,
         policy: GoalPolicy = "reject",
         accept: Callable[[Goal], Any] | None = None,
@@ -269,6 +315,11 @@ class Node:
             on_client_loss: What becomes of a goal whose client has gone.
             cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
         """
+        what, place = "create_action_server", here()
+        check_type(type_, Action, what, place)
+        check_text(name, what, place)
+        check_group(group, (Group, HandlerGroup), what, place)
+        check_callback(callback, range(1, 2), what, place)
         core, resolved = self._core, self._core.names.resolve(name, "service")
         label, call, slots = core.place(callback, f"action {name}", group, thread)
         rules = GoalRules(policy, on_client_loss, cleanup_timeout=cleanup_timeout)
@@ -279,6 +330,8 @@ class Node:
         self, type_: type[Action[Goal, Result, Feedback]], name: str
     ) -> GoalClient[Goal, Result, Feedback]:
         """A client of the action `name`, remapped."""
+        check_type(type_, Action, "create_action_client", here())
+        check_text(name, "create_action_client", here())
         return self._core.add(GoalClient(self._core, type_, self._core.names.resolve(name, "service")))
 
     def create_timer(
@@ -286,7 +339,7 @@ class Node:
         period: float,
         callback: Callable[..., Any],
         *,
-        group: Group | None = None,
+        group: Group | HandlerGroup | None = None,
         thread: bool = False,
         takes_info: bool = False,
         on_error: OnError = "budget",
@@ -296,6 +349,11 @@ class Node:
         Raises:
             ValueError: The period is not positive.
         """
+        what, place = "create_timer", here()
+        if callable(period):
+            raise DeclarationError(f"{place}: {what}: the period comes first: create_timer(0.5, self.tick)")
+        check_group(group, (Group, HandlerGroup), what, place)
+        check_callback(callback, range(1, 2) if takes_info else range(1), what, place)
         nanoseconds = period_ns(period, None)
         label, call, slots = self._core.place(callback, "timer", group, thread)
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)

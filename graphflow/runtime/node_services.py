@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 from graphflow.errors import InterfaceError
 from graphflow.msgs import registry
 from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.rosout import LEVELS, ROOT
+from graphflow.runtime.logger import ROOT
+from graphflow.runtime.rosout import LEVELS
 from graphflow.wire.schema import Field, Message
 from graphflow.wire.typehash import referenced, type_id
 

@@ -13,21 +13,17 @@ from typing import TYPE_CHECKING
 from graphflow.errors import GraphflowError
 from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
+from graphflow.runtime import unawaited
 from graphflow.runtime.host import Host, Part
+from graphflow.runtime.logger import ROOT
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.times import Time
 
 if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import Log
 
-ROOT = "graphflow.node"
 LEVELS = {logging.DEBUG: 10, logging.INFO: 20, logging.WARNING: 30, logging.ERROR: 40, logging.CRITICAL: 50}
 _WORDS = {logging.DEBUG: "DEBUG", logging.INFO: "INFO", logging.WARNING: "WARN", logging.ERROR: "ERROR"}
-
-
-def node_logger(full_name: str) -> logging.Logger:
-    """The logger of the node `full_name`: `/turtle1/follower` logs as `turtle1.follower`."""
-    return logging.getLogger(f"{ROOT}.{full_name[1:].replace('/', '.')}")
 
 
 class ConsoleFormatter(logging.Formatter):
@@ -55,9 +51,13 @@ def log_level(word: str) -> int:
 
 
 def setup_console(level: int = logging.INFO) -> None:
-    """Write graphflow's log records to stderr in ROS 2's format. Calling it again only changes the level."""
+    """Write graphflow's log records to stderr in ROS 2's format, and what Python warns of forgotten awaits with them.
+
+    Calling it again only changes the level.
+    """
     logger = logging.getLogger("graphflow")
     logger.setLevel(level)
+    unawaited.watch()
     if not any(isinstance(h.formatter, ConsoleFormatter) for h in logger.handlers):
         handler = logging.StreamHandler(sys.stderr)
         handler.setFormatter(ConsoleFormatter())

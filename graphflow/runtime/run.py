@@ -18,6 +18,7 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
+from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
@@ -201,7 +202,9 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
     Raises:
         GraphflowError: A parameter does not exist or fit.
     """
-    node = cls(remap=ros.remaps, overrides=ros.params_for(cls.interface()))
+    interface = cls.interface()
+    given = Surroundings(remaps=ros.remaps, overrides=ros.params_for(interface))
+    node = make_within(cls, given, interface.node_name)
     core_of(node).ensure_made()
     return node
 

@@ -106,27 +106,32 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         # A token may come before what it announces: only both together make the first call safe.
         return bool(self.matched) and self._caller is not None and self._caller.has_server
 
-    async def wait_ready(self, timeout: float | None = None) -> None:
-        """Wait until there is a server.
+    async def wait_ready(self, timeout: float | None = None) -> bool:
+        """Wait until there is a server; returns whether there is one.
 
         Args:
             timeout: Seconds; None to wait as long as it takes.
 
         Raises:
-            ServiceUnavailable: No server came in time.
             ClosedError: The node is not running, or stopped meanwhile.
         """
         if self.service_is_ready():
-            return
+            return True
         future: Future[None] = self.host.context.loop.create_future()
         self._waiting.add(future)
         try:
             async with self.host.clock.timeout(timeout) if timeout is not None else nullcontext():
                 await future
         except TimeoutError:
-            raise ServiceUnavailable(self._nobody()) from None
+            return False
         finally:
             self._waiting.discard(future)
+        return True
+
+    async def expect_ready(self, timeout: float | None) -> None:
+        """As `wait_ready`. Raises ServiceUnavailable, which says what there is instead, if no server comes in time."""
+        if not await self.wait_ready(timeout):
+            raise ServiceUnavailable(self._nobody())
 
     def _look_ready(self) -> None:
         if self._waiting and self.entity is not None and self.service_is_ready():
@@ -180,7 +185,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             timeout = self.host.context.call_timeout
         started = self.host.clock.monotonic_ns()
         if not self._reaches_server():
-            await self.wait_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+            await self.expect_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
         self._sequence += 1
         sequence, gid = self._sequence, self._announced().gid
         self._service_events.tell(ServiceEvent.REQUEST_SENT, gid, sequence, request=request)

@@ -41,6 +41,8 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     Args:
         label: The handler's name, for messages.
         is_inner: Whether the service is one that every node has, or part of an action.
+        takes_response: Whether the handler is given an empty response to fill in.
+        place: Where the handler is written.
     """
 
     kind = Kind.SERVICE
@@ -51,16 +53,19 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         type_: type[Service[Request, Response]],
         name: str,
         qos: Qos,
-        callback: Callable[[Request], Any],
+        callback: Callable[..., Any],
         label: str = "",
         group: HandlerGroup | None = None,
         *,
         is_inner: bool = False,
+        takes_response: bool = False,
+        place: str = "",
     ) -> None:
         super().__init__(host, type_.NAME, name, qos)
         self.type = type_
         self._is_inner = is_inner
         self._callback = callback
+        self._takes_response, self._place = takes_response, place
         self._label = label or f"service {name}"
         self._group = group
         service = registry.service_schema(type_.NAME)
@@ -128,7 +133,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
         message = self._requests.decode(request.payload)
         self._service_events.tell(ServiceEvent.REQUEST_RECEIVED, asked.gid, asked.sequence, request=message)
-        return self._callback(message)
+        return self._callback(message, self._response()) if self._takes_response else self._callback(message)
 
     def _finished(self, request: Any, result: Any, error: BaseException | None) -> None:
         if not self.host.is_running:  # stopping did not wait for this run, and its clients know that it has gone
@@ -140,6 +145,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 if result.__class__ is not self._response:
                     raise TypeError(
                         f"the handler of {self.name} returned {result!r}, not {self._response.__qualname__}"
+                        f"{self._place and f' ({self._place})'}"
                     )
                 payload = self._responses.encode(result)
             except (TypeError, EncodeError) as wrong:

@@ -8,12 +8,13 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
-from graphflow.errors import GraphflowError, NoModule, Place, Problem
+from graphflow.errors import DeclarationError, GraphflowError, NoModule, Place, Problem
 from graphflow.graph.project import PACKAGE, add_interfaces
 from graphflow.interface import Interface
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 from graphflow.runtime.node import Node
+from graphflow.runtime.surroundings import why_not
 
 _roots: list[str] = []
 
@@ -74,8 +75,11 @@ def _where(error: BaseException) -> str:
             place = f"{file}:{frame.tb_lineno}: "
         frame = frame.tb_next
     text = str(error)
-    if isinstance(error, ModuleNotFoundError) and error.name and error.name.partition(".")[0] in registry.packages():
-        text += f"; write graphflow.msgs.{error.name}"
+    missing = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    if missing in registry.packages():
+        text += f"; write graphflow.msgs.{error.name}"  # type: ignore[attr-defined]
+    elif missing == "rclpy":
+        text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
     # A declaration's error names its own place, which is nearer to the mistake than the frame it was raised in.
     return text if text.startswith("/") else f"{place}{type(error).__name__}: {text}"
 
@@ -88,8 +92,12 @@ def interfaces(class_paths: list[str]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for path in class_paths:
         try:
-            interface = import_class(path).interface()
-            has_arrays = any(registry.has_numeric_arrays(endpoint.type) for endpoint in interface.endpoints)
+            cls = import_class(path)
+            reason = why_not(cls)
+            if reason:
+                raise DeclarationError(f"{cls.interface().place}: {reason}")
+            interface = cls.interface()
+            has_arrays = any(registry.has_numeric_arrays(e.type) for e in interface.endpoints if e.type)
             found[path] = {**interface.to_json(), "needs_numpy": has_arrays or "numpy" in sys.modules}
         except GraphflowError as error:
             found[path] = {"problem": str(error)}

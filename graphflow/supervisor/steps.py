@@ -42,7 +42,7 @@ class StepRunner:
         request: Any = from_plain(service.Request, step.request)
         client = self._node.create_client(service, step.call)
         try:
-            await client.wait_ready(step.timeout)
+            await client.expect_ready(step.timeout)
             return await client.call(request, timeout=step.timeout)
         finally:
             client.close()

@@ -18,9 +18,11 @@ from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
 from graphflow.runtime.context import Context
+from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
+from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.transport import loop
 
@@ -50,15 +52,17 @@ def make_node(planned: PlannedNode) -> Node:
         for name, setting in planned.params.items()
         if not setting.is_optional or has(name) is not None
     }
-    node = cls(
+    given = Surroundings(
         names.name,
-        namespace=names.namespace,
-        remap=[r.remap() for r in planned.remaps],
-        overrides=overrides,
-        concurrency={name: group.change for name, group in planned.concurrency.items()},
+        names.namespace,
+        [r.remap() for r in planned.remaps],
+        overrides,
+        {name: group.change for name, group in planned.concurrency.items()},
     )
+    node = make_within(cls, given, names.name)
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
+    core_of(node)  # which needs its __init__ to have called ours
     return node
 
 

@@ -320,7 +320,7 @@ async def test_an_unused_remap_is_said(graph: Graph, caplog: pytest.LogCaptureFi
     assert record.getMessage() == ("the remap chater:=news matches no name of this node; did you mean 'chatter'?")
 
 
-@pytest.mark.parametrize(("names", "warned"), [(True, False), (("*/pose",), False), (("other",), True)])
+@pytest.mark.parametrize(("names", "warned"), [(True, False), (("*/pose",), False), (("*/other",), True)])
 async def test_a_remap_of_a_name_made_later(
     graph: Graph, caplog: pytest.LogCaptureFixture, names: Any, warned: bool
 ) -> None:

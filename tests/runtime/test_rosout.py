@@ -12,7 +12,8 @@ import pytest
 from graphflow import GraphflowError, Node, Qos
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import Durability
-from graphflow.runtime.rosout import ROOT, ConsoleFormatter, log_level, node_logger, setup_console
+from graphflow.runtime.logger import ROOT, node_logger
+from graphflow.runtime.rosout import ConsoleFormatter, log_level, setup_console
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 

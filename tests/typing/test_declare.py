@@ -144,7 +144,7 @@ async def an_answer_is_of_the_services_type(node: Everything) -> None:
     await node.adder.call(Trigger.Request())  # type: ignore[arg-type]
     await node.adder.call(a=1, b=2)  # type: ignore[call-arg]
     response.total  # type: ignore[attr-defined]  # noqa: B018
-    assert_type(await node.adder.wait_ready(1.0), None)
+    assert_type(await node.adder.wait_ready(1.0), bool)
 
 
 async def decorators_return_the_function(node: Everything) -> None:

@@ -1,0 +1,205 @@
+"""The words of rclpy and what they are called here: one table for error messages and for the page "coming from ROS 2".
+
+`python -m graphflow.runtime.dictionary` prints the table of that page.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+
+class Word(NamedTuple):
+    """One row.
+
+    Attributes:
+        ros: How it is written with rclpy.
+        here: How it is written with graphflow.
+        attributes: Attributes of rclpy's objects that ours do not have: who uses them is told `here`.
+    """
+
+    ros: str
+    here: str
+    attributes: str = ""
+
+
+WORDS = (
+    Word(
+        "`rclpy.init`, `spin`, `shutdown`",
+        "`graphflow.run(Talker)`; in your own program `async with graphflow.running(node):`",
+    ),
+    Word("`spin_once`, `spin_until_future_complete`", "not needed: `await`", "executor"),
+    Word('`super().__init__("talker")`', "the same, or leave it out: the name is then the class's in snake case"),
+    Word("`from std_msgs.msg import String`", "`from graphflow.msgs.std_msgs.msg import String`"),
+    Word('`create_publisher(String, "chatter", 10)`', 'the same, or `chatter = Publisher(String, "chatter", 10)`'),
+    Word(
+        '`create_subscription(String, "chatter", self.heard, 10)`',
+        'the same, or `@subscription(String, "chatter", 10)`',
+    ),
+    Word("`create_timer(1.0, self.tick)`", "the same, or `@timer(1.0)`, `@timer(hz=rate)`"),
+    Word(
+        '`create_service(Srv, "name", self.answer)`',
+        'the same, or `@service(Srv, "name")`; the handler takes `(request)` or `(request, response)`',
+    ),
+    Word('`create_client(Srv, "name")`', 'the same, or `Client(Srv, "name")`'),
+    Word("`client.call_async(request)`, then spin", "`await client.call(request, timeout=2.0)`", "call_async"),
+    Word("`client.call(request)`", "the same with `await`; the rest of the node keeps running"),
+    Word(
+        "`client.wait_for_service(1.0)`",
+        "`await client.wait_ready(1.0)`, which returns True or False",
+        "wait_for_service wait_for_server",
+    ),
+    Word("`client.service_is_ready()`", "the same"),
+    Word("`future.add_done_callback(f)`", "the lines after the `await`"),
+    Word(
+        '`declare_parameter("rate", 1.0)`',
+        '`rate = Param(1.0)`; `self.declare_parameter("rate", 1.0)` returns the value',
+    ),
+    Word(
+        "`declare_parameters(ns, [...])`",
+        "a `Param` for each in the class, or `self.declare_parameter` for each",
+        "declare_parameters",
+    ),
+    Word(
+        '`get_parameter("rate").value`',
+        '`self.rate`, or `self.parameters.get("rate")`',
+        "get_parameter get_parameters get_parameter_or get_parameters_by_prefix get_parameter_type get_parameter_types",
+    ),
+    Word('`has_parameter("rate")`', '`"rate" in self.parameters`', "has_parameter"),
+    Word(
+        "`set_parameters([...])`",
+        '`self.rate = 2.0`, or `self.parameters.set({"rate": 2.0})`',
+        "set_parameters set_parameters_atomically",
+    ),
+    Word("`describe_parameter(name)`", "`self.parameters.describe(name)`", "describe_parameter describe_parameters"),
+    Word(
+        "`add_on_set_parameters_callback`",
+        "limits in `Param`, or a method with `@rate.check`; for several at once `self.parameters.check(f)`",
+        "add_on_set_parameters_callback add_pre_set_parameters_callback set_parameters_callback",
+    ),
+    Word(
+        "`add_post_set_parameters_callback`",
+        "a method with `@rate.on_change`, or `self.parameters.observe(f)`",
+        "add_post_set_parameters_callback",
+    ),
+    Word("`ParameterDescriptor`, ranges", '`Param(1.0, ge=0.0, le=5.0, step=0.5, doc="...", read_only=True)`'),
+    Word("`dynamic_typing=True`", '`self.declare_parameter("name", 1, dynamic=True)`'),
+    Word("`undeclare_parameter`", "the same"),
+    Word("a callback with `(msg, info)`", "a method with a third argument, `info: MessageInfo`"),
+    Word("`ignore_local_publications`", "`ignore_local=True`"),
+    Word('`get_logger().info("...")`', '`self.log.info("...")`, a Python logger', "get_logger"),
+    Word(
+        "`get_logger().info(..., throttle_duration_sec=1.0)`, `once=True`",
+        '`self.log.info("...", throttle=1.0)`, `once=True`',
+    ),
+    Word(
+        "`get_clock().now()`",
+        "`self.clock.now()`; no `.to_msg()`, since a `Time` can be put into a message",
+        "get_clock",
+    ),
+    Word("`now().to_msg()`", "the `Time` itself, which can be put into a message", "to_msg"),
+    Word("`now().nanoseconds`", "the same; `.seconds` as a float"),
+    Word("`Duration(seconds=1.0)`", "`Duration.of(1.0)`"),
+    Word("`create_rate(10).sleep()`", "`async for n in self.clock.every(hz=10.0):`", "create_rate"),
+    Word("`create_guard_condition`", "an `asyncio.Event` that a `@task` awaits", "create_guard_condition"),
+    Word(
+        "`get_name()`, `get_namespace()`, `get_fully_qualified_name()`",
+        "`node.name`, `node.namespace`, `node.full_name`",
+        "get_name get_namespace get_fully_qualified_name",
+    ),
+    Word(
+        "`get_topic_names_and_types()`, `get_node_names()`",
+        "`self.context.cache.topics()`, `.nodes()`, `.services()`, `.actions()`",
+        "get_topic_names_and_types get_service_names_and_types get_node_names get_node_names_and_namespaces"
+        " get_publishers_info_by_topic get_subscriptions_info_by_topic count_publishers count_subscribers",
+    ),
+    Word("`publisher.get_subscription_count()`", "the same"),
+    Word("`publisher.topic_name`, `client.srv_name`", "`.name`", "topic topic_name srv_name service_name"),
+    Word("`QoSProfile(depth=1, durability=...)`", "`Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)`"),
+    Word(
+        "`MutuallyExclusiveCallbackGroup()`",
+        "`Group(1)`; a class's `default_group = Group(1)` is rclpy's default",
+        "default_callback_group",
+    ),
+    Word("`ReentrantCallbackGroup()`", "`Group(None)`"),
+    Word("`callback_group=`", "`group=`, with a `Group` of the class"),
+    Word(
+        "`SingleThreadedExecutor`, `MultiThreadedExecutor`",
+        "one event loop per process; `thread=True` and `await self.offload(f)` for code that blocks",
+    ),
+    Word(
+        "`destroy_publisher(p)` and so on",
+        "`p.close()`",
+        "destroy_publisher destroy_subscription destroy_client destroy_service destroy_timer destroy_rate destroy",
+    ),
+    Word(
+        "`destroy_node()`",
+        "not needed: done at the end of `run` or `running`; `self.shutdown()` ends the node from within",
+        "destroy_node",
+    ),
+    Word(
+        '`ActionServer(node, Type, "name", execute)`',
+        '`@action(Type, "name")` on the method, or `create_action_server`',
+    ),
+    Word(
+        '`ActionClient(node, Type, "name")`',
+        '`ActionClient(Type, "name")`, then `async with self.client.send(goal) as sent:`',
+    ),
+    Word(
+        "`send_goal_async(goal)`, `get_result_async()`",
+        "`async with client.send(goal) as sent:`, then `await sent.result()`",
+        "send_goal_async get_result_async get_result",
+    ),
+    Word("`cancel_goal_async()`", "`await sent.cancel()`", "cancel_goal_async cancel_goal"),
+    Word("`ServerGoalHandle`, `ClientGoalHandle`", "the same; a handler's argument is annotated `Type.Handle`"),
+    Word("`goal_handle.publish_feedback(f)`", "`goal.feedback(f)`", "publish_feedback"),
+    Word("`goal_handle.is_cancel_requested`", "the same; and cancelling raises `CancelledError` at an `await`"),
+    Word("`goal_handle.succeed()`", "return the result", "succeed"),
+    Word("`goal_handle.abort()`", "`raise Abort(reason)`", "abort"),
+    Word("`goal_handle.canceled()`", "let `CancelledError` pass; `goal.partial` is the result", "canceled"),
+    Word("`LifecycleNode`", "not yet"),
+    Word("`tf2_ros`", "not yet"),
+    Word("`use_sim_time`, `/clock`", "the same"),
+    Word(
+        "`SubscriptionEventCallbacks`, `PublisherEventCallbacks`", "`on_event=` with a method that takes a `QosEvent`"
+    ),
+    Word("`publisher.assert_liveliness()`", "the same"),
+    Word("`qos_profile_sensor_data` and so on", "`graphflow.qos.SENSOR_DATA` and so on"),
+    Word("`service.configure_introspection(...)`", 'the same, or `@service(..., introspection="contents")`'),
+    Word("code in `__init__` that opens devices", "`async def on_start(self)`, and `on_shutdown` at the end"),
+    Word("`rclpy.spin` in a thread, `wait_for_message`", "`async for message in self.chatter:` in a `@task`"),
+)
+
+
+@cache
+def _by_attribute() -> dict[str, Word]:
+    return {name: word for word in WORDS for name in word.attributes.split()}
+
+
+def translation(attribute: str) -> str:
+    """What an attribute of rclpy's is called here; empty for one that is not rclpy's."""
+    word = _by_attribute().get(attribute)
+    return "" if word is None else f"here it is {word.here}".replace("`", "")
+
+
+class SpeaksRos:
+    """A class whose AttributeErrors say what rclpy's attributes are called here."""
+
+    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+
+        def __getattr__(self, name: str) -> object:
+            """Raise AttributeError: this is called for what is not there."""
+            text = f"{type(self).__name__!r} object has no attribute {name!r}"
+            hint = translation(name)
+            raise AttributeError(f"{text}; {hint}" if hint else text, name=name, obj=self)
+
+
+def page() -> str:
+    """The table of the page."""
+    rows = (f"| {word.ros} | {word.here} |" for word in WORDS)
+    return "\n".join(["| rclpy | graphflow |", "|---|---|", *rows])
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page() + "\n")
