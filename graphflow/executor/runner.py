@@ -10,6 +10,7 @@ from collections.abc import Callable, Coroutine
 from contextvars import Context, copy_context
 from dataclasses import dataclass
 from inspect import iscoroutine
+from time import monotonic
 from types import CoroutineType
 from typing import Any, Literal
 
@@ -19,6 +20,8 @@ from graphflow.executor.ledger import Ledger
 
 BURST = 64
 """Runs of one handler in a row before the loop gets a turn."""
+SLICE = 0.003
+"""Seconds after which no further run follows in the row: timers, other handlers and Ctrl-C have waited that long."""
 
 _next_number = itertools.count(1).__next__
 
@@ -183,6 +186,7 @@ class Runner:
         group, active, items = self.group, self.active, self.items
         self._waking = True
         try:
+            until = monotonic() + SLICE
             for _ in range(BURST):
                 if not items or self._closed:
                     return
@@ -198,6 +202,8 @@ class Runner:
                 self.runs += 1
                 context = self._context.copy()
                 context.run(self._begin, items.popleft(), context, group)
+                if monotonic() > until:
+                    break
                 group = self.group  # the handler may have moved itself
         finally:
             self._waking = False

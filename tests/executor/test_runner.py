@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from graphflow.executor import runner
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import BURST, Run, Runner, RunnerSpec
@@ -598,6 +599,28 @@ async def test_a_busy_handler_gives_the_loop_its_turns(graphflow_runner: asyncio
         await asyncio.sleep(0)
         assert runs - before <= BURST
         before = runs
+
+
+async def test_a_slow_handler_gives_the_loop_its_turns(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once its runs in a row have taken SLICE, the next one waits for the loop."""
+    now, runs = 0.0, 0
+
+    def handler(takes: float) -> None:
+        nonlocal now, runs
+        now += takes
+        runs += 1
+
+    monkeypatch.setattr(runner, "monotonic", lambda: now)
+    bench = Bench(handler)
+    bench.put(*[1.0] * 3, *[runner.SLICE / 4] * 8)
+    turns = []
+    while runs < 11:
+        before = runs
+        await asyncio.sleep(0)
+        turns.append(runs - before)
+    assert [n for n in turns if n] == [1, 1, 1, 5, 3]
 
 
 async def test_arrivals_do_not_add_up_to_longer_bursts(graphflow_runner: asyncio.Runner) -> None:
