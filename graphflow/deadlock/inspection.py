@@ -16,6 +16,7 @@ from typing import Any
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.search import Search
 from graphflow.errors import GraphflowError, InvalidName, RemoteError
+from graphflow.executor.allowance import Allowance
 from graphflow.executor.runner import Runner
 from graphflow.machines.wait_graph_json import to_json
 from graphflow.names import did_you_mean
@@ -25,6 +26,10 @@ from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 
 LAG_LIMIT = 0.2
 """Seconds to wait for the event loop to come round before it is called late."""
+ANSWERS, LOOKS = 200, 20
+"""How often a second other processes can have the waits or the numbers told anew, and a deadlock looked for."""
+MOVE_BOUND = 10_000
+"""Bytes of a request to move a handler."""
 _KINDS = ("timer", "subscription", "service", "action")
 
 
@@ -34,6 +39,10 @@ class Inspection:
     def __init__(self, process: Surroundings, search: Search) -> None:
         self._process, self._search = process, search
         self._thread = threading.get_ident()
+        self._waits_allowed, self._numbers_allowed = Allowance(ANSWERS), Allowance(ANSWERS)
+        self._looks_allowed = Allowance(LOOKS)
+        self._last_waits = self._last_numbers = b"{}"
+        """What is answered to those who ask too often."""
         session, domain = process.session, process.domain
         self._reports = (
             session.open_report(answer_key(domain, WAITS, session.zid), self._waits),
@@ -45,6 +54,8 @@ class Inspection:
 
     def _waits(self) -> bytes:
         """Runs on any thread."""
+        if not self._waits_allowed.take():
+            return self._last_waits
         search, watchdog = self._search, self._search.watchdog
         nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
         told = {
@@ -57,14 +68,18 @@ class Inspection:
             "late": watchdog.late,
             "longest": watchdog.longest,
         }
-        return json.dumps(told).encode()
+        self._last_waits = json.dumps(told).encode()
+        return self._last_waits
 
     def _numbers(self) -> bytes:
         """Runs on any thread."""
+        if not self._numbers_allowed.take():
+            return self._last_numbers
         lag = self._lag()
         nodes = {node.full_name: node.statistics() for node in list(self._process.nodes)}
         told = {"process": self._process.session.zid, "lag": lag, "nodes": nodes}
-        return json.dumps(told, default=str).encode()
+        self._last_numbers = json.dumps(told, default=str).encode()
+        return self._last_numbers
 
     def _lag(self) -> float:
         """Seconds that the event loop takes to come round; where it has not, those since it should have."""
@@ -80,13 +95,16 @@ class Inspection:
 
     def _look(self) -> bytes:
         """Runs on any thread."""
-        self._search.look_now()
+        if self._looks_allowed.take():
+            self._search.look_now()
         return b""
 
     def _asked(self) -> None:
         while self._inbox.items:
             request = self._inbox.items.popleft()
             try:
+                if len(request.payload) > MOVE_BOUND:
+                    raise InvalidName(f"a request of {len(request.payload)} bytes names no handler")
                 wanted = json.loads(request.payload)
                 answer = self._move(str(wanted["node"]), str(wanted["handler"]), str(wanted["group"]))
             except (ValueError, KeyError, TypeError, RecursionError, GraphflowError) as error:

@@ -14,6 +14,9 @@ from graphflow.interface import NO_GROUP, GroupChange, WhenFull
 from graphflow.machines.group import GroupState
 from graphflow.names import did_you_mean
 
+GROUPS_BOUND = 100
+"""Groups of a node, beyond which moving a handler makes no more."""
+
 
 class DeclaredGroup(Protocol):
     """What a class says about a group."""
@@ -209,6 +212,8 @@ class Groups:
             return None
         if not name.isidentifier():
             raise DeclarationError(f"{name!r} is not a group name; use letters, digits and _")
+        if name not in self.by_name and len(self.by_name) >= GROUPS_BOUND:
+            raise DeclarationError(f"this node has {GROUPS_BOUND} groups; no more are made")
         return self.by_name.setdefault(name, HandlerGroup(name=name))
 
     def refuse_strays(self) -> None:

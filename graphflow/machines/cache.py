@@ -13,6 +13,8 @@ from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 ACTION_FEEDBACK = "/_action/feedback"
 ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
+TOKENS_BOUND = 100_000
+"""Tokens of a domain that are remembered."""
 
 
 class GraphChange(NamedTuple):
@@ -27,6 +29,8 @@ class GraphCache:
 
     def __init__(self, tokens: Iterable[str] = ()) -> None:
         self._entities: dict[str, Entity] = {}
+        self.refused = 0
+        """Tokens that are malformed, or beyond `TOKENS_BOUND`."""
         for token in tokens:
             self.apply(token, alive=True)
 
@@ -49,8 +53,9 @@ class GraphCache:
             return changes
         if token in self._entities:
             return []
-        entity = parse_token(token)
+        entity = parse_token(token) if len(self._entities) < TOKENS_BOUND else None
         if entity is None:
+            self.refused += 1
             return []
         self._entities[token] = entity
         return [GraphChange(entity, True)]

@@ -14,6 +14,7 @@ from graphflow.deadlock.inspection import Inspection
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.search import Search
 from graphflow.domain import domain_id
+from graphflow.errors import printable
 from graphflow.executor.clock import Clock, WallClock
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
@@ -219,11 +220,15 @@ class Context:
             stop()
 
     def _token(self, token: str, alive: bool) -> None:
+        refused = self.cache.refused
         for change in self.cache.apply(token, alive=alive):
             if alive and not self._advised:
                 self._advise(change.entity)
             for listener in [*self._by_name.get(change.entity.name, ()), *self._listeners]:
                 listener(change)
+        if refused == 0 and self.cache.refused:
+            text = printable(token[:200])
+            logger.warning("a liveliness token is left out, since it is malformed or one too many: %s", text)
 
     def _advise(self, entity: Entity) -> None:
         """Log once that a node on the network uses another wire profile."""

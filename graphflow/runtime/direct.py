@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import logging
 from asyncio import AbstractEventLoop
+from collections import OrderedDict
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -31,6 +32,10 @@ logger = logging.getLogger("graphflow")
 
 _HELLO = 0
 """The sequence number that opens a line."""
+EARLY_BOUND = 256
+"""Hellos that are remembered until the client's token comes."""
+_WHERE_BOUND = 80
+"""Bytes of a hello: a session's id and an endpoint's."""
 
 Heard = Callable[[bytes, bytes, int, bytes], None]
 """Called with what arrives: payload, attachment, and of that the sequence number and the GID."""
@@ -133,17 +138,25 @@ class ServerLines:
         self._switchboard, self._entity, self._runner, self._asked = switchboard, entity, runner, asked
         self._senders: dict[bytes, Sender] = {}
         """Senders to the clients, by GID."""
+        self._clients: dict[bytes, str] = {}
+        """Where announced clients hear responses, by GID."""
+        self._early: OrderedDict[bytes, str] = OrderedDict()
+        """Hellos of clients that have not been announced yet, likewise."""
         self._is_listening = False
         self._is_closing = False
         self._unanswered = 0
 
-    def client_came(self) -> None:
+    def client_came(self, client: Entity) -> None:
         """A client has come, which may be graphflow's."""
+        self._clients[client.gid] = where = f"{client.zid}/{client.eid}"
         if not self._is_listening:
             self._is_listening = True
             self._switchboard.listen("ask", self._entity, self._heard, self._runner)
+        if self._early.pop(client.gid, "") == where:
+            self._open(client.gid, where)
 
     def client_gone(self, client: Entity) -> None:
+        self._clients.pop(client.gid, None)
         sender = self._senders.pop(client.gid, None)
         if sender is not None:
             sender.close()
@@ -164,10 +177,19 @@ class ServerLines:
             self.close()
 
     def _greet(self, where: bytes, gid: bytes) -> None:
-        """A client says where it hears responses."""
-        zid, _, eid = where.decode("ascii", "replace").partition("/")
-        if not (zid.isalnum() and eid.isdecimal()) or gid in self._senders:
+        """A client says where it hears responses: where its token says so too, which may come after this."""
+        text = where[:_WHERE_BOUND].decode("ascii", "replace")
+        if gid in self._clients:
+            if text == self._clients[gid] and gid not in self._senders:
+                self._open(gid, text)
             return
+        self._early[gid] = text
+        if len(self._early) > EARLY_BOUND:
+            self._early.popitem(last=False)
+
+    def _open(self, gid: bytes, where: str) -> None:
+        """Open the way back to a client."""
+        zid, _, eid = where.partition("/")
 
         def changed() -> None:
             if sender.is_wanted:

@@ -94,7 +94,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _matched(self, other: Entity, alive: bool) -> None:
         assert self._lines is not None
-        self._lines.client_came() if alive else self._lines.client_gone(other)
+        self._lines.client_came(other) if alive else self._lines.client_gone(other)
 
     def _asked(self, request: DirectRequest) -> None:
         assert self._inbox is not None

@@ -20,6 +20,12 @@ from graphflow.wire import keyexpr
 from graphflow.wire.gid import gid
 
 ADMIN_SPACE = "@ros2_lv"
+TOKEN_BOUND = 4_000
+"""Characters of a token: those of four names of the greatest length, and room."""
+
+
+_LARGEST = 2**64 - 1
+_DIGITS = len(str(_LARGEST))
 
 
 class Kind(StrEnum):
@@ -93,15 +99,26 @@ def watch_key(domain: int) -> str:
     return f"{ADMIN_SPACE}/{domain}/**"
 
 
+def whole_number(text: str) -> int | None:
+    """A number from the network, of 64 bits at most; None for anything else. Long ones are never converted."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= _DIGITS):
+        return None
+    number = int(text)
+    return number if number <= _LARGEST else None
+
+
 def parse_token(token: str) -> Entity | None:
     """The entity that a token announces, or None when it announces none known here."""
+    if len(token) > TOKEN_BOUND or not token.isprintable():
+        return None
     parts = token.split("/")
     if len(parts) < 9 or parts[0] != ADMIN_SPACE or not all(parts):
         return None
     _, domain, zid, nid, eid, kind, enclave, namespace, node = parts[:9]
-    if kind not in Kind.__members__.values() or not (domain.isdecimal() and nid.isdecimal() and eid.isdecimal()):
+    domain_, nid_, eid_ = whole_number(domain), whole_number(nid), whole_number(eid)
+    if kind not in Kind.__members__.values() or domain_ is None or nid_ is None or eid_ is None:
         return None
-    head = (int(domain), zid, int(nid), int(eid), Kind(kind), _demangle(namespace), node)
+    head = (domain_, zid, nid_, eid_, Kind(kind), _demangle(namespace), node)
     if kind == Kind.NODE:
         entity = Entity(*head, enclave=_demangle(enclave))
     elif len(parts) < 13:
@@ -144,13 +161,14 @@ def parse_qos(chunk: str) -> Qos:
 
     def number(field: int, part: int, default: int) -> int:
         try:
-            return max(0, int(fields[field][part]))
-        except (IndexError, ValueError):
+            found = whole_number(fields[field][part])
+        except IndexError:
             return default
+        return default if found is None else found
 
     def span(field: int, part: int) -> int:
         sec = number(field, part, INFINITE_NS // _SECOND)
-        return sec * _SECOND + number(field, part + 1, INFINITE_NS % _SECOND)
+        return min(INFINITE_NS, sec * _SECOND + number(field, part + 1, INFINITE_NS % _SECOND))
 
     return Qos(
         depth=number(2, 1, DEFAULT_DEPTH),

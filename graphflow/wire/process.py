@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.system import host_name, user_id
+from graphflow.wire.liveliness import TOKEN_BOUND, whole_number
 
 
 class ProcessToken(NamedTuple):
@@ -63,10 +64,11 @@ def answer_key(domain: int, what: str, zid: str = "*") -> str:
 
 def parse(text: str) -> ProcessToken | None:
     """Read a token; None if the text is not one."""
-    parts = text.split("/")
-    if len(parts) != 7 or parts[0] != "@graphflow" or parts[2] != "proc" or not parts[5].isdecimal():
+    parts = text.split("/") if len(text) <= TOKEN_BOUND and text.isprintable() else []
+    if len(parts) != 7 or parts[0] != "@graphflow" or parts[2] != "proc":
         return None
-    return ProcessToken(parts[3], parts[4], int(parts[5]), parts[6])
+    pid = whole_number(parts[5])
+    return None if pid is None else ProcessToken(parts[3], parts[4], pid, parts[6])
 
 
 def _state(pid: int) -> str:

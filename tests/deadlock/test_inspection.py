@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from graphflow import Group, Node, service, subscription, timer
-from graphflow.deadlock.inspection import groups_of
+from graphflow.deadlock.inspection import LOOKS, groups_of
 from graphflow.errors import RemoteError
+from graphflow.executor.groups import GROUPS_BOUND
 from graphflow.machines.wait_graph_json import from_json
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
@@ -140,7 +141,8 @@ async def test_a_handler_that_is_moved(graph: Graph) -> None:
         (b"[]", "TypeError", ""),
         (b'{"node": "/arm"}', "KeyError", "handler"),
         (b"\xff", "UnicodeDecodeError", ""),
-        pytest.param(b"[" * 100_000, "RecursionError", "", id="too deep"),
+        pytest.param(b"[" * 5_000, "RecursionError", "", id="too deep"),
+        pytest.param(b"[" * 100_000, "InvalidName", "a request of 100000 bytes names no handler", id="too long"),
     ],
 )
 async def test_what_cannot_be_done(graph: Graph, payload: bytes, kind: str, words: str) -> None:
@@ -154,6 +156,32 @@ async def test_what_cannot_be_done(graph: Graph, payload: bytes, kind: str, word
     assert error.type == kind
     assert words in str(error)
     assert groups_of(core_of(node)) == before
+
+
+async def test_groups_are_not_made_without_limit(graph: Graph) -> None:
+    """Of those that nobody has declared."""
+    node = await start(graph)
+    has = len(core_of(node).groups.by_name)
+    for i in range(GROUPS_BOUND - has):
+        assert not (await ask(graph, node, wanted(group=f"g{i}"))).is_error
+    answer = await ask(graph, node, wanted(group="one_more"))
+    assert f"this node has {GROUPS_BOUND} groups" in str(RemoteError.from_payload(answer.payload, ""))
+    assert not (await ask(graph, node, wanted(group="g1"))).is_error
+
+
+async def test_who_asks_too_often_gets_the_last_answer(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And no deadlock is looked for."""
+    node = await start(graph)
+    inspection = core_of(node).context._inspection
+    looked: list[None] = []
+    monkeypatch.setattr(inspection._search, "look_now", lambda: looked.append(None))
+    for _ in range(500):
+        assert json.loads(inspection._waits())["process"]
+        assert json.loads(inspection._numbers())["process"]
+        inspection._look()
+    assert inspection._waits_allowed.refused > 200
+    assert inspection._numbers_allowed.refused > 200
+    assert LOOKS <= len(looked) < 200
 
 
 async def test_closing_it(graph: Graph) -> None:

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graphflow.machines import cache as cache_module
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
@@ -178,3 +179,12 @@ def test_any_history_of_tokens(events: list[tuple[Entity, bool]]) -> None:
 
         assert set(cache) == set(model.values()) == {e for e, there in told.items() if there}
     assert all(parse_token(e.token) == e for e in cache)
+
+
+def test_what_is_refused_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What cannot be read, and what is too much."""
+    monkeypatch.setattr(cache_module, "TOKENS_BOUND", 1)
+    node = "@ros2_lv/0/abc/{0}/{0}/NN/%/%/n{0}"
+    cache = GraphCache([node.format(1), "@ros2_lv/0/abc/9x/9x/NN/%/%/n", node.format(2)])
+    assert cache.nodes() == ["/n1"]
+    assert cache.refused == 2

@@ -11,5 +11,5 @@ from graphflow.runtime.direct import ServerLines
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """How calls travel: as between graphflow processes, or as with any other."""
     if request.param == "query":
-        monkeypatch.setattr(ServerLines, "client_came", lambda self: None)
+        monkeypatch.setattr(ServerLines, "client_came", lambda self, client: None)
     return str(request.param)

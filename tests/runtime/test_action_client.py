@@ -208,7 +208,7 @@ async def test_ros_2_knows_no_reasons(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A server that answers by queries alone, as other programs do, sends what ROS 2 sends and nothing beside it."""
-    monkeypatch.setattr(ServerLines, "client_came", lambda self: None)
+    monkeypatch.setattr(ServerLines, "client_came", lambda self, client: None)
     caught, said = await aborted(graph, Abort("the way is blocked"), caplog)
 
     assert (str(caught), said) == ("/fibonacci aborted the goal", [])

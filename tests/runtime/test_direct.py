@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,11 +11,12 @@ import pytest
 from graphflow import Node, ServerLost, service
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.core import core_of
+from graphflow.runtime.direct import EARLY_BOUND, ServerLines
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.testing import Graph
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
-from graphflow.wire.liveliness import Kind
+from graphflow.wire.liveliness import Entity, Kind
 
 REQUEST = AddTwoInts.Request(a=2, b=3)
 
@@ -212,3 +214,57 @@ async def test_an_answer_that_nobody_waits_for_is_ignored(graph: Graph) -> None:
     sender.put(b"", attachment=b"")
     await graph.settle()
     assert (await client.call(REQUEST)).sum == 5
+
+
+class Lines:
+    """A switchboard that counts the ways back that are opened."""
+
+    def __init__(self) -> None:
+        self.opened: list[tuple[str, str]] = []
+
+    def listen(self, *_: Any) -> None:
+        """Hear nothing."""
+
+    def open_sender(self, what: str, zid: str, eid: str, changed: Any) -> Any:
+        self.opened.append((zid, eid))
+        return SimpleNamespace(is_wanted=False, close=lambda: None)
+
+
+def client_entity(number: int) -> Entity:
+    return Entity(0, "abc", 1, number, Kind.CLIENT, "/", "asker", "/add", AddTwoInts.NAME, "RIHS01_0")
+
+
+def lines() -> tuple[Lines, ServerLines]:
+    made: Any = Lines()
+    return made, ServerLines(made, client_entity(99), None, lambda _: None)  # type: ignore[arg-type]
+
+
+def hello(server: ServerLines, client: Entity, where: str = "") -> None:
+    server._heard((where or f"{client.zid}/{client.eid}").encode(), b"", 0, client.gid)
+
+
+def test_hellos_of_strangers_open_nothing() -> None:
+    """However many; what is remembered of them is bounded."""
+    board, server = lines()
+    server.client_came(client_entity(1))
+    for i in range(2 * EARLY_BOUND):
+        hello(server, client_entity(100 + i))
+    assert board.opened == []
+    assert len(server._early) == EARLY_BOUND
+
+
+def test_a_hello_may_come_before_the_token() -> None:
+    """The line opens when the token comes; to where the token says, and nowhere else."""
+    board, server = lines()
+    server.client_came(client_entity(1))
+    hello(server, client_entity(2))
+    hello(server, client_entity(3), "abc/7")
+    assert board.opened == []
+    server.client_came(client_entity(2))
+    server.client_came(client_entity(3))
+    assert board.opened == [("abc", "2")]
+    hello(server, client_entity(1), "def/1")
+    assert board.opened == [("abc", "2")]
+    hello(server, client_entity(1))
+    hello(server, client_entity(1))
+    assert board.opened == [("abc", "2"), ("abc", "1")]

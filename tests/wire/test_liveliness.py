@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from graphflow import qos as profiles
-from graphflow.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
+from graphflow.qos import DEFAULT_DEPTH, INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
 from graphflow.wire.gid import gid
-from graphflow.wire.liveliness import Entity, Kind, parse_qos, parse_token, qos_chunk, watch_key
+from graphflow.wire.liveliness import TOKEN_BOUND, Entity, Kind, parse_qos, parse_token, qos_chunk, watch_key
 
 STRING = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 ADD = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
@@ -267,3 +267,31 @@ def test_no_token_raises(text: str, chunks: list[str]) -> None:
     for token in (text, f"@ros2_lv/{text}", "/".join(["@ros2_lv", *chunks])):
         parsed = parse_token(token)
         assert parsed is None or parsed.token == token
+
+
+LONG = "9" * 5000
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("/0/", f"/{LONG}/"),
+        ("/0/", "/٣/"),
+        ("/0/", f"/{2**64}/"),
+        ("/listener/", "/liste\x1b[2Jner/"),
+        ("/listener/", f"/{'x' * TOKEN_BOUND}/"),
+    ],
+)
+def test_tokens_of_strangers(change: tuple[str, str]) -> None:
+    """Numbers that are too long are never converted; no name clears a screen; nothing is endless."""
+    assert parse_token(LISTENER) is not None
+    hostile = LISTENER.replace(*change)
+    assert hostile != LISTENER
+    assert parse_token(hostile) is None
+
+
+def test_profiles_of_strangers() -> None:
+    """Numbers that are too long count as missing; spans end at infinity."""
+    qos = parse_qos(f"{LONG}:{LONG}:{LONG},{LONG}:{LONG},{LONG}:{2**63},5:2,{LONG},1")
+    assert (qos.depth, qos.deadline_ns, qos.lifespan_ns) == (DEFAULT_DEPTH, INFINITE_NS, INFINITE_NS)
+    assert qos.lease_ns <= INFINITE_NS

@@ -71,3 +71,15 @@ def test_a_process_that_runs_is_held_up() -> None:
     """One that is not stopped may be busy, or gone."""
     assert HERE.why_silent == "it is stopped, or something holds its interpreter, or it cannot be reached"
     assert HERE._replace(pid=2**22 + 1).why_silent == HERE.why_silent
+
+
+@pytest.mark.parametrize("pid", ["9" * 5000, "٣", "-1", ""])
+def test_pids_of_strangers(pid: str) -> None:
+    """Are not converted."""
+    assert process.parse(f"@graphflow/0/proc/abc/1000/{pid}/host") is None
+
+
+def test_hosts_of_strangers() -> None:
+    """Clear no screen."""
+    assert process.parse("@graphflow/0/proc/abc/1000/5/ho\x1b[2Jst") is None
+    assert process.parse("@graphflow/0/proc/abc/1000/5/" + "h" * 5000) is None
