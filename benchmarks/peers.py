@@ -13,11 +13,12 @@ from typing import Any
 
 import zenoh
 
+from graphflow.domain import rendezvous_endpoint
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.qos import Qos
 from graphflow.transport.base import Inbox
-from graphflow.transport.config import config, open_session, rendezvous_endpoint
+from graphflow.transport.config import config, open_session
 from graphflow.transport.loop import LOOP_VARIABLE, new_event_loop
 from graphflow.transport.malloc import keep_freed_memory
 from graphflow.transport.rendezvous import establish, free_endpoint

@@ -8,6 +8,8 @@ from graphflow.errors import GraphflowError
 
 ENDPOINT_VARIABLE = "GRAPHFLOW_RENDEZVOUS"
 """Where the nodes of a machine meet."""
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+"""Where a ROS 2 node with default settings looks for its router."""
 DOMAIN_VARIABLES = ("GRAPHFLOW_DOMAIN", "ROS_DOMAIN_ID")
 
 
@@ -26,6 +28,11 @@ def domain_id(given: int | None = None) -> int:
                 raise GraphflowError(f"{variable}={text!r}: a domain is a whole number, 0 or more")
             return int(text)
     return 0
+
+
+def rendezvous_endpoint() -> str:
+    """Where processes of this machine find each other."""
+    return os.environ.get(ENDPOINT_VARIABLE, DEFAULT_ENDPOINT)
 
 
 def go_to(domain: int, endpoint: str) -> None:

@@ -13,7 +13,8 @@ from graphflow import action
 from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.turtle_interfaces.action import GoToGoal
 from graphflow.msgs.turtlesim.msg import Pose
-from nodes.position_controller import Point, PositionController, distance
+
+from .position_controller import Point, PositionController, distance
 
 SIDE = 11.0
 """Width and height of the turtles' world, in metres."""

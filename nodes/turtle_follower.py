@@ -3,7 +3,8 @@
 import graphflow
 from graphflow import subscription
 from graphflow.msgs.turtlesim.msg import Pose
-from nodes.position_controller import Point, PositionController
+
+from .position_controller import Point, PositionController
 
 
 class TurtleFollower(PositionController):

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from html import escape
 
-from nodes.turtle_canvas import PIXELS, Colour, Position, Stroke, to_pixel
-from nodes.turtle_world import Turtle, World
+from .turtle_canvas import PIXELS, Colour, Position, Stroke, to_pixel
+from .turtle_world import Turtle, World
 
 COATS = (
     ("#5fb04a", "#2f7d3b"),

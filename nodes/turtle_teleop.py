@@ -11,7 +11,8 @@ import sys
 import graphflow
 from graphflow import Node, Param, Publisher, task
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
-from nodes.terminal_keys import HANGUP, keyboard
+
+from .terminal_keys import HANGUP, keyboard
 
 PROMPT = """\
 Reading from keyboard

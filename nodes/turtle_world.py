@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from nodes.turtle_canvas import Canvas, Pen, Position
+from .turtle_canvas import Canvas, Pen, Position
 
 TICK = 0.016
 """Seconds between two steps: 62.5 Hz."""

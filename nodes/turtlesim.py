@@ -23,9 +23,10 @@ from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
 from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
-from nodes.turtle_canvas import Colour, Pen
-from nodes.turtle_picture import svg
-from nodes.turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
+
+from .turtle_canvas import Colour, Pen
+from .turtle_picture import svg
+from .turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
 
 TURNING_SPEED = 1.0
 """Turning speed of `rotate_absolute`, in rad/s."""

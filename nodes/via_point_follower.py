@@ -9,7 +9,8 @@ from typing import Any
 
 import graphflow
 from graphflow import Param, ParameterError
-from nodes.position_controller import Point, PositionController
+
+from .position_controller import Point, PositionController
 
 
 class ViaPointFollower(PositionController):

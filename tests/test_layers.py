@@ -13,7 +13,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "graphflow"
 
 CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "system", "wire", "msgs", "machines", "graph")
-FLOORS = ("transport", "executor", "deadlock", "runtime", "introspect", "bag", "supervisor", "testing")
+FLOORS = ("transport", "executor", "deadlock", "runtime", "introspect", "bag", "supervisor", "testing", "nodes")
 DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)
 """From the bottom up: a room imports itself and the rooms before it. No door imports another."""

@@ -103,7 +103,8 @@ def attach(graph: str | None, name: str | None, prefix: str | None, connect: tup
 def _choose(name: str | None) -> GraphRun:
     """The run to attach to: where several run and none is named, the newest, as in tmux."""
     runs = rundir.running()
-    return max(runs, key=lambda run: run.began) if name is None and len(runs) > 1 else rundir.choose(name)
+    runs = [run for run in runs if run.is_here] or runs
+    return max(runs, key=lambda run: run.began) if name is None and runs else rundir.choose(name)
 
 
 def _anybody(reaches_out: bool) -> bool:

@@ -18,6 +18,7 @@ from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
+_everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
 
 
 @click.command()
@@ -115,15 +116,16 @@ def _show_args(path: Path) -> int:
 
 @click.command()
 @_graph
-@click.option("--all", "everything", is_flag=True, help="Every running graph.")
+@_everywhere
 @click.option("--now", is_flag=True, help="Kill at once, without time for cleanup.")
 def down(name: str | None, everything: bool, now: bool) -> int:
-    """Stop a running graph; returns when all its processes have ended."""
+    """Stop a running graph; returns when all its processes have ended.
+
+    Without --graph or --all it is the one of this domain.
+    """
     from graphflow.supervisor import rundir
 
-    runs = rundir.running() if everything else [rundir.choose(name)]
-    if not runs:
-        raise SupervisorError("no graph is running", exit_code=exits.NOT_RUNNING)
+    runs = rundir.running_here(everything=True) if everything else [rundir.choose(name)]
     from graphflow.cli.streaming import take_down
 
     return max(take_down(run, now=now) for run in runs)
@@ -131,15 +133,14 @@ def down(name: str | None, everything: bool, now: bool) -> int:
 
 @click.command()
 @_graph
+@_everywhere
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def ps(name: str | None, as_json: bool) -> int:
-    """List the nodes of running graphs: state, process, uptime."""
+def ps(name: str | None, everything: bool, as_json: bool) -> int:
+    """List the nodes of running graphs: state, process, uptime. Of this domain, unless --all is given."""
     from graphflow.supervisor import rundir
     from graphflow.supervisor.control import ControlClient
 
-    runs = [rundir.choose(name)] if name else rundir.running()
-    if not runs:
-        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exits.NOT_RUNNING)
+    runs = [rundir.choose(name)] if name else rundir.running_here(everything=everything)
     rows = []
     for run in runs:
         with ControlClient(run.socket) as client:

@@ -8,6 +8,7 @@ import click
 
 from graphflow.cli import output
 from graphflow.domain import domain_id
+from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, GraphCache
 from graphflow.names import is_hidden
@@ -42,6 +43,8 @@ def list_(everything: bool, count_nodes: bool, as_json: bool) -> None:
     else:
         output.lines(names)
         _warn_of_twins(names)
+        if not names:
+            output.talk(nothing_here("no nodes"))
 
 
 def _warn_of_twins(names: list[str]) -> None:

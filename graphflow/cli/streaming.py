@@ -198,6 +198,7 @@ def _shown(place: str) -> str:
 
 def take_down(run: GraphRun, *, now: bool) -> int:
     """Stop a graph and say what ends; returns the exit code."""
+    output.talk(f"stopping graph {run.graph} in domain {run.domain}")
     with ControlClient(run.socket) as client:
         client.send(do="down", now=now)
         for event in client.receive(timeout=_DOWN_LIMIT):

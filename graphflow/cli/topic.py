@@ -12,6 +12,7 @@ from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import verdict
@@ -54,6 +55,8 @@ def list_(show_types: bool, count_topics: bool, verbose: bool, include_hidden_to
             output.data("")
     else:
         output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in topics.items())
+        if not topics:
+            output.talk(nothing_here("no topics"))
 
 
 @topic.command()

@@ -16,6 +16,8 @@ from functools import cache
 from types import CodeType
 from typing import Any, Literal, NamedTuple
 
+from graphflow.deadlock.user_code import is_users_module
+
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
 _NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
@@ -255,7 +257,7 @@ def _source_of(cls: Any) -> ClassSource:
     """The source of a class; parents that are graphflow's or Python's own are left out."""
     source, continued = ClassSource(), set[str]()
     for parent in cls.__mro__:
-        if parent.__module__.partition(".")[0] in ("graphflow", "builtins", "typing", "abc"):
+        if not is_users_module(parent.__module__):
             continue
         try:
             file = inspect.getsourcefile(parent) or ""

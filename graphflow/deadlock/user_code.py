@@ -8,14 +8,27 @@ from pathlib import Path
 from types import FrameType, TracebackType
 
 _OURS = str(Path(__file__).parents[1])
+_DEMOS = str(Path(_OURS, "demos"))
+"""Where an installed graphflow has its nodes, which are as users would write them."""
+_NOT_THEIRS = ("graphflow", "builtins", "typing", "abc")
 _PYTHONS = sysconfig.get_path("stdlib")
+
+
+def is_users_module(name: str) -> bool:
+    """Whether a module holds classes of users; the nodes that come with graphflow count as theirs."""
+    return name.partition(".")[0] not in _NOT_THEIRS or name.startswith("graphflow.nodes.")
 
 
 def is_users(file: str) -> bool:
     """Whether a source file is neither graphflow's nor Python's own."""
-    if file.startswith((_OURS, "<frozen")) or (file.startswith("<") and "/" in file):  # <std_msgs/msg/String>: a codec
+    is_made = file.startswith("<") and "/" in file  # <std_msgs/msg/String>: a codec
+    if _is_ours(file) or is_made or file.startswith("<frozen"):
         return False
     return not file.startswith(_PYTHONS) or "site-packages" in file
+
+
+def _is_ours(file: str) -> bool:
+    return file.startswith(_OURS) and not file.startswith(_DEMOS)
 
 
 def innermost(frames: Iterable[FrameType]) -> FrameType | None:
@@ -30,7 +43,7 @@ def innermost(frames: Iterable[FrameType]) -> FrameType | None:
 def users_part(error: BaseException) -> TracebackType | None:
     """An error's traceback without graphflow's frames at its beginning; whole if there are no others."""
     rest = error.__traceback__
-    while rest is not None and rest.tb_frame.f_code.co_filename.startswith(_OURS):
+    while rest is not None and _is_ours(rest.tb_frame.f_code.co_filename):
         rest = rest.tb_next
     return rest or error.__traceback__
 

@@ -15,6 +15,7 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.source import FunctionNode, first_line, is_own, module_of
+from graphflow.deadlock.user_code import is_users_module
 from graphflow.errors import ParameterError, Place
 from graphflow.interface import EndpointInfo, EndpointKind, HandlerInfo, HandlerKind, Interface, Parameter, type_of
 
@@ -113,7 +114,7 @@ class _Made:
 def _made(cls: type) -> _Made:
     made = _Made()
     for parent in reversed(cls.__mro__):
-        if parent.__module__.partition(".")[0] in ("graphflow", "builtins", "typing", "abc"):
+        if not is_users_module(parent.__module__):
             continue
         for name, value in vars(parent).items():
             function = inspect.unwrap(value) if inspect.isfunction(value) else None

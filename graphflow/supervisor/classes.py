@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from pkgutil import iter_modules
+from types import ModuleType
 from typing import Any
 
 from graphflow.errors import DeclarationError, GraphflowError, NoModule, Place, Problem
-from graphflow.graph.project import PACKAGE, add_interfaces
+from graphflow.graph.project import INSTALLED_DEMOS, PACKAGE, add_interfaces
 from graphflow.interface import Interface
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
@@ -40,19 +42,42 @@ def import_class(class_path: str) -> type[Node]:
         GraphflowError: The module has no such class, or importing it failed; the text says where.
     """
     module_name, _, class_name = class_path.partition(":")
-    try:
-        module = import_module(module_name)
-    except (Exception, SystemExit) as error:
-        if isinstance(error, ModuleNotFoundError) and error.name and module_name.startswith(error.name):
-            raise NoModule(_no_module(error.name, module_name, _roots[-1] if _roots else "."), error.name) from None
-        raise GraphflowError(f"cannot import {module_name}: {_where(error)}") from error
+    module = import_module_of(module_name)
     found = getattr(module, class_name, None)
     if found is None:
-        classes = [k for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node)]
-        raise GraphflowError(f"module {module_name} has no class {class_name!r}{did_you_mean(class_name, classes)}")
+        near = did_you_mean(class_name, node_classes(module, imported=True))
+        raise GraphflowError(f"module {module_name} has no class {class_name!r}{near}")
     if not (isinstance(found, type) and issubclass(found, Node)):
         raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node")
     return found
+
+
+def import_module_of(name: str) -> ModuleType:
+    """A module of a project.
+
+    Raises:
+        NoModule: There is no such module; the text names the nearest, or where modules are looked for.
+        GraphflowError: Importing it failed; the text says where.
+    """
+    bundled = f"graphflow.{name}" if name.startswith("nodes.") else ""
+    try:
+        return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
+            if bundled and find_spec(bundled) is not None:  # a project has no such node of its own
+                return import_module(bundled)
+            raise NoModule(_no_module(error.name, name, _roots[-1] if _roots else "."), error.name) from None
+        raise GraphflowError(f"cannot import {name}: {_where(error)}") from error
+
+
+def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, type[Node]]:
+    """The node classes of a module, by name.
+
+    Args:
+        imported: Those that it has from elsewhere too.
+    """
+    found = {k: v for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node)}
+    return {k: v for k, v in found.items() if imported or v.__module__ == module.__name__}
 
 
 def _no_module(module: str, wanted: str, root: str) -> str:

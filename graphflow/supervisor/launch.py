@@ -247,8 +247,8 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
     import hashlib
     import time
 
+    from graphflow.domain import rendezvous_endpoint
     from graphflow.supervisor import rundir
-    from graphflow.transport.config import rendezvous_endpoint
 
     return rundir.GraphRun(
         run_id=run_id,

@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from graphflow.domain import domain_id
+from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
 from graphflow.system import is_portable, user_id
 
@@ -133,6 +133,11 @@ class GraphRun:
     plan_hash: str
 
     @property
+    def is_here(self) -> bool:
+        """Whether it runs in the domain and at the endpoint that this process would use."""
+        return self.domain == domain_id() and self.endpoint in ("", rendezvous_endpoint())
+
+    @property
     def is_alive(self) -> bool:
         return start_time(self.pid) == self.started
 
@@ -242,15 +247,38 @@ def running() -> list[GraphRun]:
     return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
 
 
+def running_here(*, everything: bool = False) -> list[GraphRun]:
+    """The graphs that run in the domain and at the endpoint that this process would use, at least one.
+
+    Args:
+        everything: Those elsewhere too.
+
+    Raises:
+        SupervisorError: None does (exit 3); the text names those that run elsewhere.
+    """
+    runs = running()
+    if not runs:
+        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exit_code=3)
+    here = [run for run in runs if everything or run.is_here]
+    if not here:
+        listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
+        where = f"domain {domain_id()}" if all(r.domain != domain_id() for r in runs) else rendezvous_endpoint()
+        raise SupervisorError(
+            f"no graph is running in {where}; elsewhere there is {listing}: name it with --graph {runs[0].graph}",
+            exit_code=3,
+        )
+    return here
+
+
 def choose(name: str | None) -> GraphRun:
-    """The running graph that is meant.
+    """The running graph that is meant: of those in this domain, or by its name wherever it runs.
 
     Raises:
         SupervisorError: None is running (exit 3), or several are and `name` does not say which (exit 2).
     """
     from graphflow.names import did_you_mean
 
-    runs = running()
+    runs = running_here() if name is None else running()
     if not runs:
         raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exit_code=3)
     if name is not None:

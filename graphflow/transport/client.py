@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import queue
+import time
 from typing import Any
 
 import zenoh
 from zenoh.handlers import Callback
 
-from graphflow.errors import SupervisorError
+from graphflow.domain import rendezvous_endpoint
+from graphflow.errors import SupervisorError, TransportError
 from graphflow.transport.base import Answer
-from graphflow.transport.config import close_session, reaches_out, rendezvous_endpoint
+from graphflow.transport.config import close_session, reaches_out
 from graphflow.transport.rendezvous import join
 
-TOKENS_LIMIT = 2.0
+TOKENS_LIMIT = 10.0
 """Seconds that asking for tokens may take."""
 
 
@@ -36,9 +38,17 @@ class Client:
         return str(self._session.info.zid())
 
     def tokens(self, key: str) -> list[str]:
-        """Every liveliness token that matches."""
+        """Every liveliness token that matches.
+
+        Raises:
+            TransportError: They did not all come in time.
+        """
+        began = time.monotonic()
         replies = self._session.liveliness().get(key, timeout=TOKENS_LIMIT)
-        return [str(r.ok.key_expr) for r in replies if r.ok is not None]
+        found = [str(r.ok.key_expr) for r in replies if r.ok is not None]
+        if time.monotonic() - began >= TOKENS_LIMIT:
+            raise TransportError(f"only {len(found)} tokens of the graph came within {TOKENS_LIMIT:g} s; try again")
+        return found
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
         """All replies on matching keys within `timeout` seconds."""

@@ -9,11 +9,8 @@ from functools import cache
 
 import zenoh
 
-from graphflow.domain import ENDPOINT_VARIABLE
 from graphflow.errors import TransportError
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
-"""Where a ROS 2 node with default settings looks for its router."""
 CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
 """Endpoints of routers on other machines, separated by spaces."""
 PROFILE_VARIABLE = "GRAPHFLOW_NET"
@@ -58,11 +55,6 @@ _CONFIG = """{
     shared_memory: { transport_optimization: { messages: ["put"] } },
   },
 }"""
-
-
-def rendezvous_endpoint() -> str:
-    """Where processes of this machine find each other."""
-    return os.environ.get(ENDPOINT_VARIABLE, DEFAULT_ENDPOINT)
 
 
 def reaches_out() -> bool:

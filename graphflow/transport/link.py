@@ -21,6 +21,7 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
+from graphflow.domain import rendezvous_endpoint
 from graphflow.errors import TransportError
 from graphflow.graph.endpoint import endpoint
 from graphflow.graph.net import NetProfile, read_profile
@@ -32,7 +33,6 @@ from graphflow.transport.config import (
     close_session,
     config,
     open_session,
-    rendezvous_endpoint,
 )
 
 logger = logging.getLogger("graphflow.link")

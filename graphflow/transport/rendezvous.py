@@ -12,10 +12,10 @@ import time
 
 import zenoh
 
-from graphflow.domain import ENDPOINT_VARIABLE
+from graphflow.domain import ENDPOINT_VARIABLE, rendezvous_endpoint
 from graphflow.errors import TransportError
 from graphflow.system import user_id
-from graphflow.transport.config import close_session, config, open_session, rendezvous_endpoint
+from graphflow.transport.config import close_session, config, open_session
 
 TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""

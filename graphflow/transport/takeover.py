@@ -6,8 +6,8 @@ import asyncio
 import logging
 import random
 
+from graphflow.domain import rendezvous_endpoint
 from graphflow.transport.base import Closable
-from graphflow.transport.config import rendezvous_endpoint
 from graphflow.transport.rendezvous import Router, host, occupied
 from graphflow.transport.zenoh import ZenohSession
 

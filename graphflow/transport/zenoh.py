@@ -22,6 +22,7 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
+from graphflow.domain import rendezvous_endpoint
 from graphflow.qos import Durability, Qos, Reliability
 from graphflow.transport.base import EARLY, Answer, Bell, Inbox, Payload
 from graphflow.transport.config import (
@@ -30,7 +31,6 @@ from graphflow.transport.config import (
     close_session,
     config,
     open_session,
-    rendezvous_endpoint,
 )
 
 logger = logging.getLogger("graphflow.transport")

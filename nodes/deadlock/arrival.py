@@ -12,7 +12,8 @@ import graphflow
 from graphflow import Client, service
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.msgs.turtle_interfaces.srv import SetGoal
-from nodes.position_controller import Point, PositionController
+
+from ..position_controller import Point, PositionController
 
 
 class Follower(PositionController):

@@ -30,6 +30,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> GraphRun:
     began = time.time() - 61
     made = GraphRun("id", "lab", 7, os.getpid(), started, began, "lab.yaml", "s", str(tmp_path), "", "")
     monkeypatch.setattr(rundir, "running", lambda: [made])
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
     rows = [{"node": "/a", "state": "ready"}, {"node": "/b", "state": "failed"}]
     monkeypatch.setattr(console, "_rows", lambda _: {"nodes": rows, "consoles": [{"name": "pts/3"}]})
     return made

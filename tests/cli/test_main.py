@@ -76,7 +76,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["check"], "Missing argument 'GRAPH.yaml'"),
         (["check", "nothing.yaml"], "error: nothing.yaml: there is no such file"),
         (["check", "turtlesm"], "error: turtlesm: there is no such file; did you mean 'turtlesim'?"),
-        (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, for example nodes.talker:"),
+        (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, nodes.talker:Talker"),
         (["topic", "info", "a b"], "error: 'a b' is not a topic or service name"),
     ],
 )

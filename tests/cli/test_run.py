@@ -57,7 +57,7 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "expected"),
     [
-        (["nodes.talker"], 2, "write MODULE:CLASS"),
+        (["nodes.talker.Talker"], 2, "write MODULE:CLASS, nodes.talker:Talker"),
         (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
         (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
         (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
@@ -90,6 +90,28 @@ def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> No
     node.wait_for("Publishing")
     assert "comes with graphflow" in node.text
     assert node.end() == 0
+
+
+def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) -> None:
+    """As with `ros2 run`: in sys.argv, without what is for ROS."""
+    (tmp_path / "adder.py").write_text(
+        "import sys\nfrom graphflow import Node\nclass Adder(Node):\n"
+        "    async def on_start(self):\n        self.log.info(f'{self.name} {sys.argv[1:]}')\n        self.shutdown()\n"
+    )
+    text = machine.run("run", "adder.py", "2", "--fast", "--ros-args", "-r", "__node:=plus", cwd=tmp_path)
+    assert "plus ['2', '--fast']" in text
+
+
+def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path) -> None:
+    """A student's file of the same name as one of ours becomes no part of it."""
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "__init__.py").touch()
+    (tmp_path / "nodes" / "position_controller.py").write_text("raise RuntimeError('mine')\n")
+    node = machine.start("run", "turtle_follower", cwd=tmp_path)
+    node.wait_for("comes with graphflow")
+    node.wait_for("turtle_follower.py")
+    assert node.end() == 0
+    assert "mine" not in node.text
 
 
 def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) -> None:

@@ -25,6 +25,7 @@ from graphflow.supervisor.rundir import (
     open_logs,
     read_run,
     running,
+    running_here,
     runtime_root,
     start_time,
 )
@@ -37,6 +38,8 @@ def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.delenv("ROS_LOG_DIR", raising=False)
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/x")
     return tmp_path
 
 
@@ -222,18 +225,33 @@ def test_choosing_among_several() -> None:
     with pytest.raises(SupervisorError) as caught:
         choose(None)
     assert str(caught.value) == (
-        "several graphs are running: chase (domain 7), draw (domain 7), draw (domain 8); say which with --graph NAME"
-        " and GRAPHFLOW_DOMAIN"
+        "several graphs are running: chase (domain 7), draw (domain 7); say which with --graph NAME"
     )
     assert caught.value.exit_code == 2
+    assert len(running_here(everything=True)) == 3
     assert choose("chase").graph == "chase"
     with pytest.raises(SupervisorError, match="graph 'chas' is not running; did you mean 'chase'") as caught:
         choose("chas")
     assert caught.value.exit_code == 3
-    with pytest.raises(SupervisorError, match=r"draw \(domain 7\), draw \(domain 8\)"):
-        choose("draw")
+    assert choose("draw").domain == 7
     for directory in directories:
         directory.release()
+
+
+@pytest.mark.parametrize(("domain", "endpoint", "where"), [("9", "tcp/x", "domain 9"), ("7", "tcp/other", "tcp/other")])
+def test_graphs_elsewhere(domain: str, endpoint: str, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are named, and never meant unless they are."""
+    directory = start("chase")
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", domain)
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", endpoint)
+    with pytest.raises(SupervisorError) as caught:
+        choose(None)
+    assert str(caught.value) == (
+        f"no graph is running in {where}; elsewhere there is chase (domain 7): name it with --graph chase"
+    )
+    assert caught.value.exit_code == 3
+    assert choose("chase").graph == "chase"
+    directory.release()
 
 
 def test_a_socket_in_a_long_path_goes_elsewhere(folders: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,76 @@
+"""Which node class `graphflow run` means: MODULE:CLASS, a file, a module, a bundled node's name, or ROS's PKG EXE."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from inspect import getfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graphflow.cli import output
+from graphflow.errors import GraphflowError, UsageFault
+from graphflow.graph.project import demos_root, project_root
+from graphflow.names import did_you_mean
+from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
+
+EXECUTABLES = {
+    ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
+    ("turtlesim", "turtle_teleop_key"): "nodes.turtle_teleop:TurtleTeleop",
+    ("demo_nodes_cpp", "talker"): "nodes.talker:Talker",
+    ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
+    ("demo_nodes_py", "talker"): "nodes.talker:Talker",
+    ("demo_nodes_py", "listener"): "nodes.listener:Listener",
+}
+"""Executables of ROS 2's packages whose nodes come with graphflow."""
+
+
+def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
+    """The class that is meant, and the words that are left for the node.
+
+    Raises:
+        UsageFault: There is none, or several; the text says which there are.
+    """
+    root = project_root(Path(what)) if what.endswith(".py") and Path(what).is_file() else project_root(Path.cwd())
+    add_root(str(root))
+    rest = list(words)
+    try:
+        if ":" in what:
+            cls = import_class(what)
+        elif what.endswith(".py"):
+            cls = _only(_module_of(Path(what), root))
+        elif rest[:1] and (what, rest[0]) in EXECUTABLES:
+            cls = import_class(EXECUTABLES[what, rest.pop(0)])
+        elif any(package == what for package, _ in EXECUTABLES) and rest[:1] and not rest[0].startswith("-"):
+            known = [name for package, name in EXECUTABLES if package == what]
+            raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")
+        elif what.rpartition(".")[2][:1].isupper():
+            raise UsageFault(f"{what!r}: write MODULE:CLASS, {what.rpartition('.')[0]}:{what.rpartition('.')[2]}")
+        else:
+            cls = _only(what if "." in what else f"nodes.{what}")
+    except GraphflowError as error:
+        raise UsageFault(str(error)) from None
+    if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
+        output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
+    return cls, rest
+
+
+def _module_of(file: Path, root: Path) -> str:
+    """The name by which a file is imported from its project."""
+    if not file.is_file():
+        near = [str(p) for p in file.parent.glob("*.py")] if file.parent.is_dir() else []
+        raise UsageFault(f"{file}: there is no such file{did_you_mean(str(file), near)}")
+    return ".".join(file.resolve().relative_to(root).with_suffix("").parts)
+
+
+def _only(module: str) -> type[Node]:
+    """The one node class of a module."""
+    found = node_classes(import_module_of(module))
+    if not found:
+        raise UsageFault(f"{module} has no node class: a class that derives from graphflow.Node")
+    if len(found) > 1:
+        choices = ", ".join(f"{module}:{name}" for name in found)
+        raise UsageFault(f"{module} has several node classes; run one of {choices}")
+    return next(iter(found.values()))

@@ -1,0 +1,5 @@
+"""The nodes that come with graphflow, by a name that no project's `nodes/` can take: `graphflow.nodes.turtlesim`."""
+
+from graphflow.graph.project import demos_root
+
+__path__ = [str(demos_root() / "nodes")]

@@ -1,0 +1,83 @@
+"""Which node is meant: by class, file, module, name, or as ROS 2 names it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli.finding import EXECUTABLES, find_class
+from graphflow.errors import UsageFault
+from graphflow.graph.project import demos_root
+from tests.conftest import PROJECT
+
+ONE = "from graphflow import Node, timer\nclass Plain: ...\nclass {0}(Node):\n    pass\n"
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A project with nodes; whatever is imported from it is forgotten."""
+    monkeypatch.setattr(sys, "path", [p for p in sys.path if Path(p).resolve() != PROJECT])
+    for name in [n for n in sys.modules if n.partition(".")[0] == "nodes"]:  # this project's own
+        monkeypatch.delitem(sys.modules, name)
+    known = set(sys.modules)
+    folder = tmp_path / "own_nodes"
+    folder.mkdir()
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "pyproject.toml").touch()
+    (folder / "slide.py").write_text(ONE.format("Slide"))
+    (folder / "two.py").write_text(ONE.format("Left") + ONE.format("Right") + "from own_nodes.slide import Slide\n")
+    (folder / "none.py").write_text("x = 1\n")
+    monkeypatch.chdir(tmp_path)
+    yield tmp_path
+    for name in set(sys.modules) - known:
+        if name.startswith("own_nodes"):
+            del sys.modules[name]
+
+
+@pytest.mark.parametrize("what", ["own_nodes.slide:Slide", "own_nodes/slide.py", "own_nodes.slide"])
+def test_the_only_class(what: str, project: Path) -> None:
+    """By its path, its file, its module; the words are left."""
+    cls, rest = find_class(what, ["2", "--fast"])
+    assert (cls.__module__, cls.__name__) == ("own_nodes.slide", "Slide")
+    assert rest == ["2", "--fast"]
+
+
+@pytest.mark.parametrize(
+    ("what", "words", "text"),
+    [
+        (
+            "own_nodes.two",
+            [],
+            "own_nodes.two has several node classes; run one of own_nodes.two:Left, own_nodes.two:Right",
+        ),
+        ("own_nodes/none.py", [], "own_nodes.none has no node class"),
+        ("own_nodes/slid.py", [], "there is no such file; did you mean 'own_nodes/slide.py'?"),
+        ("own_nodes.slid", [], "did you mean 'slide'?"),
+        ("own_nodes.slide.Slide", [], "write MODULE:CLASS, own_nodes.slide:Slide"),
+        ("turtlesim", ["turtlesim_nod"], "has no executable 'turtlesim_nod' here; did you mean 'turtlesim_node'?"),
+    ],
+)
+def test_what_is_not_there(what: str, words: list[str], text: str, project: Path) -> None:
+    """The nearest is named."""
+    with pytest.raises(UsageFault) as caught:
+        find_class(what, words)
+    assert text in str(caught.value)
+
+
+def test_bundled_nodes(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By their names, under an import name of their own, though the project has a `nodes/` too."""
+    for what, words in (("turtlesim", []), ("turtlesim", ["turtlesim_node"]), ("nodes.turtlesim:TurtleSim", [])):
+        cls, rest = find_class(what, words)
+        assert (cls.__module__, rest) == ("graphflow.nodes.turtlesim", [])
+        assert "comes with graphflow" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("class_path", sorted(set(EXECUTABLES.values())))
+def test_executables_of_ros(class_path: str) -> None:
+    """Each is there."""
+    module, _, name = class_path.partition(":")
+    file = demos_root() / f"{module.replace('.', '/')}.py"
+    assert f"class {name}(" in file.read_text(encoding="utf-8")
