@@ -35,6 +35,8 @@ _SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "sque
 _SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
 _SAME |= {"diagonal", "copyto"}
 """Functions of numpy that may return another view of the same array, or write to it."""
+_INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
+"""Methods by which attributes change in ways that their names do not show."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
 
 
@@ -172,6 +174,11 @@ class ClassSource:
         if module not in self._modules:
             self._modules.append(module)
             self._others |= {item.name: item for item in module.body if isinstance(item, FunctionNode)}
+        written = {function for function in map(_code_of, vars(cls).values()) if function is not None}
+        self._is_known &= not _INTERCEPTING & vars(cls).keys()
+        self._is_known &= all(code.co_filename == file for code in written)  # none put there by other code
+        lines = {line for d in ast.walk(module) if isinstance(d, ast.ClassDef) for line in _function_lines(d)}
+        self._is_known &= all(code.co_firstlineno in lines for code in written)
         for definition in ast.walk(module):
             if not (isinstance(definition, ast.ClassDef) and definition.name == cls.__name__):
                 continue
@@ -213,8 +220,10 @@ class ClassSource:
                     self.rebound.update(node.names)
                 if isinstance(node, ast.Call) and _word(node.func) in ("setattr", "delattr") and node not in inside:
                     self._set_by_name(node)
-                if not isinstance(node, ast.Attribute) or node in inside or is_own(node) or _is_super(node.value):
+                if not isinstance(node, ast.Attribute) or node in inside or _is_super(node.value):
                     continue
+                if is_own(node) and any(isinstance(parent, ast.ClassDef) for parent in parents):
+                    continue  # of another class; in a function of the module, `self` may be the node
                 if not (isinstance(node.value, ast.Name) and node.value.id in imported):
                     self._foreign.setdefault(node.attr, []).append(_use("", node, parents))
 
@@ -244,6 +253,21 @@ class ClassSource:
                 self._callers.setdefault(node.attr, set()).add(method)
         if is_own(node):
             self._uses.setdefault(node.attr, []).append(use)
+
+
+def _code_of(member: object) -> CodeType | None:
+    """The code of a method as it was written, beneath its decorators."""
+    member = member.fget if isinstance(member, property) else getattr(member, "__func__", member)
+    return getattr(inspect.unwrap(member), "__code__", None) if callable(member) else None
+
+
+def _function_lines(definition: ast.ClassDef) -> Iterator[int]:
+    """Where the functions in a class begin."""
+    for node in ast.walk(definition):
+        if isinstance(node, FunctionNode):
+            yield first_line(node)
+        elif isinstance(node, ast.Lambda):
+            yield node.lineno
 
 
 def source_of(instance: object) -> ClassSource:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import threading
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
@@ -391,6 +392,47 @@ class FlagByAnotherName(Driver):
     @timer(3.0)
     async def look(self) -> None:
         setattr(self, "the" + "re", True)
+
+
+def noting(fn: Any) -> Any:
+    """A decorator of the user's own, which writes the attribute."""
+
+    @functools.wraps(fn)
+    async def wrapper(self: Any) -> None:
+        self.there = True
+        await fn(self)
+
+    return wrapper
+
+
+class FlagByADecorator(Driver):
+    @timer(3.0)
+    @noting
+    async def look(self) -> None: ...
+
+
+class FlagByAFunctionPutThere(Driver):
+    note: Any
+
+    @timer(3.0)
+    async def look(self) -> None:
+        self.note()
+
+
+def _note(node: Any) -> None:
+    vars(node)["there"] = True
+
+
+FlagByAFunctionPutThere.note = _note
+
+
+class FlagByWhatAssigningDoes(Driver):
+    def __setattr__(self, name: str, value: object) -> None:
+        super().__setattr__("there" if name == "seen" else name, value)
+
+    @timer(3.0)
+    async def look(self) -> None:
+        self.seen = True
 
 
 class FlagThroughTheDictionary(Driver):
@@ -1218,6 +1260,9 @@ def legal(program: type[Robot]) -> Any:
         legal(FlagOfALocalHandler),
         legal(FlagByAnotherName),
         legal(FlagThroughTheDictionary),
+        legal(FlagByADecorator),
+        legal(FlagByAFunctionPutThere),
+        legal(FlagByWhatAssigningDoes),
         legal(FlagOfAPartner),
         pytest.param(FlagOfAChildWithoutSource, id="FlagOfAChildWithoutSource"),
         legal(FlagOfAParentWithoutSource),
