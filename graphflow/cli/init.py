@@ -18,6 +18,16 @@ version = "0.1.0"
 requires-python = ">=3.11"
 dependencies = ["graphflow-zenoh"]
 
+[project.optional-dependencies]
+dev = ["pytest"]
+
+[build-system]
+requires = ["setuptools>=68"]
+build-backend = "setuptools.build_meta"
+
+[tool.setuptools]
+packages = ["nodes"]
+
 [tool.pytest.ini_options]
 testpaths = ["tests"]
 pythonpath = ["."]
@@ -28,7 +38,9 @@ mypy_path = "typings" # where `graphflow interface stubs` writes what editors re
     "README.md": """\
 # @name
 
+    pip install -e '.[dev]'              once: what it needs
     graphflow up graphs/@name.yaml       run it, until Ctrl-C
+    python nodes/greeter.py              run the one node
     graphflow topic echo /greeting       in a second terminal: what it says
     graphflow param set /greeter rate 5  change it while it runs
     python -m pytest                     test it, with no network and no waiting
@@ -43,6 +55,7 @@ uint32 count
     "nodes/greeter.py": '''\
 """A node: what it holds and what it does."""
 
+import graphflow
 from graphflow import Node, Param, Publisher, timer
 from graphflow.msgs.@name_interfaces.msg import Greeting
 
@@ -60,6 +73,10 @@ class Greeter(Node):
         self.count += 1
         self.greeting.publish(Greeting(text=self.text, count=self.count))
         self.log.info("%s, time %d", self.text, self.count)
+
+
+if __name__ == "__main__":
+    graphflow.run(Greeter)
 ''',
     "graphs/@name.yaml": """\
 args:

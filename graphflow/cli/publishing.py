@@ -8,6 +8,7 @@ from typing import Any
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
 from graphflow.msgs.base import Message
+from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.node import Node
 from graphflow.runtime.topics import TopicPublisher
@@ -16,6 +17,9 @@ from graphflow.wire.liveliness import Kind
 
 REACH_LIMIT = 2.0
 """Seconds that the way to an announced subscription may take."""
+
+UNHEARD_AFTER = 1.5
+"""Seconds after which it is said that nobody hears what is published."""
 
 
 @dataclass
@@ -54,7 +58,13 @@ async def _publish(node: Node, topic: str, message: Message, options: PubOptions
     if needed:
         await _wait_until_reached(node, publisher)
     output.data("publisher: beginning loop")
+    began_ns = node.clock.monotonic_ns()
+    is_told = False
     async for n in node.clock.every(hz=options.rate):
+        if not is_told and not publisher.is_wanted and node.clock.monotonic_ns() - began_ns > to_ns(UNHEARD_AFTER):
+            is_told = True
+            near = did_you_mean(topic, [e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)])
+            output.talk(f"no node hears {topic} so far{near}")
         if options.print_every and n % options.print_every == 0:
             output.data(f"publishing #{n + 1}: {message!r}\n")
         publisher.publish(message)

@@ -202,7 +202,7 @@ def _echo_type(full: str, given: str | None) -> str:
 
 @topic.command(cls=ValueCommand, short_help="Publish messages given in YAML.")
 @click.argument("name", metavar="TOPIC")
-@click.argument("type_name", metavar="TYPE")
+@click.argument("type_name", metavar="TYPE", default="")
 @click.argument("values", nargs=-1)
 @click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Hz.")
 @click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
@@ -225,12 +225,15 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
 
     use_project()
     full = expand(name, "/", "cli")
-    wanted = registry.full_name(type_name)
     try:
         with View(domain_id()) as view:
             known = view.cache.topics(hidden=True).get(full, [])
     except SupervisorError:  # nothing is running yet; others may come
         known = []
+    if not type_name or type_name.startswith("{"):
+        has, missing = (f"; it carries {known[0]}", known[0]) if known else ("", "TYPE")
+        raise UsageFault(f"the topic's type comes before the values: graphflow topic pub {full} {missing} ...{has}")
+    wanted = registry.full_name(type_name)
     if known and wanted not in known:
         wanted = agree(wanted, known[0], full)
     message = from_plain(registry.interface_class(wanted), message_values(values))

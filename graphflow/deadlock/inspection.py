@@ -39,8 +39,9 @@ class Inspection:
     def __init__(self, process: Surroundings, search: Search) -> None:
         self._process, self._search = process, search
         self._thread = threading.get_ident()
-        self._waits_allowed, self._numbers_allowed = Allowance(ANSWERS), Allowance(ANSWERS)
-        self._looks_allowed = Allowance(LOOKS)
+        now_ns = process.clock.monotonic_ns
+        self._waits_allowed, self._numbers_allowed = Allowance(ANSWERS, now_ns), Allowance(ANSWERS, now_ns)
+        self._looks_allowed = Allowance(LOOKS, now_ns)
         self._last_waits = self._last_numbers = b"{}"
         """What is answered to those who ask too often."""
         session, domain = process.session, process.domain

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from time import monotonic
+from collections.abc import Callable
+
+from graphflow.times import NANOSECONDS
 
 
 class Allowance:
@@ -10,20 +12,21 @@ class Allowance:
 
     Args:
         per_second: Turns that come back each second, and the most that gather.
+        now_ns: Tells the time, in nanoseconds.
     """
 
-    __slots__ = ("_left", "_per_second", "_since", "refused")
+    __slots__ = ("_left", "_now_ns", "_per_second", "_since", "refused")
 
-    def __init__(self, per_second: float) -> None:
+    def __init__(self, per_second: float, now_ns: Callable[[], int]) -> None:
         self._per_second = self._left = per_second
-        self._since = monotonic()
+        self._now_ns, self._since = now_ns, now_ns()
         self.refused = 0
         """Turns that were wanted and not there."""
 
     def take(self) -> bool:
         """Whether there is a turn; it is then taken."""
-        now = monotonic()
-        self._left = min(self._per_second, self._left + (now - self._since) * self._per_second)
+        now = self._now_ns()
+        self._left = min(self._per_second, self._left + (now - self._since) / NANOSECONDS * self._per_second)
         self._since = now
         if self._left < 1.0:
             self.refused += 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.machinery
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from types import ModuleType
 
 from graphflow.errors import UnknownInterface
@@ -25,7 +26,9 @@ class _InterfaceFinder:
         package, *rest = fullname.removeprefix(_ROOT).split(".")
         if (registry.BUNDLED / f"{package}.py").is_file():  # a module of ours
             return None
-        if not registry.package_folders(package):
+        if not registry.package_folders(package) and not (
+            _add_those_of_the_script() and registry.package_folders(package)
+        ):
             hint = did_you_mean(package, registry.packages())
             own = f"one of your own goes in interfaces/{package}/msg/*.msg"
             raise ModuleNotFoundError(f"there is no interface package {package!r}{hint} ({own})", name=fullname)
@@ -55,6 +58,9 @@ class _InterfaceFinder:
             try:
                 cls = registry.interface_class(f"{package}/{kind}/{name}")
             except UnknownInterface as error:
+                if name in registry.names_in(package, kind):  # what is unknown is the type of one of its fields
+                    text = f"{package}/{kind}/{name} has a field of a type that is not there: {error}"
+                    raise UnknownInterface(text) from None
                 raise AttributeError(str(error)) from None
             setattr(module, name, cls)
             return cls
@@ -62,6 +68,16 @@ class _InterfaceFinder:
         module.__doc__ = f"The {kind} interfaces of ROS 2's package {package}."
         module.__getattr__ = make  # type: ignore[method-assign]
         module.__dir__ = lambda: registry.names_in(package, kind)  # type: ignore[method-assign]
+
+
+def _add_those_of_the_script() -> bool:
+    """Make the interfaces known of the project whose file is run, as in `python nodes/talker.py`."""
+    file = getattr(sys.modules.get("__main__"), "__file__", None)
+    for folder in Path(file).resolve().parents if file else ():
+        if (folder / "interfaces").is_dir() and any((folder / mark).exists() for mark in ("pyproject.toml", "nodes")):
+            registry.add_root(folder / "interfaces")
+            return True
+    return False
 
 
 def install() -> None:

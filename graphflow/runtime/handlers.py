@@ -83,6 +83,8 @@ class Rate:
 
         def plain(source: float | Param[Any] | None) -> float | None:
             if not isinstance(source, Param):
+                if source is not None and not isinstance(source, (int, float)):
+                    raise TypeError(f"a period or frequency is a number or a Param, not {source!r}")
                 return None if source is None else float(source)
             return float(source.parameter.default if values is None else values[source.parameter.name])
 

@@ -29,6 +29,15 @@ def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path
     tests = subprocess.run(words, cwd=project, capture_output=True, text=True, timeout=LIMIT * 3, check=False)
     assert tests.returncode == 0, tests.stdout
     assert "1 passed" in tests.stdout
+    alone = subprocess.Popen(
+        [sys.executable, "nodes/greeter.py"], cwd=project, env=machine.env, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert alone.stderr is not None
+        assert "hello, time 1" in alone.stderr.readline()
+    finally:
+        alone.terminate()
+        alone.communicate(timeout=LIMIT)
 
 
 def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) -> None:

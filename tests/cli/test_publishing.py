@@ -8,7 +8,7 @@ import pytest
 
 from graphflow import Node
 from graphflow.cli import exits
-from graphflow.cli.publishing import PubOptions, _publish
+from graphflow.cli.publishing import UNHEARD_AFTER, PubOptions, _publish
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 
@@ -69,6 +69,18 @@ async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[s
     assert task.result() == exits.TIMEOUT
     assert not heard
     assert capsys.readouterr().err == "error: /said: fewer than 2 subscriptions after 3 s\n"
+
+
+async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is said once, with the nearest name that somebody hears."""
+    node, listener = Node("publishing"), Node("listener")
+    listener.create_subscription(String, "/chatter", lambda _: None)
+    await graph.start(node, listener)
+    publishing = asyncio.create_task(_publish(node, "/chater", String(data="x"), PubOptions(rate=10.0)))
+    await graph.clock.advance(UNHEARD_AFTER + 3.0)
+    publishing.cancel()
+    told = capsys.readouterr().err
+    assert told.count("no node hears /chater so far; did you mean '/chatter'?") == 1
 
 
 async def test_it_stays_for_a_while(graph: Graph) -> None:

@@ -94,6 +94,12 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
             2,
             "/chatter is of type std_msgs/msg/String, not std_msgs/msg/I",
         ),
+        (
+            "topic pub /chatter",
+            2,
+            "topic pub /chatter std_msgs/msg/String ...; it carries std_msgs/msg/String",
+        ),
+        ("topic pub /new {data: x}", 2, "the topic's type comes before the values: graphflow topic pub /new TYPE ..."),
         ("topic pub /chatter std_msgs/msg/String dta: x", 2, "did you mean 'data'?"),
         ("topic pub /chatter std_msgs/msg/Strin data: x", 2, "did you mean 'String'?"),
     ],

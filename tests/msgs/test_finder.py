@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from graphflow.errors import InterfaceError
+from graphflow.errors import InterfaceError, UnknownInterface
 from graphflow.msgs import finder, registry
 
 if TYPE_CHECKING:
@@ -85,6 +85,24 @@ def test_a_wrong_definition_is_told_on_import(save: Save) -> None:
     file = save("find_wrong/msg/Thing", "float64 X")
     with pytest.raises(InterfaceError, match=f"^{file}: find_wrong/msg/Thing line 1: field name 'X'"):
         _ = module("find_wrong.msg").Thing
+
+
+def test_a_field_of_a_type_that_is_not_there(save: Save) -> None:
+    """Is told with the definition that has it, also by `from ... import`."""
+    save("find_field/msg/Greeting", "string text")
+    save("find_field/msg/Thing", "float64 x\nGreting y")
+    text = "find_field/msg/Thing has a field of a type that is not there: .*did you mean 'Greeting'"
+    with pytest.raises(UnknownInterface, match=text):
+        exec("from graphflow.msgs.find_field.msg import Thing")
+
+
+def test_the_interfaces_of_a_script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`python nodes/talker.py` knows those of its own project."""
+    (tmp_path / "interfaces" / "find_script" / "msg").mkdir(parents=True)
+    (tmp_path / "interfaces" / "find_script" / "msg" / "Thing.msg").write_text("float64 x\n")
+    (tmp_path / "nodes").mkdir()
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(tmp_path / "nodes" / "talker.py"), raising=False)
+    assert module("find_script.msg").Thing(x=1.0).x == 1.0
 
 
 @pytest.mark.parametrize("name", ["nothing_like_it", "std_msgs.idl", "std_msgs.msg.String"])
