@@ -8,7 +8,6 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
-import time
 
 import zenoh
 
@@ -21,6 +20,8 @@ TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
 ANSWER_LIMIT = 0.5
 """Seconds a listener may take to answer."""
+PATIENCE = 2.0
+"""Seconds it has when it is asked again, before it is called mute: a busy machine may take that long."""
 
 
 def address(endpoint: str) -> tuple[str, int]:
@@ -46,14 +47,11 @@ def join() -> zenoh.Session | None:
     """
     endpoint = rendezvous_endpoint()
     address(endpoint)
-    began = time.monotonic()
-    session = _open_client(endpoint)
-    if session is None and _is_listening(endpoint):
-        if time.monotonic() - began < ANSWER_LIMIT:
-            # A process may have bound the port between the two checks: ask again before calling it mute.
-            session = _open_client(endpoint)
+    session = _open_client(endpoint, ANSWER_LIMIT)
+    if session is None and _is_listening(endpoint):  # it may have bound the port between the two checks
+        session = _open_client(endpoint, PATIENCE)
         if session is None:
-            raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {ANSWER_LIMIT} s"))
+            raise TransportError(occupied(endpoint, f"did not answer as Zenoh within {PATIENCE:g} s"))
     if session is None:
         return None
     try:
@@ -64,9 +62,9 @@ def join() -> zenoh.Session | None:
     return session
 
 
-def _open_client(endpoint: str) -> zenoh.Session | None:
+def _open_client(endpoint: str, limit: float) -> zenoh.Session | None:
     try:
-        return open_session(config("client", connect=[endpoint], open_limit=ANSWER_LIMIT))
+        return open_session(config("client", connect=[endpoint], open_limit=limit))
     except TransportError:
         return None
 

@@ -86,7 +86,7 @@ def test_an_error_of_the_work_is_raised_and_the_node_is_gone(standing: Machine) 
     """Nothing is left behind that others would see."""
 
     async def work(node: Node) -> int:
-        assert "/visitor" in standing.look("node", "list")
+        standing.until(lambda: "/visitor" in standing.look("node", "list"), "it is announced")
         raise LookupError("no such thing")
 
     with pytest.raises(LookupError, match="no such thing"):

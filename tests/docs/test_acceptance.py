@@ -37,6 +37,7 @@ def test_graphflow_passes_its_own_acceptance(machine: Machine, tmp_path: Path) -
     assert "17 passed, 0 failed" in done.stdout
 
 
+@slow
 def test_a_failure_is_seen(machine: Machine, tmp_path: Path) -> None:
     """A command line that says nothing fails everything but what graphflow itself says, and the exit code tells."""
     done = acceptance(machine, tmp_path, "echo")

@@ -56,7 +56,7 @@ from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import Seeded, World, simulate
 from graphflow.times import NANOSECONDS
-from tests.cases import cases, count, limit
+from tests.cases import cases, count, limit, slow
 from tests.machines.rcl_goals import NEXT
 
 CASES = count(few=30, full=180)
@@ -995,6 +995,7 @@ def test_against_the_model(setting: Setting, steps: list[Step]) -> None:
 # By hand
 
 
+@slow
 def test_a_thousand_preemptions() -> None:
     """By three clients over a slow network: never two bodies at once, however they end, and the newest goal wins."""
     model = Model(Setting("preempt", None, "continue", 0.05, 0.0, False, 0))

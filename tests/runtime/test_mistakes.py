@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import gc
 import logging
 import os
 import re
@@ -137,7 +136,6 @@ async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytes
     await graph.start(node)
     for _ in range(100):
         await graph.clock.advance(0.05)
-        gc.collect()
         if caplog.messages:
             break
     said = caplog.messages[0]

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import some
 from tests.conftest import Machine, alive
 from tests.supervisor.running import GOOD, nothing_is_left, rows, supervisor_of, write
 
 pytestmark = pytest.mark.real
 
 
-@pytest.mark.parametrize("victim", ["supervisor", "preload", "terminal"])
+@pytest.mark.parametrize("victim", some(["supervisor", "preload", "terminal"], "supervisor"))
 def test_kill_minus_9_leaves_nothing_behind(machine: Machine, project: Path, victim: str) -> None:
     """Whoever of them dies: no node is left running, and the graph can be started again."""
     file = write(project, GOOD)

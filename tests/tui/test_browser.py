@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from graphflow.transport.rendezvous import free_endpoint
+from tests.cases import slow
 from tests.conftest import LIMIT, Machine
 
 aiohttp = pytest.importorskip("aiohttp", reason="the extra `web` is not installed")
@@ -103,6 +104,7 @@ async def consoles(machine: Machine, count: int) -> None:
             await asyncio.sleep(0.1)
 
 
+@slow
 def test_a_console_in_a_tab(machine: Machine, tmp_path: Path) -> None:
     """It shows the graph, takes keys, and is gone with its tab; the graph runs on. A stranger's page gets nothing."""
     machine.run("up", "-d", "graphs/talker_listener.yaml")
