@@ -1,4 +1,4 @@
-"""Which domain a process belongs to: a number that keeps graphs on one network apart, as ROS_DOMAIN_ID does."""
+"""Where a process belongs: its domain, which keeps graphs on one network apart, and where its machine's nodes meet."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graphflow.cli import output
-from graphflow.errors import GraphflowError, UsageFault
+from graphflow.errors import GraphflowError, NoModule, UsageFault
 from graphflow.graph.project import demos_root, project_root
 from graphflow.names import did_you_mean
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
@@ -47,14 +47,24 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
             known = [name for package, name in EXECUTABLES if package == what]
             raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")
         elif what.rpartition(".")[2][:1].isupper():
-            raise UsageFault(f"{what!r}: write MODULE:CLASS, {what.rpartition('.')[0]}:{what.rpartition('.')[2]}")
+            module, _, name = what.rpartition(".")
+            raise UsageFault(f"{what!r}: write MODULE:CLASS, {module or f'nodes.{name.lower()}'}:{name}")
         else:
-            cls = _only(what if "." in what else f"nodes.{what}")
+            cls = _only(what) if "." in what else _named(what, root)
     except GraphflowError as error:
         raise UsageFault(str(error)) from None
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
         output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
     return cls, rest
+
+
+def _named(what: str, root: Path) -> type[Node]:
+    """The node of a module in `nodes/`, of the project or of graphflow."""
+    try:
+        return _only(f"nodes.{what}")
+    except NoModule:
+        known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
+        raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
 
 
 def _module_of(file: Path, root: Path) -> str:

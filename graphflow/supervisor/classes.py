@@ -64,10 +64,18 @@ def import_module_of(name: str) -> ModuleType:
         return import_module(bundled if bundled and _roots[-1:] == [str(INSTALLED_DEMOS)] else name)
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and error.name and name.startswith(error.name):
-            if bundled and find_spec(bundled) is not None:  # a project has no such node of its own
-                return import_module(bundled)
+            if bundled and _is_there(bundled):  # a project has no such node of its own
+                return import_module_of(bundled)
             raise NoModule(_no_module(error.name, name, _roots[-1] if _roots else "."), error.name) from None
         raise GraphflowError(f"cannot import {name}: {_where(error)}") from error
+
+
+def _is_there(name: str) -> bool:
+    """Whether there is a module of that name; the packages above it are imported."""
+    try:
+        return find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, type[Node]]:

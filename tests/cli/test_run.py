@@ -102,14 +102,15 @@ def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) ->
     assert "plus ['2', '--fast']" in text
 
 
-def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path) -> None:
-    """A student's file of the same name as one of ours becomes no part of it."""
+@pytest.mark.parametrize("name", ["turtle_follower", "scheduler"])
+def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path, name: str) -> None:
+    """A student's file of the same name as one of ours becomes no part of it; ours bring their interfaces along."""
     (tmp_path / "nodes").mkdir()
     (tmp_path / "nodes" / "__init__.py").touch()
     (tmp_path / "nodes" / "position_controller.py").write_text("raise RuntimeError('mine')\n")
-    node = machine.start("run", "turtle_follower", cwd=tmp_path)
+    node = machine.start("run", name, cwd=tmp_path)
     node.wait_for("comes with graphflow")
-    node.wait_for("turtle_follower.py")
+    node.wait_for(f"{name}.py")
     assert node.end() == 0
     assert "mine" not in node.text
 
