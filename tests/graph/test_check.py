@@ -276,3 +276,15 @@ def test_one_name_with_two_types(remap: str, place: str, problem: str) -> None:
     )
     text = f"nodes:\n  a: {{class: a.b:Other}}\n  b: {{class: a.b:Chaser,\n    remap: {{{remap}}}}}\n"
     assert problems(text, {**KNOWN, "a.b:Other": other}) == [f"{place}: {problem}"]
+
+
+def test_types_that_the_source_does_not_show() -> None:
+    """Are neither right nor wrong, for topics as for the services that steps call."""
+    vague = Interface(
+        "a.b:Vague", "vague", NOWHERE, endpoints=(endpoint("publisher", "pose", ""), endpoint("service", "reset", ""))
+    )
+    clear = Interface(
+        "a.b:Clear", "clear", NOWHERE, endpoints=(endpoint("subscription", "pose", "std_msgs/msg/String"),)
+    )
+    text = "nodes:\n  /v: {class: a.b:Vague}\n  /c: {class: a.b:Clear}\nsteps:\n  go: {call: /reset}\n"
+    assert problems(text, {i.class_path: i for i in (vague, clear)}) == []

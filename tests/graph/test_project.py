@@ -72,3 +72,12 @@ def test_paths_are_shown_short(folder: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert shown(folder / "a/graphs/deep/g.yaml") == "graphs/deep/g.yaml"
     assert shown(folder / "b/g.yaml") == str(folder / "b/g.yaml")
     assert shown(Path("../b/g.yaml")) == "../b/g.yaml"
+
+
+def test_graphs_beside_nodes(folder: Path) -> None:
+    """Make a project of the folder above them, without a `pyproject.toml` too."""
+    (folder / "a/pyproject.toml").unlink()
+    (folder / "a/graphs/g.yaml").touch()
+    assert project_root(folder / "a/graphs/g.yaml") == folder / "a"
+    (folder / "a/nodes").rmdir()
+    assert project_root(folder / "a/graphs/g.yaml") == folder / "a/graphs"

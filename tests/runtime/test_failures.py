@@ -70,3 +70,28 @@ async def test_a_handler_says_what_its_errors_mean(graph: Graph, on_error: OnErr
 
     assert (core_of(node).failure is not None) is ends
     core_of(node).failure_taken = True
+
+
+async def test_errors_of_other_kinds_are_not_hidden(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """A second one of the same handler, of another kind, is told although the first was a moment ago."""
+    errors = iter([ValueError("one"), KeyError("two"), ValueError("three")])
+
+    async def changing() -> None:
+        raise next(errors)
+
+    node = Node("n")
+    node.create_timer(0.1, changing, on_error="log")
+    await graph.start(node)
+    await graph.clock.advance(0.35)
+    assert [r.getMessage() for r in caplog.records][:2] == ["changing: ValueError: one", "changing: KeyError: 'two'"]
+    assert "three" not in caplog.text
+
+
+async def test_an_error_about_a_handler_needs_no_traceback(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """It was raised by graphflow: none of the user's lines would be in it."""
+    node = Node("n")
+    await graph.start(node)
+    core_of(node).report_error("add", TypeError("the handler returned True"))
+    assert [(r.getMessage(), r.exc_info) for r in caplog.records] == [
+        ("add: TypeError: the handler returned True", None)
+    ]

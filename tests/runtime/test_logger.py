@@ -42,7 +42,8 @@ def test_once_and_skip_first(log: NodeLogger, clock: list[float], caplog: pytest
         log.info("once", once=True)
         log.info("skip %d", i, skip_first=True)
         log.info("both %d", i, once=True, skip_first=True)
-    assert caplog.messages == ["once", "skip 1", "both 1", "skip 2", "skip 3"]
+        log.info("late %d", i, throttle=5.0, skip_first=True)
+    assert caplog.messages == ["once", "skip 1", "both 1", "late 1", "skip 2", "skip 3"]
 
 
 def test_a_word_of_rclpy(log: NodeLogger) -> None:

@@ -68,6 +68,7 @@ class Child(Parent):
 
     def prepare(self) -> None:
         self.create_publisher(String, "new")
+        self.create_service(AddTwoInts, "add_too", self.add)
         self.declare_parameter("rate", 3.0)
 
 
@@ -127,7 +128,8 @@ def test_what_cannot_be_read() -> None:
 def test_what_a_child_replaces() -> None:
     """Is not made; what is declared stands once."""
     assert [e.name for e in Parent.interface().endpoints] == ["add", "old"]
-    assert [e.name for e in Child.interface().endpoints] == ["add", "new"]
+    assert [e.name for e in Child.interface().endpoints] == ["add", "new", "add_too"]
+    assert [h.name for h in Child.interface().handlers] == ["add"]
     assert [(p.name, p.default) for p in Child.interface().params] == [("rate", 1.0)]
 
 

@@ -117,3 +117,13 @@ def test_where_a_project_is_looked_for(project: Path) -> None:
     installed = [i for i, entry in enumerate(sys.path) if entry.endswith("-packages")]
     standard = sys.path.index(str(Path(shutil.__file__).parent))
     assert standard < at < min(installed)
+
+
+def test_classes_whose_nodes_cannot_be_made(project: Path) -> None:
+    """Are told with the place of the class."""
+    (project / "machines" / "needy.py").write_text(
+        "from graphflow import Node\nclass Needy(Node):\n    def __init__(self, port):\n        super().__init__()\n"
+    )
+    [problem] = read_interfaces(interfaces(["machines.needy:Needy"])).values()
+    assert isinstance(problem, Problem)
+    assert problem.message.startswith(f"{project}/machines/needy.py:2: Needy.__init__ needs port, and nodes are made")

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 import pytest
 import zenoh
 
-from graphflow.errors import SupervisorError
+from graphflow.errors import SupervisorError, TransportError
+from graphflow.transport import client as client_module
 from graphflow.transport import rendezvous
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client
@@ -90,3 +91,10 @@ def test_a_command_that_reaches_out_says_where_it_looked(port: int, monkeypatch:
     with pytest.raises(SupervisorError, match="nor where --connect or --net points") as caught:
         Client()
     assert caught.value.exit_code == 3
+
+
+def test_a_list_that_is_cut_off_is_an_error(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It never passes for the whole."""
+    monkeypatch.setattr(client_module, "TOKENS_LIMIT", 1e-9)
+    with pytest.raises(TransportError, match=r"only \d+ tokens of the graph came within"):
+        client.tokens("test/*")
