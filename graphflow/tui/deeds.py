@@ -7,7 +7,7 @@ from typing import Any
 
 from graphflow.graph.console import LAYOUTS, VIEWS, known_views
 from graphflow.tui.actions import carry_out, console_actions, keys_of, shown
-from graphflow.tui.dialogs import Ask, Choice, Item, Note, Pick
+from graphflow.tui.dialogs import Ask, AskToStop, Choice, Item, Note, Pick
 from graphflow.tui.ink import DARK, LIGHT
 from graphflow.tui.lines import Lines
 from graphflow.tui.pane_deeds import PaneDeeds
@@ -45,7 +45,7 @@ class Deeds(PaneDeeds):
     def do_ask_to_stop(self) -> None:
         app = self._app
         view = app.focused_view
-        if app.stops_again():
+        if isinstance(app.screen, AskToStop):
             self.stop_now()
             return
         if view is not None and view.interrupt():
@@ -59,7 +59,7 @@ class Deeds(PaneDeeds):
         nodes = len(app.hub.supervision.nodes)
         question = f"Leave or stop {app.hub.graph}, {nodes} node{'s' if nodes != 1 else ''}?"
         choices = [Choice("d", "detach: the nodes run on"), Choice("s", "stop the graph   (or ^c again)")]
-        self._ask(question, choices, self._leave)
+        app.push_screen(AskToStop(question, choices), self._leave)
 
     def _ask(self, question: str, choices: list[Choice], answered: Any, detail: str = "") -> None:
         self._app.push_screen(Ask(question, choices, detail), answered)

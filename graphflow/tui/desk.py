@@ -23,8 +23,6 @@ MESSAGES = 500
 """Messages kept."""
 KEEP_AFTER = 1.0
 """Seconds after the last change at which the windows are kept with the run."""
-STOP_WITHIN = 2.0
-"""Seconds in which a second Ctrl-C stops the graph without asking."""
 LASTING = "lasting"
 """Workers that run until the console is left."""
 LEAVE_WITHIN = 2.0
@@ -54,7 +52,6 @@ class Desk(App[str]):
         self.said: list[str] = []
         """Messages so far."""
         self._keep_timer: Timer | None = None
-        self._asked_to_stop = 0.0
 
     def spawn(self, work: Callable[[], Awaitable[None]]) -> None:
         """Run something until the console is left."""
@@ -112,13 +109,6 @@ class Desk(App[str]):
         self.workspace.keep_contents()
         if self.hub.supervision is not None:
             self.hub.supervision.send(do="keep_layout", layout=self.windows.to_json())
-
-    def stops_again(self) -> bool:
-        """Whether this Ctrl-C is the second within two seconds."""
-        now = time.monotonic()
-        again = now - self._asked_to_stop < STOP_WITHIN
-        self._asked_to_stop = now
-        return again
 
     @property
     def window(self) -> Window:

@@ -60,6 +60,10 @@ class Ask(ModalScreen[str | None]):
             (self.focus_previous if event.key == "up" else self.focus_next)()
 
 
+class AskToStop(Ask):
+    """Whether to leave or to stop the graph. Ctrl-C, the key that asks, is an answer too: it stops the graph."""
+
+
 class AskLine(ModalScreen[str | None]):
     """One line of text; None when it was given up."""
 

@@ -6,7 +6,7 @@ import pytest
 
 from graphflow.testing import Graph
 from graphflow.tui.actions import CONSOLE, console_actions
-from graphflow.tui.dialogs import Ask, Note, Pick
+from graphflow.tui.dialogs import AskToStop, Note, Pick
 from graphflow.tui.panes import Content
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
         ("f", Pick),
         ("v", Pick),
         ("D", Pick),
-        ("S", Ask),
+        ("S", AskToStop),
         ("tilde", Note),
     ],
 )
@@ -139,6 +139,20 @@ async def test_stopping(keys: tuple[str, ...]) -> None:
         await s.press(keys[1])
         await s.until(lambda: s.console.return_value is not None)
         assert s.console.return_value == "stop"
+
+
+async def test_ctrl_c_asks_first_whatever_came_before() -> None:
+    """Only while the question is open does it stop: not after a command that it ended, nor after `esc`."""
+    async with stage(Content("prompt")) as s:
+        s.view.interrupt = lambda: True  # type: ignore[method-assign]
+        await s.press("ctrl+c")
+        assert "^c again asks to stop the graph" in s.text
+        s.view.interrupt = lambda: False  # type: ignore[method-assign]
+        for _ in range(2):
+            await s.press("ctrl+c")
+            assert "Leave or stop lab" in s.text
+            await s.press("escape")
+        assert s.console.return_value is None
 
 
 async def test_without_a_supervisor_nothing_can_be_stopped() -> None:

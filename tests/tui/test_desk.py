@@ -23,18 +23,6 @@ async def test_messages_are_kept() -> None:
         assert s.console.last_shell == "graphflow ps"
 
 
-async def test_the_second_ctrl_c_counts_for_two_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """After that it asks again."""
-    now = [100.0]
-    async with stage() as s:
-        monkeypatch.setattr("graphflow.tui.desk.time.monotonic", lambda: now[0])
-        assert not s.console.stops_again()
-        now[0] += 1.9
-        assert s.console.stops_again()
-        now[0] += 2.1
-        assert not s.console.stops_again()
-
-
 async def test_leaving_keeps_the_windows_and_lets_go() -> None:
     """Views are closed, the windows sent."""
     async with stage(Content("log")) as s:
