@@ -12,6 +12,9 @@ from typing import Any
 
 logger = logging.getLogger("graphflow.supervisor")
 
+READ_SIZE = 1 << 16
+"""Bytes read at a time: all that a pipe can hold."""
+
 
 class Lines:
     """Reads events from a descriptor as they come; writes requests if it is a socket.
@@ -30,11 +33,12 @@ class Lines:
         self._fd = channel if isinstance(channel, int) else channel.fileno()
         os.set_blocking(self._fd, False)
         self._loop = asyncio.get_running_loop()
-        self._loop.add_reader(self._fd, self._readable)
+        self._loop.add_reader(self._fd, self.read)
 
-    def _readable(self) -> None:
+    def read(self) -> None:
+        """Take in what has come, which the loop does by itself sooner or later."""
         try:
-            data = os.read(self._fd, 65536)
+            data = os.read(self._fd, READ_SIZE)
         except BlockingIOError:
             return
         except ConnectionError:

@@ -312,8 +312,8 @@ class ControlClient:
                 self._buffer += data
         except BlockingIOError:
             return self._lines()
-        except ConnectionError:
-            return None
+        except ConnectionError:  # what came before it counts
+            return self._lines() or None
 
     def _lines(self) -> list[dict[str, Any]]:
         *lines, self._buffer = self._buffer.split(b"\n")

@@ -36,7 +36,14 @@ class ForkingStarter:
         return result
 
     async def open(self, log: Path, heard: Heard, lost: Callable[[], None]) -> None:
-        self._lines = [Lines(self._channel, heard, lost), Lines(self._status, heard, lambda: None)]
+        status = Lines(self._status, heard, lambda: None)
+
+        def heard_of_end(event: dict[str, Any]) -> None:
+            if event["event"] == "exited":  # what the worker said before it ended is in the pipe, and comes first
+                status.read()
+            heard(event)
+
+        self._lines = [Lines(self._channel, heard_of_end, lost), status]
         self._lines[0].send(do="log", path=str(log))
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:

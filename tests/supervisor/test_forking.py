@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import socket
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -62,3 +65,25 @@ def test_a_signal_reaches_a_worker(is_leader: bool) -> None:
     _signal(sleeper.pid, signal.SIGTERM)
     assert sleeper.wait(10.0) == -signal.SIGTERM
     _signal(sleeper.pid, signal.SIGKILL)
+
+
+@pytest.mark.usefixtures("graphflow_runner")
+async def test_what_a_worker_said_before_it_ended_is_heard_first(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Its words and its end come by two ways, and the loop may look at them in either order."""
+    mine, preloads = socket.socketpair()
+    status_read, status_write = os.pipe()
+    monkeypatch.setattr(preload, "start", lambda keep: (mine, status_read, 0))
+    heard: list[str] = []
+    made = ForkingStarter(())
+    await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda: None)
+    os.write(status_write, b'{"event": "ready"}\n')
+    preloads.sendall(b'{"event": "exited"}\n')
+    made._lines[0].read()
+    assert heard == ["ready", "exited"]
+    await made.close()
+    for end in (mine, preloads):
+        end.close()
+    for fd in (status_read, status_write):
+        os.close(fd)

@@ -81,7 +81,7 @@ def test_a_node_that_cannot_be_made_stops_the_start(machine: Machine, project: P
 def test_a_graph_whose_nodes_all_end_by_themselves_has_ended_well(machine: Machine, project: Path) -> None:
     """`shutdown` from within is no failure."""
     up = machine.start("up", write(project, "nodes:\n  /e: {class: nodes.lab:Ends}\n"), cwd=project)
-    assert up.wait() == 0
+    assert up.wait() == 0, up.text
     assert "done" in up.text
 
 
