@@ -35,6 +35,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
+from unicodedata import category
 
 
 class GraphflowError(Exception):
@@ -143,8 +144,15 @@ LONGEST_TEXT = 4_000
 
 
 def printable(text: str) -> str:
-    """A text from another process, safe to put in an error: with nothing in it that a terminal would obey."""
-    return "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in text[:LONGEST_TEXT])
+    """A text from another process, safe to put in an error: of bounded length, and harmless."""
+    return harmless(text[:LONGEST_TEXT])
+
+
+def harmless(text: str) -> str:
+    """A text with nothing in it that a terminal would obey; its lines and tabs stay."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in "\n\t" or category(c) == "Zs" else repr(c)[1:-1] for c in text)
 
 
 class Abort(GraphflowError):

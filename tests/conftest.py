@@ -20,6 +20,7 @@ import pytest
 from graphflow.cli.main import main
 from graphflow.msgs import registry
 from graphflow.transport.rendezvous import free_endpoint
+from tests.flat import flat
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     # A shell starts what it puts into the background so, and what is started from there would be deaf to Ctrl-C.
@@ -61,11 +62,11 @@ class Program:
         return self.process.pid
 
     def wait_for(self, what: str, limit: float = LIMIT) -> str:
-        """Read its output until `what` is in it; returns all that was read."""
+        """Read its output until `what` is in it, wherever its lines break; returns all that was read."""
         deadline = time.monotonic() + limit
         out = self.process.stdout
         assert out is not None
-        while what not in self.text:
+        while what not in self.text and flat(what) not in flat(self.text):
             left = deadline - time.monotonic()
             if left <= 0 or not select.select([out], [], [], left)[0]:
                 raise AssertionError(f"no {what!r} within {limit} s in:\n{self.text}")

@@ -1,4 +1,7 @@
-"""Everything the command line prints: data to stdout, talk to stderr."""
+"""Everything the command line prints: data to stdout, talk to stderr.
+
+Names, messages and errors may come from other processes: nothing that a terminal would obey gets through.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,8 @@ import os
 import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
+
+from graphflow.errors import harmless
 
 
 def is_terminal() -> bool:
@@ -17,13 +22,20 @@ def is_terminal() -> bool:
 
 def data(text: str) -> None:
     """A line of what was asked for."""
-    print(text, flush=True)
+    print(harmless(text), flush=True)
 
 
 def lines(texts: Iterable[str]) -> None:
     """Several lines of what was asked for."""
     for text in texts:
-        print(text)
+        print(harmless(text))
+    sys.stdout.flush()
+
+
+def colored(head: str, colour: int, texts: Iterable[str]) -> None:
+    """Several lines, each with a head in a colour of the terminal, from 31 to 36."""
+    for text in texts:
+        print(f"\x1b[{colour}m{harmless(head)}\x1b[0m{harmless(text)}")
     sys.stdout.flush()
 
 
@@ -48,9 +60,9 @@ def _plain(value: Any) -> Any:
 
 def talk(text: str) -> None:
     """A word to the user: progress, hints, warnings."""
-    print(text, file=sys.stderr, flush=True)
+    print(harmless(text), file=sys.stderr, flush=True)
 
 
 def error(text: str) -> None:
     """Why the command failed, and what to do."""
-    print(text if text.startswith("error:") else f"error: {text}", file=sys.stderr, flush=True)
+    talk(text if text.startswith("error:") else f"error: {text}")

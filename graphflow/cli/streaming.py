@@ -47,14 +47,14 @@ class LogReader:
             self._files[path] = (offset + len(data) - len(partial), rest)
             if lines:
                 texts = lines.decode(errors="replace").split("\n")
-                output.lines(
-                    self._prefixed(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
-                )
+                self._print(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
 
-    def _prefixed(self, path: Path, texts: list[str]) -> Iterable[str]:
+    def _print(self, path: Path, texts: list[str]) -> None:
         name = path.stem.ljust(self._width)
-        head = f"\x1b[{self._colours[path]}m{name}\x1b[0m |" if self._is_terminal else f"{name} |"
-        return (f"{head} {text}" for text in texts)
+        if self._is_terminal:
+            output.colored(name, self._colours[path], (f" | {text}" for text in texts))
+        else:
+            output.lines(f"{name} | {text}" for text in texts)
 
 
 def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:

@@ -76,7 +76,7 @@ def groups() -> None:
 
     \b
     graphflow groups NODE
-    graphflow groups move NODE HANDLER GROUP
+    graphflow groups move NODE HANDLER... GROUP
     """  # noqa: D301 - click wants the character
 
 
@@ -118,30 +118,30 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
 
 @groups.command()
 @click.argument("node")
-@click.argument("handler")
+@click.argument("handlers", metavar="HANDLER...", nargs=-1, required=True)
 @click.argument("group")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds.")
-def move(node: str, handler: str, group: str, timeout: float) -> None:
-    """Move a handler of a running node into another group, made if missing; `none` for no group.
+def move(node: str, handlers: tuple[str, ...], group: str, timeout: float) -> None:
+    """Move handlers of a running node into another group, made if missing; `none` for no group.
 
     Prints the lines of a graph file that make the move permanent.
     """
     with View(domain_id()) as view:
         full = view.node(node)
         zid = view.cache.owners(full)[0].zid
-        wanted = {"node": full, "handler": handler, "group": group}
-        try:
-            answer = view.ask(f"@graphflow/{view.domain}/groups/{zid}", json.dumps(wanted).encode(), timeout)
-        except TimeoutError:
-            text = f"{full} did not answer within {timeout:g} s; its event loop may be blocked: see graphflow waits"
-            raise CallTimeout(text) from None
-    if answer.is_error:
-        raise UsageFault(RemoteError.from_payload(answer.payload, "").message)
-    known = json.loads(answer.payload)["groups"]
-    _show(full, known, as_json=False)
-    together = [h["handler"] for g in known if g["name"] == group for h in g["handlers"]] or [handler]
-    output.data("\nTo keep it so, in the graph file under nodes: or override:")
-    output.data(f"  {full}: {{concurrency: {{{group}: [{', '.join(together)}]}}}}")
+        for handler in handlers:
+            wanted = {"node": full, "handler": handler, "group": group}
+            try:
+                answer = view.ask(f"@graphflow/{view.domain}/groups/{zid}", json.dumps(wanted).encode(), timeout)
+            except TimeoutError:
+                text = f"{full} did not answer within {timeout:g} s; its event loop may be blocked: see graphflow waits"
+                raise CallTimeout(text) from None
+            if answer.is_error:
+                raise UsageFault(RemoteError.from_payload(answer.payload, "").message)
+    told = json.loads(answer.payload)
+    _show(full, told["groups"], as_json=False)
+    output.data(f"\nTo keep it so, {told['where']}")
+    output.lines(told["yaml"])
 
 
 @click.command()

@@ -40,6 +40,16 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
     concurrent.futures.Future.result.__code__: FUTURE,
 }
 """Waits of asyncio and of threads, and the methods of the same object that end them."""
+DEEDS = {
+    FUTURE: "ends",
+    ("set",): "sets",
+    ("put", "put_nowait"): "fills",
+    ("get", "get_nowait"): "empties",
+    ("task_done",): "works off",
+    ("notify", "notify_all"): "notifies",
+    ("release",): "releases",
+}
+"""What those methods do, in words, by the methods."""
 ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)}
 _TASK_GROUP_EXITS = tuple(
     getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)

@@ -20,7 +20,7 @@ from functools import cached_property
 from types import FrameType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.asyncio_frames import ENDINGS, awaited_future, is_inside, object_wait
+from graphflow.deadlock.asyncio_frames import DEEDS, ENDINGS, awaited_future, is_inside, object_wait
 from graphflow.deadlock.conditions import (
     CONTAINERS,
     LOOKING,
@@ -59,6 +59,10 @@ class Setters(NamedTuple):
     """How many can be in it at a time."""
     tasks: tuple[asyncio.Future[Any], ...] = ()
     """Tasks and goals whose end may end the wait too."""
+    deed: str = "sets"
+    """What the handlers do to it."""
+    gives_up: bool = False
+    """Whether a deadline ends the wait for good, and not only this attempt."""
 
 
 def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
@@ -71,9 +75,11 @@ def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: 
     """
     try:
         question = _Question(frames, node)
-        if (is_bounded or question.is_bounded) and question.is_repeated:  # what matters is when it stops trying again
+        is_bounded = is_bounded or question.is_bounded
+        if is_bounded and question.is_repeated:  # what matters is when it stops trying again
             return question.of_loop()
-        return question.of_object(waiter) or question.of_loop()
+        found = question.of_object(waiter) or question.of_loop()
+        return found and found._replace(gives_up=is_bounded)
     except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
         return None
 
@@ -187,14 +193,16 @@ class _Question:
         uses = list(self._uses(name))
         found = {use.method for use in uses if use.kind == "called" and use.name in methods}
         setters = self._reached(f"self.{name}", found)
+        setters = setters and setters._replace(deed=DEEDS[methods])
         if methods != ("release",) or not any(use.kind == "entered" for use in uses):
             return setters
+        handlers = setters.handlers if setters else frozenset()
         if isinstance(thing, (asyncio.Semaphore, threading.Semaphore)):
             places = {_places(use.value) for use in uses if use.kind == "assigned"}
             if len(places) != 1:
                 raise Unknown
-            return Setters(f"self.{name}", setters.handlers if setters else frozenset(), thing, places.pop())
-        return Setters(f"self.{name}", setters.handlers if setters else frozenset(), thing)
+            return Setters(f"self.{name}", handlers, thing, places.pop(), deed=DEEDS[methods])
+        return Setters(f"self.{name}", handlers, thing, deed=DEEDS[methods])
 
     def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
         """Something in a list or dictionary may be ended by any method that ends such a thing."""
@@ -209,7 +217,8 @@ class _Question:
                     if is_nested(parents) or not (isinstance(parents[-1], ast.Call) and parents[-1].func is syntax):
                         raise Unknown
                     found.add(method)
-        return self._reached(f"a part of self.{name}", found)
+        setters = self._reached(f"a part of self.{name}", found)
+        return setters and setters._replace(deed=DEEDS[methods])
 
     def _uses(self, name: str) -> Iterator[Use]:
         """The uses of a tool, such as an event, none of which makes it known to other code."""

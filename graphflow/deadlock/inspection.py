@@ -125,7 +125,9 @@ class Inspection:
         target = node.groups.named(group)
         for runner in mine:
             runner.move(target)
-        return {"groups": groups_of(node)}
+        node.groups.note_move(handler, group)
+        regrouping = node.groups.regrouping
+        return {"groups": groups_of(node), "where": regrouping.where, "yaml": regrouping.lines(node_name, "  ")}
 
     def close(self) -> None:
         """Stop answering."""

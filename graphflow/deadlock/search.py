@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
@@ -23,13 +23,13 @@ from graphflow.deadlock.snapshot import Snapshot, id_of
 from graphflow.deadlock.stalls import Stalls
 from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive, calls_of
 from graphflow.deadlock.watchdog import Watchdog
-from graphflow.errors import DeadlockError
+from graphflow.errors import DeadlockError, Place
 from graphflow.executor.clock import Alarm
 from graphflow.executor.ledger import PendingCall
 from graphflow.executor.runner import Runner
 from graphflow.interface import DeadlockPolicy
 from graphflow.machines.cache import GraphChange
-from graphflow.machines.explain import explanation, hopeless, title
+from graphflow.machines.explain import again, explanation, headline, hopeless, is_in_vain, title
 from graphflow.machines.reduction import deadlocked
 from graphflow.machines.rings import Deadlock, explained, is_ring
 from graphflow.machines.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph, goal_id, joined
@@ -52,6 +52,9 @@ FORGET_AFTER = 1.5
 GONE_AFTER = 0.5
 """Seconds from the first sign that a process is going until all of it has gone."""
 
+TOLD_BOUND = 256
+"""Deadlocks of different members and lines that are remembered, to tell each whole only once."""
+
 Ring = frozenset[str]
 """The members of a deadlock."""
 
@@ -66,6 +69,8 @@ class Report(NamedTuple):
     """The processes of its members, and of what waits behind them."""
     order: tuple[str, ...]
     """The members, each of which waits for the next."""
+    is_in_vain: bool
+    """Whether a deadline will end it."""
 
 
 class Foreign(NamedTuple):
@@ -105,6 +110,8 @@ class Search:
         self._loosened: dict[Ring, int] = {}
         """Of those: when its waits here were first seen to be over, in nanoseconds."""
         self._is_watching = False
+        self._told: dict[Hashable, int] = {}
+        """How often a deadlock has been told, by its members and their lines, or by the call that is hopeless."""
         self._behind: dict[Ring, set[str]] = {}
         """What was reported to wait for a deadlock, by deadlock of any process."""
         self._period = PROBE_AFTER
@@ -145,7 +152,9 @@ class Search:
         graph, zid = self.snapshot.take(), self._process.session.zid
         ids = [f"{zid}:{run.number}" for run in holders]
         found = [graph.activities[name] for name in ids if name in graph.activities]
-        return hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph)
+        text = hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph)
+        times = self._count((service, *_lines(found)))
+        return text if times == 1 else again(text.partition("\n")[0], times)
 
     def close(self) -> None:
         """Stop looking."""
@@ -297,15 +306,30 @@ class Search:
             if not self._is_watching:
                 self._is_watching = True
                 self._process.on_change(self._changed)
+        is_first = told not in self._behind and self._count(_lines(members)) == 1
         if first == mine and told not in self.reports:
             involved = {a.process for a in behind} | processes
-            report = self.reports[ring] = Report(explanation(deadlock, graph), who, involved, deadlock.ring)
-            logger.error("%s", report.text)
+            in_vain, text = is_in_vain(deadlock, graph), explanation(deadlock, graph)
+            self.reports[ring] = Report(text, who, involved, deadlock.ring, in_vain)
+            if is_first:
+                logger.log(logging.WARNING if in_vain else logging.ERROR, "%s", text)
+            elif not in_vain:
+                logger.error("%s", again(headline(deadlock, graph), self._told[_lines(members)]))
             self._behind[ring] = victims
+        if told not in self._behind and not is_first:
+            self._behind[told] = victims
         for victim in sorted(victims - self._behind.setdefault(told, set())):
             known = self.reports.get(told)
             logger.warning("%s waits behind the deadlock of %s", victim, who if known is None else known.who)
         self._behind[told] |= victims
+
+    def _count(self, key: Hashable) -> int:
+        """How often this has been told, now included."""
+        times = self._told.pop(key, 0) + 1
+        self._told[key] = times
+        if len(self._told) > TOLD_BOUND:
+            del self._told[next(iter(self._told))]
+        return times
 
     def _is_reported(self, ring: Ring) -> bool:
         """Whether a deadlock, or another ring through one of its members, has been reported and stands."""
@@ -339,7 +363,7 @@ class Search:
                 continue
             del self.reports[ring]
             self._behind.pop(ring, None)
-            if not ring <= dead:  # otherwise they are in another, which is reported now
+            if not ring <= dead and not report.is_in_vain:  # otherwise they are in another, which is reported now
                 logger.warning("the deadlock of %s has cleared", report.who)
 
     def _forget_foreign(self, graph: WaitGraph) -> None:
@@ -388,6 +412,11 @@ class Search:
                 self._process.loop.call_soon_threadsafe(self.arm)  # to see it cleared
         finally:
             self._lock.release()
+
+
+def _lines(members: list[ActivityView]) -> frozenset[tuple[str, Place]]:
+    """What a deadlock is known by when it comes again: its members, and the lines in which they wait."""
+    return frozenset((title(activity), activity.place) for activity in members)
 
 
 def _nothing(*_: object) -> None:

@@ -24,7 +24,7 @@ from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, method_of, setters
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.user_code import innermost, is_users
+from graphflow.deadlock.user_code import called_in, innermost, is_users
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.errors import DecodeError, Place
 from graphflow.executor.activity import Activity
@@ -164,7 +164,8 @@ class _Look:
         blocker = self._blocker()
         blocked = {} if blocker is None else {self._zid: blocker}
         self._memory.forget(self._seen)
-        return WaitGraph(self._activities, self._groups, self._queues, blocked)
+        regroupings = {node.full_name: node.groups.regrouping for node in self._nodes}
+        return WaitGraph(self._activities, self._groups, self._queues, blocked, regroupings)
 
     # ids
 
@@ -238,7 +239,8 @@ class _Look:
         is_inner: bool = False,
     ) -> None:
         self._limit_ns = None
-        frame = innermost(self._frames_of(task))
+        frames = self._frames_of(task)
+        frame = innermost(frames)
         wait = self._condition(task, _Way(node, task))
         self._seen.add((id_, wait))
         age, left = self._times(id_, wait)
@@ -256,6 +258,7 @@ class _Look:
             self._zid,
             is_inner,
             frame is not None and aio.is_coroutine(frame),
+            called_in(frames, node.instance),
         )
 
     def _times(self, id_: str, wait: Condition) -> tuple[float, float | None]:
@@ -401,7 +404,7 @@ class _Look:
             others += inside
         queues = sorted(self.queue_id(r) for r in runners)
         activities = sorted({self.task_id(other) for other in others})
-        return SetBy(found.what, tuple(queues), tuple(activities), is_held)
+        return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.deed, found.gives_up)
 
     def _inside(self, lock: Any) -> list[Any]:
         """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
@@ -454,6 +457,7 @@ class _Look:
             None,
             self._zid,
             is_async=False,
+            called=called_in(stack, node.instance),
         )
         return id_
 

@@ -65,7 +65,7 @@ class Stalls:
             kept[name] = known
             seconds = (now_ns - known.since_ns) / NANOSECONDS
             if not known.text and seconds >= 0.999 * STALL_AFTER:
-                known.text = stall(graph.groups[name], by, waiting, known.dropped, seconds)
+                known.text = stall(graph.groups[name], by, waiting, known.dropped, seconds, graph)
                 logger.warning("%s", known.text)
             due.append(LOOK_EVERY if known.text else STALL_AFTER - seconds)
         for name, gone in self._by_group.items():

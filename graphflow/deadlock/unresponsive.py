@@ -59,7 +59,7 @@ class Unresponsive:
                 server = self._processes[zid]
                 text = (
                     f"NODE UNRESPONSIVE: {self._nodes(zid)} ({server}) has not answered for {seconds:.1f} s, and "
-                    f"{title(activity)} waits for {name}{where(activity)}: {server.why_silent}"
+                    f"{title(activity)} waits for {name} {where(activity)}: {server.why_silent}"
                 )
                 logger.warning("%s", text)
 

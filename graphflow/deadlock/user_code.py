@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sysconfig
 from collections.abc import Iterable
-from pathlib import Path
+from pathlib import Path, PurePath
 from types import FrameType, TracebackType
+
+from graphflow.errors import Place
 
 _OURS = str(Path(__file__).parents[1])
 _DEMOS = str(Path(_OURS, "demos"))
@@ -38,6 +40,16 @@ def innermost(frames: Iterable[FrameType]) -> FrameType | None:
         if is_users(frame.f_code.co_filename):
             found = frame
     return found
+
+
+def called_in(frames: Iterable[FrameType], instance: object) -> str:
+    """The line by which an object's method came to wait elsewhere: `drive.py:12 in tick`; empty if it waits itself."""
+    own = [frame for frame in frames if is_users(frame.f_code.co_filename)]
+    of_it = [frame for frame in own if frame.f_locals.get("self") is instance]
+    if not of_it or of_it[0] is own[-1]:
+        return ""
+    code = of_it[0].f_code
+    return f"{Place(PurePath(code.co_filename).name, of_it[0].f_lineno)} in {code.co_name}"
 
 
 def users_part(error: BaseException) -> TracebackType | None:

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from graphflow.errors import DeclarationError
 from graphflow.interface import NO_GROUP, GroupChange, WhenFull
 from graphflow.machines.group import GroupState
+from graphflow.machines.regrouping import Regrouping
 from graphflow.names import did_you_mean
 
 GROUPS_BOUND = 100
@@ -144,12 +145,14 @@ class Groups:
     Args:
         declared: The groups of the class by name.
         default: The class's `default_group`.
-        changes: What a graph file says, by group name.
+        regrouping: What a graph file says.
     """
 
     def __init__(
-        self, declared: Mapping[str, DeclaredGroup], default: DeclaredGroup | None, changes: Mapping[str, GroupChange]
+        self, declared: Mapping[str, DeclaredGroup], default: DeclaredGroup | None, regrouping: Regrouping
     ) -> None:
+        self.regrouping = regrouping
+        """What a graph file would say to get the groups that there are now."""
         self.by_name: dict[str, HandlerGroup] = {}
         self._of: dict[DeclaredGroup, HandlerGroup] = {}
         self._default = default
@@ -157,11 +160,11 @@ class Groups:
         """Group names by handler, where a graph file has chosen."""
         self._placed: list[str] = []
         self._unnamed = 0
-        self.known = {*declared, *changes}
+        self.known = {*declared, *regrouping.groups}
         """Names that a graph file can use."""
         for name, group in declared.items():
             self._of[group] = self.by_name.setdefault(name, _made(group, name))
-        for name, change in changes.items():
+        for name, change in regrouping.groups.items():
             self._change(name, change)
 
     def _change(self, name: str, change: GroupChange) -> None:
@@ -215,6 +218,10 @@ class Groups:
         if name not in self.by_name and len(self.by_name) >= GROUPS_BOUND:
             raise DeclarationError(f"this node has {GROUPS_BOUND} groups; no more are made")
         return self.by_name.setdefault(name, HandlerGroup(name=name))
+
+    def note_move(self, handler: str, group: str) -> None:
+        """A handler is in another group from now on."""
+        self.regrouping = self.regrouping.moved([handler], group)
 
     def refuse_strays(self) -> None:
         """Raises DeclarationError when the graph file has placed a handler that the node has not made."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from io import StringIO
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -13,6 +14,8 @@ from ruamel.yaml.error import YAMLError
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.plan import Plan
+from graphflow.interface import GroupChange
+from graphflow.machines.regrouping import plain
 
 KeyPath = tuple[str, ...]
 """Where a node's mapping is in a file: `("nodes", "/turtle1/follower")`, or below `override`."""
@@ -53,11 +56,24 @@ def _key_at(file: Path, place: Place) -> str:
     )
 
 
-def with_group(text: str, path: KeyPath, group: str, handlers: Sequence[str]) -> str:
-    """A file in which a node's handlers are in a group, and in no other of its groups."""
+def with_group(
+    text: str,
+    path: KeyPath,
+    group: str,
+    handlers: Sequence[str],
+    said: Mapping[str, GroupChange] = MappingProxyType({}),
+) -> str:
+    """A file in which a node's handlers are in a group, and in no other of its groups.
+
+    Args:
+        said: What another file says of the node's groups, which this one would replace as a whole.
+    """
 
     def change(node: CommentedMap) -> None:
+        base = {} if "concurrency" in node else said
         groups = _below(node, "concurrency")
+        for name, about in base.items():
+            groups[name] = _flow(plain(about))
         for other in list(groups):
             members = groups[other]
             listed = members.get("handlers") if isinstance(members, CommentedMap) else members

@@ -2,72 +2,88 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from graphflow.errors import Place
+from graphflow.machines.clauses import filled
+from graphflow.machines.moves import queues_of
+from graphflow.machines.remedies import own_group, remedies, remedies_of
 from graphflow.machines.rings import Deadlock, Edge
-from graphflow.machines.wait_graph import ActivityView, Call, Free, GroupView, QueueView, SetBy, Slot, WaitGraph
+from graphflow.machines.wait_graph import (
+    ActivityView,
+    Call,
+    Free,
+    GroupView,
+    QueueView,
+    SetBy,
+    Slot,
+    WaitGraph,
+)
 
 
 def explanation(deadlock: Deadlock, graph: WaitGraph) -> str:
-    """The whole report."""
-    return "\n".join(
-        [_headline(deadlock), *_ring(deadlock, graph), *_victims(deadlock, graph), *_fixes(deadlock, graph)]
-    )
+    """The whole report, in lines of up to 100 columns where its names allow it."""
+    lines = [*filled("", _headline(deadlock, graph)), *_ring(deadlock, graph), *_victims(deadlock, graph)]
+    return "\n".join([*lines, *_any_of(remedies(deadlock, graph))])
 
 
 def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph: WaitGraph) -> str:
     """Why a call to `service` can never be answered: all slots are held by activities that wait for it."""
     [group] = [graph.groups[name] for name in queue.needs if graph.groups[name].name] or [graph.groups[queue.needs[0]]]
-    held = " and ".join(f"{title(a)}{where(a)}" for a in holders)
-    edge = Edge(holders[0].id if holders else "", Call("", service), queue.id, group.id)
-    head = f"{service} can never answer: {queue.label} of {queue.node} waits for {_slot(group)}, held by {held}"
-    head = f"{head}, which waits for this very call"
-    fixes = [*_fix(holders[0], edge, graph), *_release(holders[0], group)] if holders else []
-    return "\n".join([head, "Any one of these ends it:", *fixes] if fixes else [head])
+    if not holders:  # they have gone meanwhile
+        return (
+            f"DEADLOCK: {queue.label} of {queue.node} waits for {_slot(group)}, whose holders wait for this very call"
+        )
+    count = len(holders)
+    who = f"{title(holders[0])} waits for itself" if count == 1 else f"{count} callbacks wait for themselves"
+    lines = [f"DEADLOCK: {who}"]
+    edge = Edge(holders[0].id, Call("", service), queue.id, group.id)
+    for holder in holders:
+        lines += _member(holder, edge, graph)
+        is_direct = isinstance(holder.wait, Call) and holder.wait.name in ("", service)
+        way = "" if is_direct else f"which calls {service} in the end, and "
+        lines += filled("    -> ", [f"{way}{queue.label} of {queue.node}", *_needs(group, [holder], "waits for")])
+    return "\n".join([*lines, *_any_of(remedies_of(holders[0], edge, graph))])
+
+
+def again(head: str, times: int) -> str:
+    """The headline of a report that has been told whole before."""
+    return head.replace("DEADLOCK:", f"DEADLOCK again ({times} times so far):", 1)
 
 
 def stall(
-    group: GroupView, holders: list[ActivityView], waiting: list[QueueView], dropped: dict[str, int], seconds: float
+    group: GroupView,
+    holders: list[ActivityView],
+    waiting: list[QueueView],
+    dropped: dict[str, int],
+    seconds: float,
+    graph: WaitGraph,
 ) -> str:
     """The report of a group that the same runs hold for long.
 
     Args:
         dropped: How many items each queue had dropped before.
     """
-    who = " and ".join(title(a) + "".join(f" ({place})" for place in _place(a)) for a in holders)
+    who = " and ".join(title(a) + (f" ({_line(a.place)} in {a.function})" if a.place.file else "") for a in holders)
     slots = f"have held all {len(holders)} slots of group '{group.name}' of {group.node}"
     kept = slots if len(holders) > 1 else f"has held {_slot(group)}"
-    lines = [f"STALL: {who} {kept} for more than {seconds:.1f} s"]
+    lines = filled("", [f"STALL: {who}", f"{kept} for more than {seconds:.1f} s"])
     for queue in waiting:
         lost = queue.dropped - dropped.get(queue.id, 0)
         lines.append(f"  {queue.label} of {queue.node} waits for it: {queue.waiting} queued, {lost} dropped meanwhile")
-    held = {method_of(a.label) for a in holders}
-    others = [queue for queue in waiting if method_of(queue.label) not in held]
-    return "\n".join([*lines, "If that is too long:", _own_group(others[0])] if others else lines)
+    held = {a.handler for a in holders}
+    others = [queue for queue in waiting if queue.handler not in held]
+    if not others:
+        return "\n".join(lines)
+    return "\n".join([*lines, "If that is too long:", *own_group(others[:1], graph)])
 
 
-def _headline(deadlock: Deadlock) -> str:
-    count, more = len(deadlock.ring), len(deadlock.victims)
-    who = "one callback waits for itself" if count == 1 else f"{count} callbacks wait for each other in a ring"
-    word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
-    condition = " (unless something else that they wait for fails)" if deadlock.is_partial else ""
-    behind = f"; {more} more wait{'s' if more == 1 else ''} for {'it' if count == 1 else 'them'}" if more else ""
-    return f"{word}: {who}{condition}{behind}"
-
-
-def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
-    for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-        activity = graph.activities[name]
-        group = group_of(activity, graph)
-        deeds = [f"holds group '{group}'"] if group else []
-        deeds += ["blocks the event loop"] if edge.loop and edge.to == name else []
-        doing = f" {', '.join(deeds)} and" if deeds else ""
-        yield f"  {title(activity)}{doing} waits for {wanted(edge)}{where(activity)}"
-        back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
-        yield f"    -> {_reason(edge, graph)}{back}"
+def is_in_vain(deadlock: Deadlock, graph: WaitGraph) -> bool:
+    """Whether a deadline of its own ends one of the waits, and nothing else does."""
+    ways = zip(deadlock.ring, deadlock.edges, strict=True)
+    bounded = [edge.via for name, edge in ways if graph.activities[name].left is not None]
+    return any(isinstance(via, SetBy) and via.gives_up for via in bounded)
 
 
 def title(activity: ActivityView) -> str:
@@ -97,32 +113,111 @@ def wanted(edge: Edge) -> str:
 
 def where(activity: ActivityView) -> str:
     """Where an activity waits, and for how long."""
-    words = [*_place(activity), f"for {activity.age:.2f} s"]
-    if activity.left is not None:
-        words.append(f"times out in {max(0.0, activity.left):.1f} s")
-    return f"   ({', '.join(words)})"
+    words = [f"{_line(activity.place)} in {activity.function}"] if activity.place.file else []
+    words += [f"called in {activity.called}"] if activity.called else []
+    words += [f"for {activity.age:.2f} s"]
+    words += [] if activity.left is None else [f"times out in {max(0.0, activity.left):.1f} s"]
+    return f"({', '.join(words)})"
 
 
-def _place(activity: ActivityView) -> Iterator[str]:
-    if activity.place.file:
-        yield f"{Place(PurePath(activity.place.file).name, activity.place.line)} in {activity.function}"
+def _where(activity: ActivityView) -> list[str]:
+    """The same in clauses."""
+    place, called, rest = where(activity).partition(" called in")
+    return [f"  {place}", *([f"called in{rest}"] if called else [])]
 
 
-def _reason(edge: Edge, graph: WaitGraph) -> str:
+def headline(deadlock: Deadlock, graph: WaitGraph) -> str:
+    """What has happened, in one line."""
+    return " ".join(_headline(deadlock, graph))
+
+
+def _headline(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
+    """The clauses of the headline."""
+    count, more = len(deadlock.ring), len(deadlock.victims)
+    word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
+    clauses = [f"{count} callbacks wait for each other in a ring"] if count > 1 else _alone(deadlock, graph)
+    if is_in_vain(deadlock, graph):
+        word = "WAITS IN VAIN"
+        left = min(a.left for a in map(graph.activities.__getitem__, deadlock.ring) if a.left is not None)
+        clauses[-1] += ","
+        clauses.append(f"until a deadline of its own ends that in {max(0.0, left):.1f} s")
+    if deadlock.is_partial:
+        clauses.append("(unless something else that they wait for fails)")
+    if more:
+        clauses[-1] += ";"
+        clauses.append(f"{more} more wait{'s' if more == 1 else ''} for {'it' if count == 1 else 'them'}")
+    return [f"{word}: {clauses[0]}", *clauses[1:]]
+
+
+def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
+    """How one activity keeps itself waiting."""
+    [name], [edge] = deadlock.ring, deadlock.edges
+    who = title(graph.activities[name])
+    if not isinstance(edge.via, SetBy):
+        return [f"{who} waits for itself"]
+    what = edge.via.what
+    if edge.via.is_held:
+        return [f"{who} waits for {what}, which it holds itself"]
+    if edge.loop:
+        return [f"{who} waits for {what},", "and what could end that needs the event loop, which it blocks"]
+    others = [queue for queue in queues_of(edge, graph) if queue.handler != graph.activities[name].handler]
+    if not others:
+        return [f"{who} waits for {what},", f"which only another run of it {edge.via.deed}"]
+    kept = " and ".join(queue.handler for queue in others)
+    is_one = len(others) == 1
+    deed = edge.via.deed if is_one else edge.via.deed.removesuffix("s")
+    return [f"{who} waits for {what},", f"and {kept}, which {deed} it, {'is' if is_one else 'are'} kept out"]
+
+
+def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
+    for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
+        yield from _member(graph.activities[name], edge, graph)
+        back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
+        clauses = _reason(graph.activities[name], edge, graph)
+        yield from filled("    -> ", [*clauses[:-1], clauses[-1] + back])
+
+
+def _member(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
+    group = group_of(activity, graph)
+    deeds = [f"holds group '{group}'"] if group else []
+    deeds += ["blocks the event loop"] if edge.loop and edge.to == activity.id else []
+    via = edge if not (isinstance(activity.wait, Call) and isinstance(edge.via, Call)) else Edge("", activity.wait)
+    waits = f"waits for {wanted(via)}"
+    doing = [f"{title(activity)} {', '.join(deeds)}", f"and {waits}"] if deeds else [f"{title(activity)} {waits}"]
+    return filled("  ", [*doing, *_where(activity)])
+
+
+def _line(place: Place) -> Place:
+    """A place by its file's name alone."""
+    return Place(PurePath(place.file).name, place.line)
+
+
+def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
+    """Why an activity waits for another, in clauses."""
     other = graph.activities[edge.to]
     if edge.loop:
-        return f"nothing can arrive while the event loop is blocked by {title(other)}"
+        return ["nothing can arrive while the event loop is blocked", f"by {title(other)}"]
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
-        return f"which {title(other)} holds"
+        return [f"which {title(other)} holds"]
     if not edge.group:
-        return f"which {title(other)} must give"
-    queue = graph.queues.get(edge.queue)
-    who = "that" if queue is None else f"{queue.label} of {queue.node}"
-    verb = "sets it and needs" if isinstance(edge.via, SetBy) else "waits for"
-    more = ""
-    if queue is not None and isinstance(edge.via, SetBy):
-        more = f"; {queue.waiting} queued, {queue.dropped} dropped meanwhile"
-    return f"{who} {verb} {_slot(graph.groups[edge.group])}, which {title(other)} holds{more}"
+        return [f"which {title(other)} must give"]
+    group = graph.groups[edge.group]
+    queues = [queue for queue in queues_of(edge, graph) if edge.group in queue.needs]
+    # Of several runs of one handler, only the others could do it.
+    queues = [q for q in queues if q.handler != activity.handler] or queues
+    who = " and ".join(queue.label for queue in queues) + f" of {queues[0].node}" if queues else "that"
+    if not isinstance(edge.via, SetBy):
+        return [who, *_needs(group, [other], "waits for")]
+    deed, needs = edge.via.deed, "needs"
+    if len(queues) > 1:
+        deed, needs = deed.removesuffix("s"), "need"
+    waiting, dropped = sum(q.waiting for q in queues), sum(q.dropped for q in queues)
+    clauses = _needs(group, [other], f"{deed} it and {needs}")
+    return [who, *clauses[:-1], f"{clauses[-1]};", f"{waiting} queued, {dropped} dropped meanwhile"]
+
+
+def _needs(group: GroupView, holders: Sequence[ActivityView], verb: str) -> list[str]:
+    return [f"{verb} {_slot(group)},", f"which {' and '.join(title(a) for a in holders)} holds"]
 
 
 def _slot(group: GroupView) -> str:
@@ -136,91 +231,8 @@ def _slot(group: GroupView) -> str:
 def _victims(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
     for name in deadlock.victims:
         activity = graph.activities[name]
-        yield f"  behind them: {title(activity)}{where(activity)}"
+        yield from filled("  behind them: ", [title(activity), *_where(activity)])
 
 
-def _fixes(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
-    found: list[str] = []
-    for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-        activity, wanted_of_it = graph.activities[name], graph.groups.get(deadlock.edges[i - 1].group)
-        for fix in (*_fix(activity, edge, graph), *_release(activity, wanted_of_it)):
-            if fix not in found:
-                found.append(fix)
-    # Advice of the same kind for several members of a ring is given once: following it once is enough.
-    kinds: dict[str, str] = {}
-    for fix in found:
-        kinds.setdefault(fix.split()[0], fix)
-    return ["Any one of these ends it:", *kinds.values()] if kinds else []
-
-
-def _fix(activity: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
-    if edge.loop:
-        other = graph.activities[edge.to]
-        at = Place(PurePath(other.place.file).name, other.place.line)
-        wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
-        yield f"  {wait} in {at}"
-        handler = method_of(other.label)
-        yield (
-            f"  let {handler} run in a thread, in the graph file\n"
-            f"      {other.node}: {{concurrency: {{blocking: {{handlers: [{handler}], thread: true}}}}}}\n"
-            f"    or in the class: thread=True where {handler} is declared"
-        )
-        return
-    queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
-    if isinstance(edge.via, SetBy) and edge.via.is_held:
-        other = graph.activities[edge.to]
-        at = Place(PurePath(other.place.file).name, other.place.line)
-        yield f"  leave {edge.via.what} before the await in {at}"
-    if queue is None or group is None:
-        return
-    handler = method_of(queue.label)
-    if queue.label.startswith("reply "):
-        yield f"  let replies through: declare the client of {handler} without group="
-        queue, handler = replace(queue, node=activity.node, is_declared=True), method_of(activity.label)
-    if group.name and (queue.node, handler) != (activity.node, method_of(activity.label)):
-        yield _own_group(replace(queue, label=handler))
-    if group.name:
-        if group.limit is not None and not isinstance(edge.via, SetBy):
-            yield _larger(group, sum(group.id in a.holds for a in graph.activities.values()) + 1)
-    elif queue.label.startswith("action "):
-        yield f"  let several goals run at a time: policy='parallel' where {handler} is declared"
-    elif not isinstance(edge.via, SetBy):
-        own = f"{handler}_group"
-        made = f"{own} = Group(None), and group={own} where it is declared"
-        made = made if queue.is_declared else "group=Group(None) where it is made"
-        yield f"  let several runs of {handler} overlap: {made}"
-
-
-def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
-    """Releasing a slot helps where the previous activity in the ring wants it."""
-    if wanted is not None and wanted.name and activity.is_async:
-        place = Place(PurePath(activity.place.file).name, activity.place.line)
-        yield f"  release the slot while waiting, in {place}: async with self.group.released(): ..."
-
-
-def _larger(group: GroupView, limit: int) -> str:
-    made = f"Group({limit}{', thread=True' if group.is_threaded else ''})"
-    text = "  allow more runs, if its handlers share no state"
-    if not group.is_declared:
-        return f"{text}: {made} where {group.node} makes the group called {group.name} here"
-    return (
-        f"{text}\n      {group.node}: {{concurrency: {{{group.name}: {{limit: {limit}}}}}}}\n"
-        f"    or in the class: {group.name} = {made}"
-    )
-
-
-def _own_group(queue: QueueView) -> str:
-    handler = method_of(queue.label)
-    own = f"{handler}_group"
-    if not queue.is_declared:
-        return f"  give {handler} of {queue.node} a group of its own: group=Group(1) where it is made"
-    return (
-        f"  give {handler} a group of its own, in the graph file\n"
-        f"      {queue.node}: {{concurrency: {{{own}: [{handler}]}}}}\n"
-        f"    or in the class: {own} = Group(1), and group={own} where {handler} is declared"
-    )
-
-
-def method_of(label: str) -> str:
-    """The method in an activity's or a queue's label: `tick` of `timer tick`."""
-    return label.split()[-1]
+def _any_of(fixes: list[str]) -> list[str]:
+    return ["Any one of these ends it:", *fixes] if fixes else []

@@ -6,58 +6,58 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
-from graphflow.machines.explain import method_of
 from graphflow.machines.reduction import deadlocked
-from graphflow.machines.rings import Deadlock
-from graphflow.machines.wait_graph import GroupView, QueueView, WaitGraph
+from graphflow.machines.rings import Deadlock, Edge
+from graphflow.machines.wait_graph import GroupView, QueueView, SetBy, WaitGraph
 
 
 class Move(NamedTuple):
-    """Give one handler of a node a group of its own."""
+    """Give some handlers of a node a group of their own, together."""
 
     node: str
-    handler: str
+    handlers: tuple[str, ...]
     group: str
 
     @property
     def command(self) -> str:
         """The shell command that makes the move."""
-        return f"graphflow groups move {self.node} {self.handler} {self.group}"
-
-    @property
-    def yaml(self) -> str:
-        """What makes it last, for a graph file."""
-        return f"{self.node}: {{concurrency: {{{self.group}: [{self.handler}]}}}}"
+        return f"graphflow groups move {self.node} {' '.join(self.handlers)} {self.group}"
 
 
 def moves(deadlock: Deadlock, graph: WaitGraph) -> list[Move]:
-    """The moves after each of which the ring can go on, the one that the explanation names first before others."""
-    found: list[Move] = []
-    for queue in _queues(deadlock, graph):
-        handler = method_of(queue.label)
-        move = Move(queue.node, handler, f"{handler}_group")
-        if move not in found and _ends(deadlock, queue, graph):
-            found.append(move)
-    return found
+    """The moves after each of which the ring can go on; first those after which the least of the rest is stuck."""
+    found: dict[Move, int] = {}
+    for queues in _kept_out(deadlock, graph):
+        handlers = tuple(dict.fromkeys(queue.handler for queue in queues))
+        left = _left(queues, graph)
+        if not left & set(deadlock.ring):
+            found.setdefault(Move(queues[0].node, handlers, f"{handlers[0]}_group"), len(left))
+    return sorted(found, key=lambda move: found[move])
 
 
-def _queues(deadlock: Deadlock, graph: WaitGraph) -> Iterator[QueueView]:
-    """Queues in the ring that wait for a named group, of handlers that hold nothing there themselves.
-
-    One that does, because it calls itself in the end, would wait for its own earlier run in the new group, too.
-    """
-    holders = {(a.node, method_of(a.label)) for a in (graph.activities[name] for name in deadlock.ring)}
+def _kept_out(deadlock: Deadlock, graph: WaitGraph) -> Iterator[list[QueueView]]:
+    """For each member of the ring that waits for a named group: the queues that would let it go on."""
+    holders = {(graph.activities[name].node, graph.activities[name].handler) for name in deadlock.ring}
     for edge in deadlock.edges:
-        queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
-        if queue is None or group is None or not group.name or edge.loop or queue.label.startswith("reply "):
+        group = graph.groups.get(edge.group)
+        if edge.loop or group is None or not group.name:
             continue
-        if (queue.node, method_of(queue.label)) not in holders:
-            yield queue
+        queues = [queue for queue in queues_of(edge, graph) if not queue.label.startswith("reply ")]
+        # One that holds a slot itself, since it waits for itself in the end, would wait for its own run there, too.
+        queues = [queue for queue in queues if (queue.node, queue.handler) not in holders]
+        if queues:
+            yield queues
 
 
-def _ends(deadlock: Deadlock, queue: QueueView, graph: WaitGraph) -> bool:
-    """Whether the ring could go on if the handler had a group of its own."""
-    own = GroupView(f"{queue.id} alone", "alone", queue.node)
-    moved = replace(queue, needs=(own.id,))
-    changed = replace(graph, groups={**graph.groups, own.id: own}, queues={**graph.queues, queue.id: moved})
-    return not set(deadlock.ring) & set(deadlocked(changed))
+def queues_of(edge: Edge, graph: WaitGraph) -> list[QueueView]:
+    """The queues whose handlers an activity waits for: the one of its call, or of all that set what it looks at."""
+    names = edge.via.queues if isinstance(edge.via, SetBy) else (edge.queue,)
+    return [graph.queues[name] for name in names if name in graph.queues]
+
+
+def _left(queues: list[QueueView], graph: WaitGraph) -> set[str]:
+    """What would still be stuck if these handlers had a group of their own."""
+    own = GroupView(f"{queues[0].id} alone", "alone", queues[0].node)
+    moved = {queue.id: replace(queue, needs=(own.id,)) for queue in queues}
+    changed = replace(graph, groups={**graph.groups, own.id: own}, queues={**graph.queues, **moved})
+    return deadlocked(changed)

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from graphflow.errors import Place
+from graphflow.machines.regrouping import Regrouping
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +55,14 @@ class SetBy:
     what: str
     """What is waited for, in words: `self.arrived`."""
     queues: tuple[str, ...]
+    """The queues of those handlers."""
     activities: tuple[str, ...] = ()
     is_held: bool = False
     """Whether that is a lock or the like, held by those activities."""
+    deed: str = "sets"
+    """What they do to it: `fills` a queue, `releases` a lock."""
+    gives_up: bool = False
+    """Whether a deadline ends the wait for good, and not only this attempt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +114,13 @@ class ActivityView:
     """Whether the activity is graphflow's own, not something users wrote."""
     is_async: bool = True
     """Whether `await` is allowed where the activity waits."""
+    called: str = ""
+    """Where its own method calls what waits, if that is another: `arm.py:12 in tick`."""
+
+    @property
+    def handler(self) -> str:
+        """The method that runs: `tick` of `timer tick`."""
+        return method_of(self.label)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +153,12 @@ class QueueView:
     dropped: int = 0
     process: str = ""
     is_declared: bool = True
-    """Whether the handler is declared in the class, so that a graph file can move it."""
+    """Whether the handler is known before the node is made, so that a graph file can move it."""
+
+    @property
+    def handler(self) -> str:
+        """The method that is run: `add` of `service add`."""
+        return method_of(self.label)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +170,12 @@ class WaitGraph:
     queues: Mapping[str, QueueView] = field(default_factory=dict)
     blocked: Mapping[str, str] = field(default_factory=dict)
     """The activity that blocks the event loop, by process."""
+    regroupings: Mapping[str, Regrouping] = field(default_factory=dict)
+    """What graph files say of groups, by node."""
+
+    def regrouping(self, node: str) -> Regrouping:
+        """What a graph file says of a node's groups."""
+        return self.regroupings.get(node, Regrouping())
 
 
 def joined(pictures: Iterable[WaitGraph]) -> WaitGraph:
@@ -160,9 +184,16 @@ def joined(pictures: Iterable[WaitGraph]) -> WaitGraph:
     groups: dict[str, GroupView] = {}
     queues: dict[str, QueueView] = {}
     blocked: dict[str, str] = {}
+    regroupings: dict[str, Regrouping] = {}
     for graph in pictures:
         activities.update(graph.activities)
         groups.update(graph.groups)
         queues.update(graph.queues)
         blocked.update(graph.blocked)
-    return WaitGraph(activities, groups, queues, blocked)
+        regroupings.update(graph.regroupings)
+    return WaitGraph(activities, groups, queues, blocked, regroupings)
+
+
+def method_of(label: str) -> str:
+    """The method in an activity's or a queue's label: `tick` of `timer tick`."""
+    return label.rpartition(" ")[2]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import astuple
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 from graphflow.errors import Place
+from graphflow.interface import GroupChange, WhenFull
+from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.wait_graph import (
     FREE,
     ActivityView,
@@ -24,7 +26,7 @@ from graphflow.machines.wait_graph import (
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 3
+VERSION = 4
 DEEPEST = 50
 """How deep conditions may be nested: what comes from the network must not exhaust the stack."""
 
@@ -40,12 +42,20 @@ def to_json(graph: WaitGraph) -> dict[str, Json]:
             for q in graph.queues.values()
         ],
         "blocked": dict(graph.blocked),
+        "regroupings": {node: _regrouping(r) for node, r in graph.regroupings.items()},
     }
 
 
 def _activity(a: ActivityView) -> Json:
     head: list[Json] = [a.id, a.label, a.node, list(a.holds), _condition(a.wait), a.serves, list(a.place), a.function]
-    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async]
+    return [*head, a.age, a.left, a.process, a.is_inner, a.is_async, a.called]
+
+
+def _regrouping(regrouping: Regrouping) -> Json:
+    groups: dict[str, Json] = {
+        name: [list(c.handlers), c.limit, c.sets_limit, c.when_full, c.thread] for name, c in regrouping.groups.items()
+    }
+    return [regrouping.file, regrouping.section, groups]
 
 
 def _condition(condition: Condition, depth: int = 0) -> Json:
@@ -58,8 +68,8 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
             return ["slot", group, ticket]
         case Join(activity=activity):
             return ["join", activity]
-        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held):
-            return ["set", what, list(queues), list(activities), is_held]
+        case SetBy(what=what, queues=queues, activities=activities, is_held=is_held, deed=deed, gives_up=ends):
+            return ["set", what, list(queues), list(activities), is_held, deed, ends]
         case All(of=conditions):
             return ["all", [_condition(c, depth + 1) for c in conditions]]
         case AnyOf(of=conditions):
@@ -79,14 +89,12 @@ def from_json(data: Mapping[str, object]) -> WaitGraph:
     activities = [_read_activity(row) for row in _rows(data["activities"])]
     groups = [_read_group(row) for row in _rows(data["groups"])]
     queues = [_read_queue(row) for row in _rows(data["queues"])]
-    blocked = data["blocked"]
-    if not isinstance(blocked, dict):
-        raise TypeError("blocked is not a mapping")
     return WaitGraph(
         {a.id: a for a in activities},
         {g.id: g for g in groups},
         {q.id: q for q in queues},
-        {_text(k): _text(v) for k, v in blocked.items()},
+        {_text(k): _text(v) for k, v in _mapping(data["blocked"]).items()},
+        {_text(k): _read_regrouping(_list(v)) for k, v in _mapping(data["regroupings"]).items()},
     )
 
 
@@ -102,7 +110,7 @@ def _read_queue(row: list[object]) -> QueueView:
 
 
 def _read_activity(row: list[object]) -> ActivityView:
-    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async = row
+    id_, label, node, holds, wait, serves, place, function, age, left, process, is_inner, is_async, called = row
     file, line, column = _list(place)
     return ActivityView(
         _text(id_),
@@ -118,7 +126,30 @@ def _read_activity(row: list[object]) -> ActivityView:
         _text(process),
         _bool(is_inner),
         _bool(is_async),
+        _text(called),
     )
+
+
+def _read_regrouping(row: list[object]) -> Regrouping:
+    file, section, groups = row
+    changes = {_text(name): _read_change(_list(change)) for name, change in _mapping(groups).items()}
+    return Regrouping(changes, _text(file), _text(section))
+
+
+def _read_change(row: list[object]) -> GroupChange:
+    handlers, limit, sets_limit, when_full, thread = row
+    full: WhenFull | None = None if when_full is None else _when_full(when_full)
+    return GroupChange(
+        _texts(handlers), _limit(limit), _bool(sets_limit), full, None if thread is None else _bool(thread)
+    )
+
+
+def _when_full(data: object) -> WhenFull:
+    for known in get_args(WhenFull):
+        if data == known:
+            found: WhenFull = known
+            return found
+    raise ValueError(f"{data!r} is not what happens when a group is full")
 
 
 def _read_condition(data: object, depth: int) -> Condition:
@@ -133,13 +164,19 @@ def _read_condition(data: object, depth: int) -> Condition:
             return Slot(_text(group), _int(ticket))
         case ["join", activity]:
             return Join(_text(activity))
-        case ["set", what, queues, activities, is_held]:
-            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held))
+        case ["set", what, queues, activities, is_held, deed, ends]:
+            return SetBy(_text(what), _texts(queues), _texts(activities), _bool(is_held), _text(deed), _bool(ends))
         case ["all", parts]:
             return All(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
         case ["any", parts]:
             return AnyOf(tuple(_read_condition(part, depth + 1) for part in _list(parts)))
     raise ValueError(f"{data!r} is not a condition")
+
+
+def _mapping(data: object) -> dict[object, object]:
+    if not isinstance(data, dict):
+        raise TypeError(f"{data!r} is not a mapping")
+    return data
 
 
 def _rows(data: object) -> list[list[object]]:

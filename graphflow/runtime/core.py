@@ -20,7 +20,8 @@ from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.executor.sim_time import SimClock
-from graphflow.interface import GroupChange, OnError, may_make
+from graphflow.interface import OnError, may_make
+from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs import registry
 from graphflow.names import Resolver, did_you_mean
 from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
@@ -72,7 +73,7 @@ class NodeCore:
         instance: Instance,
         names: Resolver,
         overrides: Mapping[str, tuple[Any, str]],
-        concurrency: Mapping[str, GroupChange],
+        concurrency: Regrouping,
     ) -> None:
         cls = type(instance)
         self.instance = instance
@@ -142,6 +143,7 @@ class NodeCore:
 
     @property
     def handlers(self) -> frozenset[str]:
+        """Methods that are known as handlers before a node is made, declared or read from the source."""
         return _handlers(type(self.instance))
 
     @property
@@ -419,9 +421,10 @@ class NodeCore:
             self._failures.failed(label, error, on_error)
 
     def report_error(self, label: str, error: BaseException) -> None:
-        if isinstance(error, GraphflowError):
-            # A deadlock's own text says where.
-            place = "" if isinstance(error, DeadlockError) else place_in(error)
+        if isinstance(error, DeadlockError):
+            self.log.error("%s", error)  # which says what it is, and where
+        elif isinstance(error, GraphflowError):
+            place = place_in(error)
             self.log.error("%s: %s%s", label, error, place and f" ({place})")
         elif not place_in(error):  # it was raised about the user's code, not in it
             self.log.error("%s: %s: %s", label, type(error).__name__, error)
@@ -471,8 +474,8 @@ class NodeCore:
 
 
 @cache
-def _handlers(cls: type) -> frozenset[str]:
-    return frozenset(declared.handlers(cls))
+def _handlers(cls: Any) -> frozenset[str]:
+    return frozenset(handler.name for handler in cls.interface().handlers)
 
 
 @cache

@@ -59,9 +59,10 @@ class Failures:
             self._counted.popleft()
         if len(self._counted) > budget.errors:
             self._counted.clear()
+            head = str(error).partition("\n")[0]
             text = (
                 f"{budget.errors + 1} handler errors within {budget.per:g} s, the last in {label}: "
-                f"{type(error).__name__}: {error}. The node ends; on_error='log' keeps a handler out of the count, and "
+                f"{type(error).__name__}: {head}. The node ends; on_error='log' keeps a handler out of the count, and "
                 f"the class's error_budget sets the limit"
             )
             self._end(TooManyErrors(text))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from graphflow.errors import DeclarationError
@@ -94,7 +95,8 @@ class Node(SpeaksRos):
         own_name = given.name or name or declared.default_name(type(self))
         names = Resolver(own_name, namespace if given.namespace is None else given.namespace, rules)
         values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}, **given.overrides}
-        self._core = NodeCore(self, names, values, {**(concurrency or {}), **given.concurrency})
+        around = given.concurrency
+        self._core = NodeCore(self, names, values, replace(around, groups={**(concurrency or {}), **around.groups}))
         self.log = self._core.log
         """The node's logger; its records go to the console and to /rosout."""
         self.parameters = self._core.parameters

@@ -156,12 +156,19 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 return
             if not isinstance(error, DecodeError):
                 self.host.handler_failed(self._label, error)
-            request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
+            request.reply_error(RemoteError(type(error).__name__, self._told(error)).to_payload())
             return
         asked = attachment.unpack(request.attachment[: attachment.SIZE])
         now = self.host.context.clock.time_ns()
         request.reply(payload, attachment.pack(asked.sequence, now, asked.gid) + self._note(request))
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
+
+    def _told(self, error: BaseException) -> str:
+        """What a client is told of an error in the handler; a deadlock was explained here, and once is enough."""
+        head, _, rest = str(error).partition("\n")
+        if not rest or not isinstance(error, DeadlockError):
+            return str(error)
+        return f"{head}; explained in the log of {self.host.full_name}"
 
     def _note(self, request: Any) -> bytes:
         """What is added to the attachment of a response."""

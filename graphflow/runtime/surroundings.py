@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from graphflow.errors import DeclarationError
-from graphflow.interface import GroupChange
+from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap
 
 T = TypeVar("T")
@@ -38,7 +38,7 @@ class Surroundings:
     namespace: str | None = None
     remaps: Sequence[Remap] = ()
     overrides: Mapping[str, tuple[Any, str]] = field(default_factory=dict)
-    concurrency: Mapping[str, GroupChange] = field(default_factory=dict)
+    concurrency: Regrouping = field(default_factory=Regrouping)
 
 
 NOTHING = Surroundings()

@@ -310,6 +310,7 @@ class Supervisor:
         job = {
             "process": process.name,
             "nodes": [self._planned[n.name] for n in process.nodes],
+            "file": self.plan.file,
             "root": self.plan.root,
             "domain": self._context.domain,
             "mode": self._mode,

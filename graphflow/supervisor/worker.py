@@ -17,6 +17,7 @@ from typing import Any, Protocol
 from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
+from graphflow.machines.regrouping import Regrouping
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
@@ -38,8 +39,11 @@ EXIT_CONFIGURATION = 78
 """Exit code: a node could not be made; starting it again would not help."""
 
 
-def make_node(planned: PlannedNode) -> Node:
+def make_node(planned: PlannedNode, file: str) -> Node:
     """Make the node that a plan describes.
+
+    Args:
+        file: The graph file.
 
     Raises:
         GraphflowError: Its class cannot be imported, or refuses what the plan gives it.
@@ -57,7 +61,11 @@ def make_node(planned: PlannedNode) -> Node:
         names.namespace,
         [r.remap() for r in planned.remaps],
         overrides,
-        {name: group.change for name, group in planned.concurrency.items()},
+        Regrouping(
+            {name: group.change for name, group in planned.concurrency.items()},
+            file,
+            "nodes" if planned.place.file == file else "override",
+        ),
     )
     node = make_within(cls, given, names.name)
     if not isinstance(node, Node):
@@ -123,7 +131,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     """Run a worker to its end; does not return.
 
     Args:
-        job: `nodes` (as of Plan.to_json), `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`.
+        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`.
     """
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
@@ -134,7 +142,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     code = 0
     try:
         add_root(job["root"])
-        nodes = [make_node(node_from_json(data)) for data in job["nodes"]]
+        nodes = [make_node(node_from_json(data), job["file"]) for data in job["nodes"]]
     except Exception as error:
         _log_failure(error)
         report.tell(event="failed", process=job["process"], error=_one_line(error))

@@ -15,5 +15,5 @@ def test_verbs_arguments_and_options() -> None:
     assert echo["arguments"] == ["TOPIC", "[TYPE]"]
     assert echo["options"]["--once"] is False
     assert echo["options"]["--field"] is True
-    assert tree["groups"]["commands"]["move"]["arguments"] == ["NODE", "HANDLER", "GROUP"]
+    assert tree["groups"]["commands"]["move"]["arguments"] == ["NODE", "HANDLER...", "GROUP"]
     assert json.loads(json.dumps(tree)) == tree

@@ -99,7 +99,7 @@ def test_the_doctor_tells_of_endpoints_that_do_not_fit(standing: Machine) -> Non
         ("groups /office/clrk", 1, "there is no node /office/clrk; did you mean '/office/clerk'?"),
         ("groups move /office/clrk add x", 1, "there is no node /office/clrk; did you mean '/office/clerk'?"),
         ("groups move /office/clerk ad x", 2, "did you mean 'add'?"),
-        ("groups move /office/clerk add", 2, "Missing argument 'GROUP'"),
+        ("groups move /office/clerk add", 2, "Missing argument 'HANDLER...'"),
     ],
 )
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:

@@ -14,6 +14,7 @@ from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerKind, RunnerSpec
 from graphflow.machines.cache import GraphCache, GraphChange
+from graphflow.machines.regrouping import Regrouping
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import MemorySession, Network
 
@@ -26,7 +27,7 @@ class Actor:
     instance: object = field(default_factory=SimpleNamespace)
     runners: list[Runner] = field(default_factory=list)
     tasks: set[asyncio.Task[Any]] = field(default_factory=set)
-    groups: Groups = field(default_factory=lambda: Groups({}, None, {}))
+    groups: Groups = field(default_factory=lambda: Groups({}, None, Regrouping()))
     handlers: set[str] = field(default_factory=set)
     hooks: set[str] = field(default_factory=set)
 

@@ -37,6 +37,7 @@ from graphflow.testing.simulation import LoopClock, World, simulate
 from graphflow.transport.base import EARLY
 from graphflow.transport.memory import MemorySession, Network
 from tests.cases import cases, count, limit
+from tests.flat import flat
 
 CASES = count(few=25, full=300)
 """Systems that are tried."""
@@ -224,7 +225,7 @@ class Report(NamedTuple):
 
     @property
     def is_partial(self) -> bool:
-        return "(unless something else" in self.text.partition("\n")[0]
+        return "(unless something else" in self.text
 
 
 FORESEEN = re.compile("Mishap|TaskGroup")
@@ -277,9 +278,12 @@ class Diary(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         text = record.getMessage()
-        if text.startswith("DEADLOCK: "):
-            rings = [r for c in self.contexts for r, told in c.search.reports.items() if told.text == text]
-            self.reports += [Report(self.write(), ring, text) for ring in rings]
+        if text.startswith("DEADLOCK"):
+            known = {report.ring for report in self.reports}
+            told = [(r, report.text) for c in self.contexts for r, report in c.search.reports.items()]
+            is_again = text.startswith("DEADLOCK again")
+            new = [(ring, whole) for ring, whole in told if whole == text or (is_again and ring not in known)]
+            self.reports += [Report(self.write(), ring, whole) for ring, whole in new]
         elif text.startswith("the deadlock of ") and text.endswith(" has cleared"):
             self.cleared += 1
         elif " waits behind the deadlock of " in text:
@@ -799,7 +803,7 @@ def check(diary: Diary) -> None:
 
 def unnamed(diary: Diary) -> set[str]:
     """Who is stuck and in no report, neither in a ring nor behind one."""
-    said = "\n".join([report.text for report in diary.reports] + diary.behind)
+    said = flat("\n".join([report.text for report in diary.reports] + diary.behind))
     known = diary.picture().activities
     return {life.id for life in diary.stuck() if f"{title(known[life.id])} " not in said}
 

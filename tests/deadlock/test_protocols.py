@@ -54,7 +54,9 @@ async def test_what_is_enough(graphflow_runner: asyncio.Runner, caplog: pytest.L
     await stage.clock.advance(1.0)
 
     [text] = caplog.messages
-    assert text.startswith("DEADLOCK: one callback waits for itself\n  timer tick of /robot holds group 'motion'")
+    assert text.startswith(
+        "DEADLOCK: timer tick of /robot waits for itself\n  timer tick of /robot holds group 'motion'"
+    )
     [activity] = search.snapshot.take().activities.values()
     assert activity.wait != FREE
     search.close()

@@ -245,7 +245,7 @@ async def test_who_holds_a_lock(graphflow_runner: asyncio.Runner) -> None:
 
     first, second = scene.snapshot.take().activities.values()
     assert first.wait == FREE
-    assert second.wait == SetBy("self.lock", (), (first.id,), is_held=True)
+    assert second.wait == SetBy("self.lock", (), (first.id,), is_held=True, deed="releases")
     await runner.cancel()
 
 

@@ -53,7 +53,7 @@ async def test_a_process_that_does_not_answer(graph: Graph, caplog: Caplog) -> N
 
     [text] = warnings(caplog)
     assert text.startswith(f"NODE UNRESPONSIVE: /tower (process {os.getpid()}) has not answered for 1.")
-    assert "subscription ask of /caller waits for /land   (test_unresponsive.py:" in text
+    assert "subscription ask of /caller waits for /land (test_unresponsive.py:" in text
     await graph.clock.advance(20.0)
     assert len(warnings(caplog)) == 1
 
@@ -122,7 +122,7 @@ async def test_silence_between_two_questions(graphflow_runner: asyncio.Runner, c
     [text] = warnings(caplog)
     assert text.startswith(
         f"NODE UNRESPONSIVE: /tower (process {os.getpid()}) has not answered for 1.0 s, "
-        "and subscription ask of /caller waits for /land   (for 0.00 s): it is stopped, or something holds"
+        "and subscription ask of /caller waits for /land (for 0.00 s): it is stopped, or something holds"
     )
     await scene.ask("abc")
     assert warnings(caplog)[1:] == [f"/tower (process {os.getpid()}) answers again"]

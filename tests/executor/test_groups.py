@@ -15,6 +15,7 @@ from graphflow.executor.groups import Groups, HandlerGroup, Placement
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import NO_GROUP, GroupChange
+from graphflow.machines.regrouping import Regrouping
 from graphflow.runtime.declare import Group
 from graphflow.testing.clock import settle
 
@@ -207,7 +208,7 @@ async def test_statistics(graphflow_runner: asyncio.Runner) -> None:
 def groups(default: Group | None = None, **changes: GroupChange) -> tuple[Groups, dict[str, Group]]:
     """A node's groups whose class declares two, and a graph file changes some."""
     declared = {"motion": Group(2, thread=True, name="motion"), "sense": Group(1, "drop_old", name="sense")}
-    return Groups(declared, default, changes), declared
+    return Groups(declared, default, Regrouping(changes)), declared
 
 
 def test_declared_groups() -> None:

@@ -105,7 +105,7 @@ def at(marker: str) -> str:
 def wait_for_ring(up: Program, names: str) -> None:
     """Wait until the ring has been reported, every member with its line."""
     up.wait_for(f"DEADLOCK: {len(names)} callbacks wait for each other in a ring")
-    line = f"{at('stuck: Member')}toil, for "
+    line = f"{at('stuck: Member')}toil, called in ring.py:"
     for name, other in zip(names, names[1:] + names[0], strict=True):
         up.wait_for(
             f"timer ask of /{name} holds group 'work' and waits for the response of service /{other}/answer   {line}"

@@ -84,8 +84,8 @@ def test_a_chain_that_comes_back_to_its_caller(lab: Lab) -> None:
     wait_for_all(up, at_it("a"))
     lab.pids()  # takes a while, in which the lines open: a server that is not known to be graphflow's gets no chain
     lab.open_gates("a")
-    up.wait_for("[a]: DeadlockError: /a/answer can never answer: service answer of /a waits for group 'work' of /a")
-    up.wait_for(f"held by timer ask of /a   {at('stuck: Member')}toil")
+    up.wait_for("[b]: DEADLOCK: timer ask of /a waits for itself")
+    up.wait_for(f"waits for the response of service /b/answer   {at('stuck: Member')}toil")
     assert up.end() == 0
     assert reports(up.text) == []
 
@@ -122,7 +122,7 @@ def test_what_takes_long_lives(lab: Lab) -> None:
 def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     """It is told, shown and found by the blocked process itself; a thread of its own ends it (row 17)."""
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
-    up.wait_for("DEADLOCK: one callback waits for itself")
+    up.wait_for("DEADLOCK: timer ask of /a waits for itself")
     up.wait_for("timer ask of /a blocks the event loop and waits for the response of service /b/answer   (ring.py:")
     up.wait_for(f"{at('stuck: Blocker')}ask, for ")
     up.wait_for(line := "/a: {concurrency: {blocking: {handlers: [ask], thread: true}}}")

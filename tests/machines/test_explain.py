@@ -7,8 +7,10 @@ from dataclasses import replace
 import pytest
 
 from graphflow.errors import Place
-from graphflow.machines.explain import explanation, group_of, hopeless, stall, title, wanted, where
+from graphflow.interface import GroupChange
+from graphflow.machines.explain import again, explanation, group_of, hopeless, stall, title, wanted, where
 from graphflow.machines.reduction import deadlocked
+from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.rings import Deadlock, Edge, explained
 from graphflow.machines.wait_graph import (
     FREE,
@@ -24,6 +26,13 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
 )
 from tests.machines.pictures import picture
+
+
+@pytest.fixture(autouse=True)
+def unbroken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each sentence on one line, however long; `test_clauses` has to do with the rest."""
+    monkeypatch.setattr("graphflow.machines.clauses.WIDTH", 10_000)
+
 
 MOTION = GroupView("g", "motion", "/arm")
 TICK = ActivityView(
@@ -55,18 +64,19 @@ def report(*things: ActivityView | GroupView | QueueView, blocked: str = "") -> 
 def test_a_whole_report() -> None:
     """A headline, two lines for each member, and every change that would end it."""
     assert report(TICK, MOTION, ADD) == [
-        "DEADLOCK: one callback waits for itself",
+        "DEADLOCK: timer tick of /arm waits for itself",
         "  timer tick of /arm holds group 'motion' and waits for the response of service /add"
         "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)",
         "    -> service add of /arm waits for group 'motion' of /arm, which timer tick of /arm holds",
         "Any one of these ends it:",
-        "  give add a group of its own, in the graph file",
+        "  give add a group of its own, in the graph file under nodes:",
         "      /arm: {concurrency: {add_group: [add]}}",
         "    or in the class: add_group = Group(1), and group=add_group where add is declared",
-        "  allow more runs, if its handlers share no state",
+        "  allow more runs, if its handlers share no state, in the graph file under nodes:",
         "      /arm: {concurrency: {motion: {limit: 2}}}",
         "    or in the class: motion = Group(2)",
-        "  release the slot while waiting, in arm.py:12: async with self.group.released(): ...",
+        "  release the slot while waiting, in arm.py:12: async with self.group.released(): ... "
+        "(self.group is the group of the running handler)",
     ]
 
 
@@ -86,15 +96,15 @@ def test_a_ring_and_who_is_behind_it() -> None:
 @pytest.mark.parametrize(
     ("deadlock", "words"),
     [
-        (Deadlock(("a",), (), (), is_likely=False), "DEADLOCK: one callback waits for itself"),
-        (Deadlock(("a",), (), (), is_likely=True), "LIKELY DEADLOCK: one callback waits for itself"),
+        (Deadlock(("a",), (), (), is_likely=False), "DEADLOCK: timer tick of /arm waits for itself"),
+        (Deadlock(("a",), (), (), is_likely=True), "LIKELY DEADLOCK: timer tick of /arm waits for itself"),
         (
             Deadlock(("a",), (), (), is_likely=False, is_partial=True),
-            "DEADLOCK: one callback waits for itself (unless something else that they wait for fails)",
+            "DEADLOCK: timer tick of /arm waits for itself (unless something else that they wait for fails)",
         ),
         (
             Deadlock(("a",), (), ("v", "w"), is_likely=False),
-            "DEADLOCK: one callback waits for itself; 2 more wait for it",
+            "DEADLOCK: timer tick of /arm waits for itself; 2 more wait for it",
         ),
         (
             Deadlock(("a", "b", "c"), (), ("v",), is_likely=True),
@@ -133,10 +143,10 @@ def test_what_is_wanted(via: Condition, words: str) -> None:
 @pytest.mark.parametrize(
     ("activity", "words"),
     [
-        (TICK, "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"),
-        (replace(TICK, left=None), "   (arm.py:12 in tick, for 0.25 s)"),
-        (replace(TICK, left=-0.1), "   (arm.py:12 in tick, for 0.25 s, times out in 0.0 s)"),
-        (replace(TICK, place=Place(""), left=None), "   (for 0.25 s)"),
+        (TICK, "(arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"),
+        (replace(TICK, left=None), "(arm.py:12 in tick, for 0.25 s)"),
+        (replace(TICK, left=-0.1), "(arm.py:12 in tick, for 0.25 s, times out in 0.0 s)"),
+        (replace(TICK, place=Place(""), left=None), "(for 0.25 s)"),
     ],
 )
 def test_where_it_waits(activity: ActivityView, words: str) -> None:
@@ -179,13 +189,70 @@ def test_something_that_a_handler_sets() -> None:
 
     lines = report(replace(TICK, wait=wait), MOTION, scan)
 
-    assert lines[0].startswith("LIKELY DEADLOCK: ")
+    assert lines[0] == (
+        "LIKELY DEADLOCK: timer tick of /arm waits for self.arrived, and on_scan, which sets it, is kept out"
+    )
     assert lines[2] == (
         "    -> subscription on_scan of /arm sets it and needs group 'motion' of /arm, "
         "which timer tick of /arm holds; 3 queued, 2 dropped meanwhile"
     )
     assert any(line.startswith("  give on_scan a group of its own") for line in lines)
     assert not any(line.startswith("  allow more runs") for line in lines)
+
+
+def test_several_that_set_it() -> None:
+    """All are named, by what they do to it, and one line moves them all; the waiter itself is left where it is."""
+    wait = SetBy("self.items", ("q", "r", "s"), deed="fills")
+    names = {"q": "subscription on_scan", "r": "service put", "s": "timer tick"}
+    queues = [replace(ADD, id=id_, label=label, calls=(), waiting=1) for id_, label in names.items()]
+
+    lines = report(replace(TICK, wait=wait), MOTION, *queues)
+
+    assert lines[0].endswith("waits for self.items, and on_scan and put, which fill it, are kept out")
+    assert "subscription on_scan and service put of /arm fill it and need group 'motion' of /arm, which" in lines[2]
+    assert "  give on_scan and put a group of their own, in the graph file under nodes:" in lines
+    assert "      /arm: {concurrency: {on_scan_group: [on_scan, put]}}" in lines
+
+
+def test_what_the_graph_file_says_already_is_kept() -> None:
+    """A remedy is pasted over the whole mapping; and the file that it goes into is named."""
+    said = {"motion": GroupChange(("tick", "add", "reset")), "io": GroupChange((), 2, sets_limit=True)}
+    seen = picture(TICK, MOTION, ADD)
+    seen = replace(seen, regroupings={"/arm": Regrouping(said, "lab.yaml", "override")})
+
+    text = explanation(the_deadlock(seen), seen)
+
+    assert (
+        "  give add a group of its own, in lab.yaml under override:\n"
+        "      /arm: {concurrency: {motion: [tick, reset], io: {limit: 2}, add_group: [add]}}\n"
+    ) in text
+    assert (
+        "  allow more runs, if its handlers share no state, in lab.yaml under override:\n"
+        "      /arm: {concurrency: {motion: {handlers: [tick, add, reset], limit: 2}, io: {limit: 2}}}\n"
+    ) in text
+
+
+@pytest.mark.parametrize(
+    ("wait", "left", "head"),
+    [
+        (SetBy("self.pose", ("q",), gives_up=True), 2.0, "WAITS IN VAIN: timer tick of /arm waits for self.pose, and "),
+        (SetBy("self.pose", ("q",), gives_up=True), None, "LIKELY DEADLOCK: "),
+        (SetBy("self.pose", ("q",)), 2.0, "LIKELY DEADLOCK: "),
+    ],
+    ids=["a deadline", "it may be that there is one", "it tries again"],
+)
+def test_a_wait_that_its_own_deadline_ends(wait: SetBy, left: float | None, head: str) -> None:
+    """It is no deadlock; when it ends is told."""
+    lines = report(replace(TICK, wait=wait, left=left), MOTION, replace(ADD, calls=()))
+    assert lines[0].startswith(head)
+    assert lines[0].endswith(", until a deadline of its own ends that in 2.0 s") is head.startswith("WAITS")
+
+
+def test_a_wait_in_a_method_that_the_handler_calls() -> None:
+    """Both lines are told."""
+    assert where(replace(TICK, function="pause", called="arm.py:9 in tick", left=None)) == (
+        "(arm.py:12 in pause, called in arm.py:9 in tick, for 0.25 s)"
+    )
 
 
 def test_a_lock_that_is_held() -> None:
@@ -196,7 +263,7 @@ def test_a_lock_that_is_held() -> None:
     lines = report(replace(TICK, id="a", wait=held, age=9.0), other, MOTION)
 
     assert lines[2] == "    -> which task run of /arm holds"
-    assert "  leave self.lock before the await in b.py:7" in lines
+    assert "  move the await in b.py:7 out of the `with self.lock` block around it" in lines
 
 
 def test_a_blocked_loop() -> None:
@@ -209,7 +276,7 @@ def test_a_blocked_loop() -> None:
     assert lines[2] == "    -> nothing can arrive while the event loop is blocked by timer tick of /arm"
     assert lines[4:] == [
         "  await the call in arm.py:12",
-        "  let tick run in a thread, in the graph file",
+        "  let tick run in a thread, in the graph file under nodes:",
         "      /arm: {concurrency: {blocking: {handlers: [tick], thread: true}}}",
         "    or in the class: thread=True where tick is declared",
     ]
@@ -318,12 +385,20 @@ def test_a_call_that_cannot_succeed() -> None:
     seen = picture(TICK, MOTION, ADD)
 
     lines = hopeless("/add", ADD, [TICK], seen).splitlines()
-    assert lines[0] == (
-        "/add can never answer: service add of /arm waits for group 'motion' of /arm, held by timer tick of /arm"
-        "   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s), which waits for this very call"
-    )
-    assert lines[1:3] == ["Any one of these ends it:", "  give add a group of its own, in the graph file"]
-    assert lines[-1] == "  release the slot while waiting, in arm.py:12: async with self.group.released(): ..."
+    assert lines == report(TICK, MOTION, ADD)
+
+
+def test_a_call_that_comes_back_by_others() -> None:
+    """Which they are is told by the process that knows them."""
+    seen = picture(TICK, MOTION, ADD)
+    lines = hopeless("/last", ADD, [TICK], seen).splitlines()
+    assert "waits for the response of service /add" in lines[1]
+    assert lines[2].startswith("    -> which calls /last in the end, and service add of /arm waits for group 'motion'")
+
+
+def test_a_deadlock_that_comes_again() -> None:
+    """One line is enough."""
+    assert again("LIKELY DEADLOCK: timer tick waits", 3) == "LIKELY DEADLOCK again (3 times so far): timer tick waits"
 
 
 def test_a_call_that_cannot_succeed_and_nobody_holds() -> None:
@@ -339,12 +414,12 @@ def test_a_stall() -> None:
     """Who has held the group, who waits and what it has lost since; and a group for one that is not the holder's."""
     waiting = [replace(ADD, id="own", label="timer tick", waiting=1), replace(ADD, waiting=4, dropped=7)]
 
-    assert stall(MOTION, [TICK], waiting, {"q": 5}, 5.0).splitlines() == [
+    assert stall(MOTION, [TICK], waiting, {"q": 5}, 5.0, picture(MOTION)).splitlines() == [
         "STALL: timer tick of /arm (arm.py:12 in tick) has held group 'motion' of /arm for more than 5.0 s",
         "  timer tick of /arm waits for it: 1 queued, 0 dropped meanwhile",
         "  service add of /arm waits for it: 4 queued, 2 dropped meanwhile",
         "If that is too long:",
-        "  give add a group of its own, in the graph file",
+        "  give add a group of its own, in the graph file under nodes:",
         "      /arm: {concurrency: {add_group: [add]}}",
         "    or in the class: add_group = Group(1), and group=add_group where add is declared",
     ]
@@ -355,7 +430,7 @@ def test_a_stall_of_several_slots() -> None:
     look = replace(TICK, id="look", label="timer look", place=Place(""))
     waiting = [replace(ADD, label="timer tick")]
 
-    assert stall(replace(MOTION, limit=2), [TICK, look], waiting, {}, 5.0).splitlines() == [
+    assert stall(replace(MOTION, limit=2), [TICK, look], waiting, {}, 5.0, picture(MOTION)).splitlines() == [
         "STALL: timer tick of /arm (arm.py:12 in tick) and timer look of /arm have held all 2 slots of group 'motion' "
         "of /arm for more than 5.0 s",
         "  timer tick of /arm waits for it: 1 queued, 0 dropped meanwhile",

@@ -28,11 +28,10 @@ def found(graph: WaitGraph) -> tuple[Deadlock, list[Move]]:
 
 
 def test_the_handler_that_is_waited_for_gets_a_group_of_its_own() -> None:
-    """With the command and the line of YAML that make it so."""
+    """With the command that makes it so."""
     _, [move] = found(ring(QueueView("q", "service reset", "/a", ("ga",), ("2",), 1)))
-    assert move == Move("/a", "reset", "reset_group")
+    assert move == Move("/a", ("reset",), "reset_group")
     assert move.command == "graphflow groups move /a reset reset_group"
-    assert move.yaml == "/a: {concurrency: {reset_group: [reset]}}"
 
 
 @pytest.mark.parametrize(

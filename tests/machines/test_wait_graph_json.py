@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from graphflow.errors import Place
+from graphflow.interface import GroupChange, WhenFull
+from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.wait_graph import (
     FREE,
     ActivityView,
@@ -43,7 +45,7 @@ CONDITIONS: st.SearchStrategy[Condition] = st.recursive(
     | st.builds(Call, TEXT, TEXT)
     | st.builds(Slot, TEXT, WHOLE)
     | st.builds(Join, TEXT)
-    | st.builds(SetBy, TEXT, TEXTS, TEXTS, st.booleans()),
+    | st.builds(SetBy, TEXT, TEXTS, TEXTS, st.booleans(), TEXT, st.booleans()),
     joint,
     max_leaves=6,
 )
@@ -64,12 +66,21 @@ ACTIVITIES = st.builds(
 )
 GROUPS = st.builds(GroupView, TEXT, TEXT, TEXT, st.none() | st.integers(1, 9))
 QUEUES = st.builds(QueueView, TEXT, TEXT, TEXT, TEXTS, TEXTS, WHOLE, WHOLE, TEXT)
+CHANGES = st.builds(
+    GroupChange,
+    TEXTS,
+    st.none() | st.integers(1, 9),
+    st.booleans(),
+    st.none() | st.sampled_from(get_args(WhenFull)),
+    st.none() | st.booleans(),
+)
 PICTURES = st.builds(
     WaitGraph,
     st.lists(ACTIVITIES, max_size=3).map(lambda some: {a.id: a for a in some}),
     st.lists(GROUPS, max_size=3).map(lambda some: {g.id: g for g in some}),
     st.lists(QUEUES, max_size=3).map(lambda some: {q.id: q for q in some}),
     st.dictionaries(TEXT, TEXT, max_size=3),
+    st.dictionaries(TEXT, st.builds(Regrouping, st.dictionaries(TEXT, CHANGES, max_size=2), TEXT, TEXT), max_size=2),
 )
 JUNK: st.SearchStrategy[Any] = st.recursive(
     st.none() | st.booleans() | WHOLE | st.floats() | TEXT | st.sampled_from(["call", "slot", "join", "set", "all"]),

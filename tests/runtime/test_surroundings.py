@@ -9,6 +9,7 @@ import pytest
 from graphflow import Node
 from graphflow.errors import DeclarationError
 from graphflow.interface import GroupChange
+from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import Remap
 from graphflow.runtime.core import core_of
@@ -61,7 +62,9 @@ class WithHelper(Node):
 def test_what_is_said_outside_wins() -> None:
     """Over the literal name, over the class's own rules and values."""
     rules = [Remap.parse("chatter:=news")]
-    given = Surroundings("speaker", "/robot1", rules, {"rate": (5.0, "x.yaml:3")}, {"io": GroupChange(("greet",))})
+    given = Surroundings(
+        "speaker", "/robot1", rules, {"rate": (5.0, "x.yaml:3")}, Regrouping({"io": GroupChange(("greet",))})
+    )
     node = make_within(Talker, given, "talker")
     assert node.full_name == "/robot1/speaker"
     assert node.chatter.name == "/robot1/news"

@@ -73,7 +73,7 @@ def planned(class_path: str = "nodes.talker:Talker", name: str = "/left/voice", 
 async def test_a_node_as_planned(graph: Graph) -> None:
     """Its name, parameters and remaps are the plan's; what is optional and not there is left out."""
     params = {"rate": Setting(5.0, PLACE), "greeting": Setting("Hi", PLACE, True), "other": Setting(1, PLACE, True)}
-    node = make_node(planned(params=params, remaps=(Rule("chatter", "said", PLACE),)))
+    node = make_node(planned(params=params, remaps=(Rule("chatter", "said", PLACE),)), PLACE.file)
     assert isinstance(node, Talker)
     assert (node.full_name, node.rate) == ("/left/voice", 5.0)
     heard = graph.tap(String, "/left/said")
@@ -93,7 +93,7 @@ async def test_a_node_as_planned(graph: Graph) -> None:
 def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
     """The error names what was meant."""
     with pytest.raises(GraphflowError, match=told):
-        make_node(node)
+        make_node(node, PLACE.file)
 
 
 def test_a_report_keeps_in_one_piece() -> None:

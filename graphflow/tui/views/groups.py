@@ -15,7 +15,7 @@ from textual.widget import Widget
 from graphflow.errors import CallError, RemoteError
 from graphflow.introspect import concurrency
 from graphflow.introspect.view import View as Graph
-from graphflow.machines.explain import explanation, group_of, title, wanted
+from graphflow.machines.explain import explanation, group_of, headline, title, wanted
 from graphflow.machines.moves import Move, moves
 from graphflow.machines.rings import Deadlock
 from graphflow.machines.wait_graph import FREE, ActivityView, GroupView, WaitGraph
@@ -125,22 +125,23 @@ class Groups(View):
     def _deadlock_rows(self) -> Iterator[Row]:
         ink, graph = self.ink, self._graph
         for deadlock in self._deadlocks:
-            word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
-            count = len(deadlock.ring)
-            what = "a callback waits for itself" if count == 1 else f"{count} callbacks wait for each other in a ring"
-            yield Row(Text(f" ✖ {word}: {what}", style=ink.bad))
+            yield Row(Text(f" ✖ {headline(deadlock, graph)}", style=ink.bad))
             yield from self._ring(deadlock)
             for name in deadlock.victims[:10]:
                 yield Row(Text(f"     behind them: {title(graph.activities[name])}", style=ink.dim))
             found = moves(deadlock, graph)
             if found:
                 move = found[0]
+                who, its = " and ".join(move.handlers), "its" if len(move.handlers) == 1 else "their"
                 fix = Text.assemble(
-                    ("   f ", ink.accent), (f"gives {move.handler} of {move.node} a group of its own", ink.strong)
+                    ("   f ", ink.accent), (f"gives {who} of {move.node} a group of {its} own", ink.strong)
                 )
                 yield Row(fix)
                 yield Row(Text(f"     $ {move.command}", style=ink.dim))
-                yield Row(Text(f"     in the graph file: {move.yaml}", style=ink.dim))
+                regrouping = graph.regrouping(move.node).moved(move.handlers, move.group)
+                lines = regrouping.lines(move.node, "")
+                yield Row(Text(f"     {regrouping.where} {lines[0]}", style=ink.dim))
+                yield from (Row(Text(f"       {line}", style=ink.dim)) for line in lines[1:])
             else:
                 yield Row(Text("   no handler that could be moved now would end it; what does:", style=ink.warn))
                 _, _, fixes = explanation(deadlock, graph).partition("Any one of these ends it:\n")
@@ -175,12 +176,8 @@ class Groups(View):
         if self._unfrozen:
             yield Row(Text(f" ✔ {self._unfrozen}", style=ink.good))
         for move in self._moved:
-            yield Row(
-                Text(
-                    f"   moved {move.handler} of {move.node} to group {move.group}, until the graph stops",
-                    style=ink.text,
-                )
-            )
+            what = f"{' and '.join(move.handlers)} of {move.node} to group {move.group}"
+            yield Row(Text(f"   moved {what}, until the graph stops", style=ink.text))
         yield Row(
             Text.assemble(
                 ("   w ", ink.accent),
@@ -276,22 +273,26 @@ class Groups(View):
     async def _move(self, move: Move) -> None:
         live = self.hub.live
         assert live is not None
-        payload = json.dumps(move._asdict()).encode()
+        payloads = [
+            json.dumps({"node": move.node, "handler": handler, "group": move.group}).encode()
+            for handler in move.handlers
+        ]
 
         def ask(graph: Graph) -> None:
             zid = graph.cache.owners(graph.node(move.node))[0].zid
-            try:
-                answer = graph.ask(answer_key(graph.domain, GROUPS, zid), payload, MOVE_LIMIT)
-            except TimeoutError:
-                raise CallError(f"{move.node} did not answer within {MOVE_LIMIT:g} s") from None
-            if answer.is_error:
-                raise RemoteError.from_payload(answer.payload, move.node)
+            for payload in payloads:
+                try:
+                    answer = graph.ask(answer_key(graph.domain, GROUPS, zid), payload, MOVE_LIMIT)
+                except TimeoutError:
+                    raise CallError(f"{move.node} did not answer within {MOVE_LIMIT:g} s") from None
+                if answer.is_error:
+                    raise RemoteError.from_payload(answer.payload, move.node)
 
         await live.ask(ask)
         self._moved.append(move)
         self._unfrozen = ""
         self.did(move.command)
-        self.hub.announce(f"groups move {move.node} {move.handler} {move.group}")
+        self.hub.announce(move.command.removeprefix("graphflow "))
 
     def do_write(self) -> None:
         if not self._moved:
@@ -300,11 +301,11 @@ class Groups(View):
         from graphflow.graph.edit import with_group
         from graphflow.tui.writing import write_nodes
 
-        made = list(self._moved)
+        made, graph = list(self._moved), self._graph
 
         def change(text: str, keys: dict[str, tuple[str, ...]]) -> str:
             for move in made:
-                text = with_group(text, keys[move.node], move.group, [move.handler])
+                text = with_group(text, keys[move.node], move.group, move.handlers, graph.regrouping(move.node).groups)
             return text
 
         write_nodes(self.console, {m.node for m in made}, change, "the groups moved here", self._moved.clear)
