@@ -239,4 +239,8 @@ def __getattr__(name: str) -> object:
             value: object = getattr(import_module(home), name)
             globals()[name] = value
             return value
+    from graphflow.runtime.dictionary import translation
+
+    if hint := translation(name, "names"):  # an AttributeError's text would not reach who imports the name
+        raise ImportError(f"graphflow has no {name}; {hint}")
     raise AttributeError(f"module 'graphflow' has no attribute {name!r}")

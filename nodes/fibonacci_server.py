@@ -14,8 +14,8 @@ class FibonacciServer(Node):
 
     goals = Group(limit=None)
 
-    def can_count(self, goal: Fibonacci.Goal) -> bool:
-        return 0 <= goal.order <= 46  # what an int32 holds
+    def can_count(self, goal: Fibonacci.Goal) -> bool | str:
+        return 0 <= goal.order <= 46 or "an int32 holds no more than 46 generations"
 
     @action(Fibonacci, "fibonacci", group=goals, policy="parallel", accept=can_count)
     async def compute(self, goal: Fibonacci.Handle) -> Fibonacci.Result:

@@ -33,8 +33,9 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
         output.data(f"Sending goal:\n{_shown(goal)}")
         try:
             return await _follow(client.send(goal, timeout=timeout), show_feedback)
-        except GoalRejected:
+        except GoalRejected as error:
             output.data("Goal was rejected.")
+            output.talk(str(error))
             return exits.FAILED
 
     return visit(work)

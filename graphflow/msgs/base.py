@@ -6,10 +6,34 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
+from graphflow.names import did_you_mean
 from graphflow.wire.schema import Message as Schema
 
 if TYPE_CHECKING:
+    import inspect
+
     from graphflow.wire.cdr import Codec
+
+
+class _NoField(AttributeError):
+    """A message has no such field; what it has instead is looked up when somebody reads that."""
+
+    def __str__(self) -> str:
+        message: Any = self.obj
+        return no_field(type(message), str(self.name))
+
+
+_NoField.__name__ = _NoField.__qualname__ = "AttributeError"  # which is what it is to whoever reads of it
+
+
+class _Signature:
+    """What `help` and editors show of a message's constructor: its fields, and not what it refuses."""
+
+    def __get__(self, instance: object, cls: Any) -> inspect.Signature:
+        import inspect
+
+        taken = inspect.signature(cls.__init__).parameters.values()
+        return inspect.Signature([p for p in taken if p.kind is p.KEYWORD_ONLY])
 
 
 class Message:
@@ -24,6 +48,7 @@ class Message:
     """
 
     __slots__ = ()
+    __signature__ = _Signature()
     SCHEMA: ClassVar[Schema]
     NESTED: ClassVar[Mapping[str, type[Message]]]
     """Classes of the message types that the fields hold, by name."""
@@ -53,6 +78,12 @@ class Message:
         """Field names and types as ROS 2 prints them."""
         return {f.name: str(f.type).replace("/msg/", "/") for f in cls.SCHEMA.fields}
 
+    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+
+        def __getattr__(self, name: str) -> object:
+            """Raise AttributeError: this is called for what is not there."""
+            raise _NoField(name=name, obj=self)
+
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not self.__class__:
             return NotImplemented
@@ -76,6 +107,17 @@ class Message:
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
             setattr(self, name, value)
+
+
+def name_of(cls: type[Message]) -> str:
+    """How a message class is written: `Fibonacci.Goal` for a part of an action."""
+    return ".".join(cls.__name__.rsplit("_", 1))
+
+
+def no_field(cls: type[Message], name: str) -> str:
+    """What to say of a field that a message does not have."""
+    fields = ", ".join(f"{f.type} {f.name}" for f in cls.SCHEMA.fields) or "none"
+    return f"{name_of(cls)} has no field {name!r}{did_you_mean(name, cls.__slots__) or f'; its fields: {fields}'}"
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -102,6 +144,12 @@ class Service(Generic[Request, Response]):
 
     NAME: ClassVar[str]
     Event: ClassVar[type[Message]]
+
+    def __new__(cls, *_: object, **__: object) -> Self:
+        """Raise TypeError: a service has messages and is none."""
+        raise TypeError(
+            f"{cls.__name__} is a service; make {cls.__name__}.Request(...) or {cls.__name__}.Response(...)"
+        )
 
 
 class ServerGoalHandle(ABC, Generic[Goal, Result, Feedback]):
@@ -139,3 +187,7 @@ class Action(Generic[Goal, Result, Feedback]):
     """A ROS 2 action type: `Goal`, `Result` and `Feedback` are its message classes, `Handle` its `ServerGoalHandle`."""
 
     NAME: ClassVar[str]
+
+    def __new__(cls, *_: object, **__: object) -> Self:
+        """Raise TypeError: an action has messages and is none."""
+        raise TypeError(f"{cls.__name__} is an action; make {cls.__name__}.Goal(...), .Result(...) or .Feedback(...)")

@@ -83,7 +83,7 @@ def action_class(action: schema.Action, classes: Classes) -> type[base.Action[An
 
 def _constructor(message: Message, nested: Nested) -> Callable[..., None]:
     # No field can have a name in capitals, so none hides what the constructor refers to.
-    names: dict[str, Any] = {"CONVERT": convert, "ABSENT": _ABSENT}
+    names: dict[str, Any] = {"CONVERT": convert, "ABSENT": _ABSENT, "REFUSE": _refuse}
     parameters, lines = [], []
     for i, field in enumerate(message.fields):
         name, type_ = field.name, field.type
@@ -107,11 +107,20 @@ def _constructor(message: Message, nested: Nested) -> Callable[..., None]:
                 lines.append(f"else: SELF.{name} = CONVERT(F{i}, {name}, SELF)")
             else:
                 lines.append(f"SELF.{name} = M{i}() if {name} is ABSENT else CONVERT(F{i}, {name}, SELF)")
-    head = f"def __init__(SELF, /{', *, ' if parameters else ''}{', '.join(parameters)}):"
-    source = "\n    ".join([head, *(lines or ["pass"])])
+    head = f"def __init__({', '.join(['SELF, /, *ARGUMENTS', *parameters, '**OTHERS'])}):"
+    source = "\n    ".join([head, "if ARGUMENTS or OTHERS: REFUSE(SELF, OTHERS)", *lines])
     exec(compile(source, f"<{message.name}>", "exec"), names)  # noqa: S102 - written above from a checked schema
     init: Callable[..., None] = names["__init__"]
     return init
+
+
+def _refuse(message: base.Message, others: dict[str, Any]) -> None:
+    """Raise TypeError for arguments that are no fields."""
+    cls = type(message)
+    if not others:
+        example = f"{cls.__slots__[0]}=..." if cls.__slots__ else ""
+        raise TypeError(f"{base.name_of(cls)} takes its fields by name: {cls.__name__.rpartition('_')[2]}({example})")
+    raise TypeError(base.no_field(cls, next(iter(others))))
 
 
 class _Absent:

@@ -29,7 +29,7 @@ class _InterfaceFinder:
         if not registry.package_folders(package) and not (
             _add_those_of_the_script() and registry.package_folders(package)
         ):
-            hint = did_you_mean(package, registry.packages())
+            hint = registry.no_kinds(package) or did_you_mean(package, registry.packages())
             own = f"one of your own goes in interfaces/{package}/msg/*.msg"
             raise ModuleNotFoundError(f"there is no interface package {package!r}{hint} ({own})", name=fullname)
         if len(rest) == 2 and rest[0] in registry.KINDS and not rest[1].startswith("_"):
@@ -37,7 +37,7 @@ class _InterfaceFinder:
             known = registry.names_in(package, rest[0])
             if rest[1] in known:
                 return None
-            hint = did_you_mean(rest[1], known)
+            hint = registry.misplaced(package, rest[1]) or did_you_mean(rest[1], known)
             raise ImportError(f"package {package!r} has no {rest[0]} {rest[1]!r}{hint}", name=fullname)
         if rest and (len(rest) > 1 or rest[0] not in registry.KINDS):
             return None

@@ -95,8 +95,26 @@ def full_name(text: str) -> str:
 
 def _unknown(package: str, name: str, known: list[str]) -> str:
     if not package_folders(package):
-        return f"there is no interface package {package!r}{did_you_mean(package, packages())}"
-    return f"package {package!r} has no interface {name!r}{did_you_mean(name, known)}"
+        return f"there is no interface package {package!r}{no_kinds(package) or did_you_mean(package, packages())}"
+    return f"package {package!r} has no interface {name!r}{misplaced(package, name) or did_you_mean(name, known)}"
+
+
+def no_kinds(package: str) -> str:
+    """What a package's folder lacks, if there is one without definitions; else empty."""
+    found = [root / package for root in roots() if package.isidentifier() and (root / package).is_dir()]
+    return f"; {found[0]} has no folder msg, srv or action" if found else ""
+
+
+def misplaced(package: str, name: str) -> str:
+    """What has to become of a file that seems to be meant, but lies elsewhere or is called otherwise; else empty."""
+    for root in roots():
+        for file in sorted((root / package).rglob("*")):
+            kind = file.suffix[1:]
+            if kind in KINDS and file.stem.replace("_", "").lower() == name.replace("_", "").lower():
+                right = root / package / kind / f"{name}.{kind}"
+                if file != right:
+                    return f"; {file} must be {right}"
+    return ""
 
 
 def definition_file(name: str) -> Path:

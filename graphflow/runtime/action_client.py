@@ -6,9 +6,9 @@ import asyncio
 import os
 from asyncio import CancelledError, Future
 from collections import deque
-from collections.abc import AsyncGenerator, AsyncIterator, Coroutine
-from contextlib import asynccontextmanager, suppress
-from typing import Any, Generic
+from collections.abc import AsyncIterator, Coroutine
+from contextlib import AbstractAsyncContextManager, suppress
+from typing import TYPE_CHECKING, Any, Generic, NoReturn
 
 from graphflow.errors import (
     CallError,
@@ -31,7 +31,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result
 from graphflow.names import did_you_mean
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
-from graphflow.runtime.dictionary import SpeaksRos
+from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.service_client import DISCOVERY_GRACE, ServiceClient
 from graphflow.runtime.topics import TopicSubscription
@@ -151,8 +151,44 @@ class ClientGoalHandle(SpeaksRos, PendingGoal, Generic[Goal, Result, Feedback]):
                     news.set_result(None)
 
 
-class GoalClient(Part, Generic[Goal, Result, Feedback]):
+class Sending(AbstractAsyncContextManager["ClientGoalHandle[Goal, Result, Feedback]"], Generic[Goal, Result, Feedback]):
+    """A goal for the length of a block; see `GoalClient.send`."""
+
+    def __init__(
+        self, client: GoalClient[Goal, Result, Feedback], goal: Goal, timeout: float | None, *, detach: bool
+    ) -> None:
+        self._client, self._goal, self._timeout, self._detach = client, goal, timeout, detach
+        self._sent: ClientGoalHandle[Goal, Result, Feedback] | None = None
+
+    async def __aenter__(self) -> ClientGoalHandle[Goal, Result, Feedback]:
+        self._sent = await self._client.send_goal(self._goal, timeout=self._timeout)
+        return self._sent
+
+    async def __aexit__(self, *_: object) -> None:
+        assert self._sent is not None
+        if not self._detach and not self._sent.done:
+            await self._client.leave(self._sent)
+
+    if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
+
+        def _refuse(self) -> NoReturn:
+            raise TypeError("write `async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
+
+        __await__ = __enter__ = _refuse
+
+        def __exit__(self, *_: object) -> None:
+            """There is nothing to leave: `__enter__` has refused."""
+
+        def __getattr__(self, name: str) -> object:
+            """Raise AttributeError: the goal is not sent yet."""
+            text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
+            raise AttributeError(text, name=name, obj=self)
+
+
+class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     """A client of an action, as it runs."""
+
+    MAKER = 'create_action_client(Type, "name")'
 
     def __init__(self, host: Host, type_: type[Action[Goal, Result, Feedback]], name: str) -> None:
         self.host, self.type, self.name = host, type_, name
@@ -229,10 +265,9 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         near = did_you_mean(self.name, [name for name in actions if name != self.name])
         return f"no node offers the action {self.name} [{self.type.NAME}]{near}"
 
-    @asynccontextmanager
-    async def send(
+    def send(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT, detach: bool = False
-    ) -> AsyncGenerator[ClientGoalHandle[Goal, Result, Feedback], None]:
+    ) -> Sending[Goal, Result, Feedback]:
         """Send a goal for the length of a block: leaving it before the goal has ended cancels the goal.
 
             async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal:
@@ -249,12 +284,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             CallError: The server did not answer, or there is none.
             EncodeError: The goal does not fit its type.
         """
-        sent = await self.send_goal(goal, timeout=timeout)
-        try:
-            yield sent
-        finally:
-            if not detach and not sent.done:
-                await self._leave(sent)
+        return Sending(self, goal, timeout, detach=detach)
 
     async def send_goal(
         self, goal: Goal, *, timeout: float | None = CALL_TIMEOUT
@@ -282,7 +312,8 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             raise
         if not answer.accepted:
             del self._goals[sent.goal_id]
-            raise GoalRejected(f"{self.name} rejected the goal")
+            reason = await self._why(sent)
+            raise GoalRejected(f"{self.name} rejected the goal{reason and f': {reason}'}")
         if sent.status is GoalStatus.UNKNOWN:
             sent.status = GoalStatus.ACCEPTED
         self._in_background(self._follow(sent))
@@ -300,7 +331,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
     def _cancel_request(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
         return self._cancel._request(goal_info={"goal_id": {"uuid": list(goal.goal_id)}})
 
-    async def _leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
+    async def leave(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> None:
         """Cancel a goal whose block is left, and wait a little for its end, even if leaving is cancelled."""
         await _seen_through(self._in_background(self._cancel_and_wait(goal)))
 
@@ -328,8 +359,8 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         context = self.host.context
         try:
             with context.ledger.goal(goal.ended, goal):
-                answer, reason = await self._result_of(goal)
-            self._end(goal, GoalStatus(answer.status), answer.result, reason)
+                answer = await self._result_of(goal)
+            await self._take(goal, answer)
         except (CallError, ClosedError, ValueError) as error:
             known = f"last known as {goal.status.name}"
             if isinstance(error, (ServerLost, ServiceUnavailable, ClosedError)):
@@ -341,13 +372,25 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             clock = context.clock
             clock.call_at(clock.monotonic_ns() + to_ns(LOST_GRACE), lambda: self._forget(goal))
 
-    async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> tuple[Any, str]:
-        """The response that reports a goal's end, however long that takes, and the reason that comes with it."""
+    async def _take(self, goal: ClientGoalHandle[Goal, Result, Feedback], answer: Any) -> None:
+        """A goal has ended."""
+        status = GoalStatus(answer.status)
+        self._end(goal, status, answer.result, await self._why(goal) if status is GoalStatus.ABORTED else "")
+
+    async def _why(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> str:
+        """Why the server has rejected or aborted a goal; empty if it does not say."""
+        for server in list(self._send.matched.values()):
+            if reason := await self.host.context.reasons.ask(server.zid, goal.goal_id):
+                return reason
+        return "" if self._send.matched else "its server has gone"
+
+    async def _result_of(self, goal: ClientGoalHandle[Goal, Result, Feedback]) -> Any:
+        """The response that reports a goal's end, however long that takes."""
         request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
         patience = RESULT_PATIENCE
         while True:
             try:
-                return await self._get.call_noted(request, timeout=patience)
+                return await self._get.call(request, timeout=patience)
             except ServerBusy:
                 await self.host.context.clock.sleep(RESULT_PATIENCE)
             except CallTimeout:  # it takes long, or the network has lost the request or the response
@@ -367,8 +410,6 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
             return
         if status is GoalStatus.ABORTED:
             error = GoalAborted(f"{self.name} aborted the goal{f': {reason}' if reason else ''}", result)
-            if reason:
-                self.host.log.warning("%s: %r was aborted: %s", self.name, goal, reason)
         elif status is GoalStatus.CANCELED:
             error = GoalCanceled(f"the goal of {self.name} was cancelled", result)
         elif status is not GoalStatus.SUCCEEDED:  # a new server of the same name does not know it
@@ -398,8 +439,7 @@ class GoalClient(Part, Generic[Goal, Result, Feedback]):
         if not goal.done:
             with suppress(CallError, ClosedError):  # the task that follows the goal keeps asking
                 request = self._get._request(goal_id={"uuid": list(goal.goal_id)})
-                answer, reason = await self._get.call_noted(request)
-                self._end(goal, GoalStatus(answer.status), answer.result, reason)
+                await self._take(goal, await self._get.call(request))
 
     def _in_background(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = self.host.context.loop.create_task(work, name=f"{self.host.full_name}: {self.name}")

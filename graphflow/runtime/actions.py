@@ -28,10 +28,9 @@ from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRec
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
-from graphflow.runtime.dictionary import SpeaksRos
-from graphflow.runtime.direct import DirectRequest
+from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
-from graphflow.runtime.services import NOTE_LIMIT, ServiceServer
+from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.topics import TopicPublisher
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire import attachment
@@ -42,6 +41,10 @@ RESULT_KEPT = 900.0
 STATUS_KEPT = 10.0
 """Seconds that an ended goal stays in the status list, as in ROS 2."""
 RESULTS_KEPT = 1_000
+_RETURNED_ALL_THE_SAME = (
+    "its handler returned a result all the same: the goal succeeds. To end it as cancelled, set goal.partial and let "
+    "CancelledError pass"
+)
 _WHY = {GoalEvent.NEWER: "a newer goal has come"}
 
 
@@ -69,6 +72,9 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
     def __repr__(self) -> str:
         return f"<goal {self._id.hex()[:8]} of {self._server.name}: {self.status.name}>"
 
+    def _hint(self, name: str) -> str:
+        return f"the client's wish is goal.request.{name}" if name in type(self.request).__slots__ else ""
+
     @property
     def goal_id(self) -> bytes:
         return self._id
@@ -94,14 +100,17 @@ class ServedGoal(SpeaksRos, ServerGoalHandle[Goal, Result, Feedback]):
         self._server.send_feedback(self._id, feedback)
 
 
-class ActionServer(Part, Generic[Goal, Result, Feedback]):
+class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     """A running action server.
 
     Args:
         callback: The handler: takes the `ServerGoalHandle`, returns the result.
-        accept: Called with the goal's message before it is accepted; False rejects it. May be `async def`.
+        accept: Called with the goal's message before it is accepted; False rejects it, and so does a text that says
+            why. May be `async def`.
         cancellable: Whether cancel requests are granted; or a function of the `ServerGoalHandle` that decides.
     """
+
+    MAKER = 'create_action_server(Type, "name", self.execute), or declare @action(Type, "name") on the method'
 
     def __init__(
         self,
@@ -173,6 +182,7 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
 
     def open(self) -> None:
         self._clock = self.host.clock
+        self.host.context.reasons.open()  # before a client can send a goal
         tell = (self._run, self._finished, self.host.full_name)
         is_serial = self.rules.policy != "parallel"
         spec = RunnerSpec(self._label, *tell, "action", self._refused, is_serial=is_serial)
@@ -202,45 +212,65 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
         goal_id = bytes(request.goal_id.uuid)
         if goal_id in self._deciding:  # asked twice, by a client that has not received the response
             await self._deciding[goal_id].decided.wait()
-        elif goal_id not in self.book.goals and self._may_take():
-            await self._decide(goal_id, request.goal, client)
+        elif goal_id not in self.book.goals:
+            reason = self._why_full() or await self._decide(goal_id, request.goal, client)
+            if reason:
+                self.host.context.reasons.note(goal_id, reason)
+                self.host.log.info("%s: goal %s is rejected: %s", self._label, goal_id.hex()[:8], reason)
         known = self.book.goals.get(goal_id)
         if known is None:
             return self._send_response(accepted=False)
         return self._send_response(accepted=True, stamp=_stamp(known.accepted_ns))
 
-    def _may_take(self) -> bool:
-        return self.runner is not None and not self.runner.closed and self.book.has_room()
+    def _why_full(self) -> str:
+        """Why no goal can be taken now; empty if one can."""
+        if self.runner is None or self.runner.closed:
+            return "the server stops"
+        if self.book.has_room():
+            return ""
+        if self.rules.policy == "queue":
+            return f"{self.rules.queue_depth} goals wait for their turn already"
+        return "another goal is under way, and policy='reject' allows one at a time; others: queue, preempt, parallel"
 
-    async def _decide(self, goal_id: bytes, request: Goal, client: bytes) -> None:
-        """Find out whether a goal is accepted."""
+    async def _decide(self, goal_id: bytes, request: Goal, client: bytes) -> str:
+        """Find out whether a goal is accepted; returns why not, empty if it is."""
         goal = ServedGoal(self, goal_id, request, self.book.ask(goal_id, client))
         self._deciding[goal_id] = goal
-        is_accepted = False
+        reason = "the server stops"
         try:
-            is_accepted = await self._is_wanted(request) and self._may_take()
+            reason = await self._why_unwanted(request) or self._why_full()
         finally:
             del self._deciding[goal_id]
-            self._step(goal, GoalEvent.ACCEPTED if is_accepted else GoalEvent.REFUSED)
+            self._step(goal, GoalEvent.REFUSED if reason else GoalEvent.ACCEPTED)
             goal.decided.set()
         if not goal.is_over:
             self._forget_old()
             # Its response goes out first.
             self.host.context.loop.call_soon(self._step, goal, GoalEvent.ANSWERED)
+        return reason
 
-    async def _is_wanted(self, goal: Goal) -> bool:
+    async def _why_unwanted(self, goal: Goal) -> str:
+        """What `accept` has against a goal; empty for nothing."""
         if self._accept is None:
-            return True
+            return ""
         limit = self.rules.accept_limit
+        name = getattr(self._accept, "__name__", "accept")
         try:
             async with asyncio.timeout(limit):
                 answer = self._accept(goal)
-                return bool(await answer if isawaitable(answer) else answer)
+                answer = await answer if isawaitable(answer) else answer
         except TimeoutError:
-            self.host.log.warning("%s: accept took more than %g s; the goal is rejected", self._label, limit)
+            return f"{name} took more than {limit:g} s to decide"
+        except Abort as error:
+            return str(error) or f"{name} refused it"
         except Exception as error:
-            self.host.report_error(f"{self._label}: accept", error)
-        return False
+            self.host.report_error(f"{self._label}: {name}", error)
+            return f"{name} failed: {type(error).__name__}: {error}"
+        if isinstance(answer, str):
+            return answer
+        if answer is None:
+            return f"{name} returned None: it has to return True, or False, or the reason why not"
+        return "" if answer else f"{name} returned {answer!r}"
 
     def _cancel_goal(self, request: Any, client: bytes) -> Any:
         info = request.goal_info
@@ -274,11 +304,6 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
             with self.host.context.ledger.serving(ended, goal.goal_id):
                 await ended
         return self._get_response(status=int(goal.status), result=goal.result)
-
-    def why_aborted(self, request: Any) -> str:
-        """Why the goal whose result is requested was aborted; empty if it was not."""
-        goal = self.goals.get(bytes(request.goal_id.uuid))
-        return "" if goal is None else goal.reason
 
     def client_gone(self, client: bytes) -> None:
         """A client's token is gone; it may come back."""
@@ -366,12 +391,16 @@ class ActionServer(Part, Generic[Goal, Result, Feedback]):
                 result = self.result_class()
             error = self._why_no_result(result)
         if error is None:
+            if goal.record.phase is Phase.CANCELING:
+                self.host.log.warning("%s: %r was cancelled, and %s", self._label, goal, _RETURNED_ALL_THE_SAME)
             self._step(goal, GoalEvent.RETURNED, result)
         elif isinstance(error, CancelledError):
             self._step(goal, GoalEvent.UNWOUND)
         else:
             given = error.result if isinstance(error, Abort) else None
             goal.reason = str(error) if isinstance(error, Abort) else f"{type(error).__name__}: {error}"
+            if goal.reason:
+                self.host.context.reasons.note(goal.goal_id, goal.reason)
             if not isinstance(error, Abort):
                 self.host.report_error(self._label, error)
             elif goal.reason:
@@ -441,12 +470,6 @@ class _GoalService(ServiceServer[Any, Any]):
     def _invoke(self, request: Any) -> Any:
         asked = attachment.unpack((request.attachment or b"")[: attachment.SIZE])
         return self._callback(self._requests.decode(request.payload), asked.gid)
-
-    def _note(self, request: Any) -> bytes:
-        """A note that graphflow's own clients understand: why the goal whose result they request was aborted."""
-        if not (isinstance(request, DirectRequest) and self.name.endswith("/get_result")):
-            return b""
-        return self._server.why_aborted(self._requests.decode(request.payload)).encode()[:NOTE_LIMIT]
 
     def _matched(self, other: Entity, alive: bool) -> None:
         super()._matched(other, alive)

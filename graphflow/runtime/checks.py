@@ -6,8 +6,6 @@ Every check raises DeclarationError.
 from __future__ import annotations
 
 import inspect
-import sys
-from pathlib import Path
 from typing import Any, get_args
 
 from graphflow.errors import DeclarationError, InvalidName, Place
@@ -17,17 +15,8 @@ from graphflow.msgs.base import Message
 from graphflow.names import expand
 from graphflow.qos import Qos
 
-_ROOM = str(Path(__file__).parent)
 DEPTH = 10
 """The depth of a queue when none is given."""
-
-
-def here(depth: int = 2) -> Place:
-    """Where the calling function was called, or what called that, as far as it is of this room."""
-    frame = sys._getframe(depth)
-    while frame.f_code.co_filename.startswith(_ROOM) and frame.f_back is not None:
-        frame = frame.f_back
-    return Place(frame.f_code.co_filename, frame.f_lineno)
 
 
 def check_type(type_: Any, kind: type, what: str, place: Place) -> None:

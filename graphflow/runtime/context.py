@@ -21,6 +21,7 @@ from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.direct import Switchboard
+from graphflow.runtime.reasons import Reasons
 from graphflow.transport.base import Closable, Session
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
@@ -65,6 +66,8 @@ class Context:
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self.switchboard = Switchboard(session, domain, self.loop)
         """Calls to and from other graphflow processes."""
+        self.reasons = Reasons(session, domain)
+        """Why goals did not come to their end."""
         self.call_timeout = call_timeout
         self.nodes: list[Subject] = []
         """The nodes that run here."""
@@ -241,6 +244,7 @@ class Context:
         """Leave the network. Nodes must have been stopped before."""
         self.search.close()
         self._inspection.close()
+        self.reasons.close()
         if self._link is not None:
             await asyncio.to_thread(self._link.close)
         if self._takeover is not None:

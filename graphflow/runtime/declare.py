@@ -16,8 +16,10 @@ from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.interface import Parameter, WhenFull, type_of
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Qos
-from graphflow.runtime.checks import check_group, check_name, check_on_event, check_qos, check_type, here
+from graphflow.runtime.checks import check_group, check_name, check_on_event, check_qos, check_type
+from graphflow.runtime.dictionary import MadeByNodes, in_our_words
 from graphflow.runtime.params import Parameters
+from graphflow.runtime.place import here
 from graphflow.runtime.service_events import Introspection
 
 if TYPE_CHECKING:
@@ -93,7 +95,7 @@ class Group:
         return f"Group({self.name or 'unnamed'}, limit={self.limit})"
 
 
-class Held:
+class Held(MadeByNodes):
     """A declaration that is an attribute of the class; on a node it gives what the node holds."""
 
     attribute = ""
@@ -113,6 +115,8 @@ class Publisher(Held, Generic[M]):
         depth: The same as a number for `qos`.
         on_event: A method defined above it, called with each `QosEvent`.
     """
+
+    MAKER = 'create_publisher(Type, "topic", 10), or declare Publisher(Type, "topic") in the class'
 
     def __init__(
         self,
@@ -144,6 +148,8 @@ class Subscription(Held, Generic[M]):
     Args:
         ignore_local: Leave out what this process publishes itself.
     """
+
+    MAKER = 'create_subscription(Type, "topic", self.heard, 10), or declare @subscription(Type, "topic") on the method'
 
     def __init__(
         self,
@@ -179,6 +185,8 @@ class Client(Held, Generic[Request, Response]):
             need none.
     """
 
+    MAKER = 'create_client(Type, "name"), or declare Client(Type, "name") in the class'
+
     def __init__(
         self,
         type: type[Service[Request, Response]],  # noqa: A002
@@ -203,6 +211,8 @@ class Client(Held, Generic[Request, Response]):
 
 class ActionClient(Held, Generic[Goal, Result, Feedback]):
     """An action whose goals the node sends: `async with self.fibonacci.send(Fibonacci.Goal(order=10)) as goal`."""
+
+    MAKER = 'create_action_client(Type, "name"), or declare ActionClient(Type, "name") in the class'
 
     def __init__(self, type: type[Action[Goal, Result, Feedback]], name: str) -> None:  # noqa: A002
         self.place = here()
@@ -231,6 +241,7 @@ class Param(Held, Generic[V]):
         name: Its name, if not that of the attribute.
     """
 
+    @in_our_words
     def __init__(
         self,
         default: V,

@@ -5,9 +5,17 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
-from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from functools import cache, wraps
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, ParamSpec, Self, TypeVar
+
+from graphflow.errors import DeclarationError
+from graphflow.runtime.place import here
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Word(NamedTuple):
@@ -17,11 +25,15 @@ class Word(NamedTuple):
         ros: How it is written with rclpy.
         here: How it is written with graphflow.
         attributes: Attributes of rclpy's objects that ours do not have: who uses them is told `here`.
+        keywords: Keywords of rclpy's calls, likewise.
+        names: Names that are imported from rclpy, likewise.
     """
 
     ros: str
     here: str
     attributes: str = ""
+    keywords: str = ""
+    names: str = ""
 
 
 WORDS = (
@@ -63,7 +75,7 @@ WORDS = (
     ),
     Word(
         '`get_parameter("rate").value`',
-        '`self.rate`, or `self.parameters.get("rate")`',
+        '`self.parameters.get("rate")`; `self.rate` where the class has `rate = Param(1.0)`',
         "get_parameter get_parameters get_parameter_or get_parameters_by_prefix get_parameter_type get_parameter_types",
     ),
     Word('`has_parameter("rate")`', '`"rate" in self.parameters`', "has_parameter"),
@@ -83,7 +95,12 @@ WORDS = (
         "a method with `@rate.on_change`, or `self.parameters.observe(f)`",
         "add_post_set_parameters_callback",
     ),
-    Word("`ParameterDescriptor`, ranges", '`Param(1.0, ge=0.0, le=5.0, step=0.5, doc="...", read_only=True)`'),
+    Word(
+        "`ParameterDescriptor`, ranges",
+        '`Param(1.0, ge=0.0, le=5.0, step=0.5, doc="...", read_only=True)`; `declare_parameter` takes them too',
+        keywords="descriptor min max",
+        names="ParameterDescriptor",
+    ),
     Word("`dynamic_typing=True`", '`self.declare_parameter("name", 1, dynamic=True)`'),
     Word("`undeclare_parameter`", "the same"),
     Word("a callback with `(msg, info)`", "a method with a third argument, `info: MessageInfo`"),
@@ -116,17 +133,24 @@ WORDS = (
     ),
     Word("`publisher.get_subscription_count()`", "the same"),
     Word("`publisher.topic_name`, `client.srv_name`", "`.name`", "topic topic_name srv_name service_name"),
-    Word("`QoSProfile(depth=1, durability=...)`", "`Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)`"),
+    Word(
+        "`QoSProfile(depth=1, durability=...)`, `qos_profile=`",
+        "`Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)`, `qos=`",
+        keywords="qos_profile",
+        names="QoSProfile",
+    ),
     Word(
         "`MutuallyExclusiveCallbackGroup()`",
         "`Group(1)`; a class's `default_group = Group(1)` is rclpy's default",
         "default_callback_group",
+        names="MutuallyExclusiveCallbackGroup",
     ),
-    Word("`ReentrantCallbackGroup()`", "`Group(None)`"),
-    Word("`callback_group=`", "`group=`, with a `Group` of the class"),
+    Word("`ReentrantCallbackGroup()`", "`Group(None)`", names="ReentrantCallbackGroup"),
+    Word("`callback_group=`", "`group=`, with a `Group` of the class", keywords="callback_group"),
     Word(
         "`SingleThreadedExecutor`, `MultiThreadedExecutor`",
         "one event loop per process; `thread=True` and `await self.offload(f)` for code that blocks",
+        names="SingleThreadedExecutor MultiThreadedExecutor",
     ),
     Word(
         "`destroy_publisher(p)` and so on",
@@ -140,7 +164,26 @@ WORDS = (
     ),
     Word(
         '`ActionServer(node, Type, "name", execute)`',
-        '`@action(Type, "name")` on the method, or `create_action_server`',
+        '`@action(Type, "name")` on the method, or `self.create_action_server(Type, "name", self.execute)`',
+        keywords="execute_callback",
+    ),
+    Word(
+        "`goal_callback=`, `GoalResponse.REJECT`",
+        "`accept=`, a method that returns True, False, or a text that says why not, for the client",
+        keywords="goal_callback",
+        names="GoalResponse",
+    ),
+    Word(
+        "`cancel_callback=`, `CancelResponse.REJECT`",
+        "`cancellable=`: True, False, or a method that takes the goal and decides",
+        keywords="cancel_callback",
+        names="CancelResponse",
+    ),
+    Word(
+        "`handle_accepted_callback=`, `goal_handle.execute()`",
+        "`policy=`: `reject`, `queue`, `preempt` or `parallel`",
+        "execute",
+        keywords="handle_accepted_callback",
     ),
     Word(
         '`ActionClient(node, Type, "name")`',
@@ -172,26 +215,68 @@ WORDS = (
 )
 
 
+Kind = Literal["attributes", "keywords", "names"]
+
+
 @cache
-def _by_attribute() -> dict[str, Word]:
-    return {name: word for word in WORDS for name in word.attributes.split()}
+def _by(kind: Kind) -> dict[str, Word]:
+    return {name: word for word in WORDS for name in getattr(word, kind).split()}
 
 
-def translation(attribute: str) -> str:
-    """What an attribute of rclpy's is called here; empty for one that is not rclpy's."""
-    word = _by_attribute().get(attribute)
+def translation(name: str, kind: Kind = "attributes") -> str:
+    """What something of rclpy's is called here; empty for what is not rclpy's."""
+    word = _by(kind).get(name)
     return "" if word is None else f"here it is {word.here}".replace("`", "")
+
+
+def in_our_words(function: Callable[P, T]) -> Callable[P, T]:
+    """A function that answers rclpy's keywords, and arguments that go by name here, with what to write."""
+    parameters = inspect.signature(function).parameters.values()
+    named = {p.name for p in parameters}
+    first = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+    rest = [f"{p.name}=" for p in parameters if p.kind is p.KEYWORD_ONLY]
+    rest += [p.name for p in parameters if p.kind is p.VAR_KEYWORD]
+    called = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+
+    @wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> T:
+        for word in kwargs.keys() - named:
+            if hint := translation(word, "keywords"):
+                raise DeclarationError(f"{here()}: {called} has no {word}=; {hint}")
+        if len(args) > len(first):
+            taken = ", ".join(name for name in first if name != "self")
+            more = f"; what follows goes by name: {', '.join(rest)}" if rest else ""
+            raise DeclarationError(f"{here()}: {called} takes {taken}{more}")
+        return function(*args, **kwargs)
+
+    return checked
+
+
+class MadeByNodes:
+    """What nodes make: rclpy's constructors, which take the node first, are answered with what to write."""
+
+    MAKER: ClassVar[str] = ""
+    """How a node makes one: `create_timer(1.0, self.tick)`."""
+
+    def __new__(cls, *args: object, **_: object) -> Self:
+        if args and hasattr(type(args[0]), "create_subscription"):
+            raise DeclarationError(f"{here()}: {cls.__name__} takes no node; write self.{cls.MAKER}")
+        return super().__new__(cls)
 
 
 class SpeaksRos:
     """A class whose AttributeErrors say what rclpy's attributes are called here."""
+
+    def _hint(self, name: str) -> str:
+        """What else could be meant by an attribute that is not there."""
+        return ""
 
     if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
 
         def __getattr__(self, name: str) -> object:
             """Raise AttributeError: this is called for what is not there."""
             text = f"{type(self).__name__!r} object has no attribute {name!r}"
-            hint = translation(name)
+            hint = translation(name) or self._hint(name)
             raise AttributeError(f"{text}; {hint}" if hint else text, name=name, obj=self)
 
 

@@ -15,16 +15,10 @@ from graphflow.executor.clock import period_ns
 from graphflow.interface import GoalPolicy, HandlerKind, OnClientLoss, OnError
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Qos
-from graphflow.runtime.checks import (
-    check_group,
-    check_name,
-    check_on_error,
-    check_on_event,
-    check_qos,
-    check_type,
-    here,
-)
+from graphflow.runtime.checks import check_group, check_name, check_on_error, check_on_event, check_qos, check_type
 from graphflow.runtime.declare import Group, Param
+from graphflow.runtime.dictionary import in_our_words
+from graphflow.runtime.place import here
 from graphflow.runtime.service_events import Introspection
 
 M = TypeVar("M", bound=Message)
@@ -120,6 +114,7 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
     return fn
 
 
+@in_our_words
 def subscription(
     type: type[M],  # noqa: A002
     name: str,
@@ -153,6 +148,7 @@ def subscription(
     return lambda fn: _mark(fn, handler, range(2, 4))
 
 
+@in_our_words
 def timer(
     period: float | Param[Any] | None = None,
     *,
@@ -182,6 +178,7 @@ def timer(
     return lambda fn: _mark(fn, handler, range(1, 3))
 
 
+@in_our_words
 def service(
     type: type[Service[Request, Response]],  # noqa: A002
     name: str,
@@ -205,6 +202,7 @@ def service(
     return lambda fn: _mark(fn, handler, range(2, 4))
 
 
+@in_our_words
 def action(
     type: type[Action[Goal, Result, Feedback]],  # noqa: A002
     name: str,
@@ -224,7 +222,8 @@ def action(
 
     Args:
         policy: What becomes of a goal that arrives while another runs: `reject`, `queue`, `preempt`, `parallel`.
-        accept: A method defined above it, called with each goal's message; False rejects the goal.
+        accept: A method defined above it, called with each goal's message; False rejects the goal, and so does a text
+            that says why.
         cancellable: Whether cancel requests are granted; or a method, called with the handle, that decides.
         on_client_loss: What becomes of a goal whose client has gone: `continue` or `cancel`.
         cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.

@@ -26,17 +26,17 @@ from graphflow.runtime.checks import (
     check_qos,
     check_text,
     check_type,
-    here,
     written_at,
 )
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import NodeCore
 from graphflow.runtime.declare import Group, Param
-from graphflow.runtime.dictionary import SpeaksRos
+from graphflow.runtime.dictionary import SpeaksRos, in_our_words
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.made import with_made
+from graphflow.runtime.place import here
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceServer
@@ -119,6 +119,12 @@ class Node(SpeaksRos):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.full_name}{' running' if self.is_running else ''}>"
 
+    def _hint(self, name: str) -> str:
+        core = vars(self).get("_core")
+        if core is None or name not in core.parameters:
+            return ""
+        return f'a parameter is read by self.parameters.get("{name}"), or declared in the class: {name} = Param(...)'
+
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
@@ -192,6 +198,7 @@ class Node(SpeaksRos):
         """Numbers since the start, by the name of each handler, endpoint and group."""
         return self._core.statistics()
 
+    @in_our_words
     def create_publisher(
         self, type_: type[M], name: str, qos: Qos | int = 10, *, on_event: OnEvent | None = None
     ) -> TopicPublisher[M]:
@@ -202,6 +209,7 @@ class Node(SpeaksRos):
         check_qos(qos, None, place)
         return core.add(TopicPublisher(core, type_, core.names.resolve(name), Qos.of(qos), on_event))
 
+    @in_our_words
     def create_subscription(
         self,
         type_: type[M],
@@ -240,6 +248,7 @@ class Node(SpeaksRos):
         made = TopicSubscription(core, type_, resolved, Qos.of(qos), call, label, slots, on_error=on_error, **options)
         return core.add(made, late=callback is not None)
 
+    @in_our_words
     def create_service(
         self,
         type_: type[Service[Request, Response]],
@@ -271,6 +280,7 @@ class Node(SpeaksRos):
         made.configure_introspection(introspection)
         return core.add(made, late=True)
 
+    @in_our_words
     def create_client(
         self,
         type_: type[Service[Request, Response]],
@@ -294,6 +304,7 @@ class Node(SpeaksRos):
         made.configure_introspection(introspection)
         return core.add(made)
 
+    @in_our_words
     def create_action_server(
         self,
         type_: type[Action[Goal, Result, Feedback]],
@@ -312,7 +323,7 @@ class Node(SpeaksRos):
 
         Args:
             policy: What becomes of a goal that arrives while another is under way.
-            accept: Called with each goal's message; False rejects it.
+            accept: Called with each goal's message; False rejects it, and so does a text that says why.
             cancellable: Whether cancel requests are granted, or a function of the handle that decides.
             on_client_loss: What becomes of a goal whose client has gone.
             cleanup_timeout: Seconds that a cancelled body has; then its goal counts as aborted.
@@ -328,6 +339,7 @@ class Node(SpeaksRos):
         options: dict[str, Any] = {"rules": rules, "accept": accept, "cancellable": cancellable}
         return core.add(ActionServer(core, type_, resolved, call, label, slots, **options), late=True)
 
+    @in_our_words
     def create_action_client(
         self, type_: type[Action[Goal, Result, Feedback]], name: str
     ) -> GoalClient[Goal, Result, Feedback]:
@@ -336,6 +348,7 @@ class Node(SpeaksRos):
         check_text(name, "create_action_client", here())
         return self._core.add(GoalClient(self._core, type_, self._core.names.resolve(name, "service")))
 
+    @in_our_words
     def create_timer(
         self,
         period: float,
@@ -361,6 +374,7 @@ class Node(SpeaksRos):
         made = Timer(self._core, nanoseconds, call, label, slots, takes_info=takes_info, on_error=on_error)
         return self._core.add(made, late=True)
 
+    @in_our_words
     def declare_parameter(self, name: str, default: Any, *, dynamic: bool = False, **limits: Any) -> Any:
         """Declare a parameter at run time; returns its value. `limits` as for `Param`.
 

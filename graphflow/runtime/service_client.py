@@ -23,7 +23,6 @@ from graphflow.errors import (
     ServerBusy,
     ServerLost,
     ServiceUnavailable,
-    printable,
 )
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
@@ -36,7 +35,7 @@ from graphflow.runtime.direct import ClientLine
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.host import Host
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
-from graphflow.runtime.services import NOTE_LIMIT, STOPPING
+from graphflow.runtime.services import STOPPING
 from graphflow.times import to_ns
 from graphflow.transport.base import Answer, Caller
 from graphflow.wire import attachment
@@ -174,10 +173,6 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             EncodeError: The request does not fit its type.
             DecodeError: The response is malformed.
         """
-        return (await self.call_noted(request, timeout=timeout))[0]
-
-    async def call_noted(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> tuple[Response, str]:
-        """As `call`, with the note that a graphflow server has added; empty if there is none."""
         if request.__class__ is not self._request:
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
         payload = self._requests.encode(request)
@@ -195,8 +190,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         )
         message: Response = self._responses.decode(answer.payload)
         self._service_events.tell(ServiceEvent.RESPONSE_RECEIVED, gid, sequence, response=message)
-        note = (answer.attachment or b"")[attachment.SIZE : attachment.SIZE + NOTE_LIMIT]
-        return message, printable(note.decode(errors="replace")) if note else ""
+        return message
 
     def _reaches_server(self) -> bool:
         self._announced()

@@ -28,8 +28,6 @@ from graphflow.wire.liveliness import Entity, Kind
 
 REQUEST_QUEUE = 64
 """Requests that may wait for a service; any more are refused with ServerBusy."""
-NOTE_LIMIT = 1_000
-"""Longest note sent with a response, in bytes."""
 
 STOPPING = RemoteError("Cancelled", "the server is stopping")
 """What a stopping server answers; no exception class has that name."""
@@ -160,7 +158,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
             return
         asked = attachment.unpack(request.attachment[: attachment.SIZE])
         now = self.host.context.clock.time_ns()
-        request.reply(payload, attachment.pack(asked.sequence, now, asked.gid) + self._note(request))
+        request.reply(payload, attachment.pack(asked.sequence, now, asked.gid))
         self._service_events.tell(ServiceEvent.RESPONSE_SENT, asked.gid, asked.sequence, response=result)
 
     def _told(self, error: BaseException) -> str:
@@ -169,10 +167,6 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         if not rest or not isinstance(error, DeadlockError):
             return str(error)
         return f"{head}; explained in the log of {self.host.full_name}"
-
-    def _note(self, request: Any) -> bytes:
-        """What is added to the attachment of a response."""
-        return b""
 
     def statistics(self) -> dict[str, Any]:
         """Requests answered or under way, failed, waiting and refused."""

@@ -53,8 +53,8 @@ def watch_key(domain: int) -> str:
     return f"@graphflow/{domain}/proc/**"
 
 
-WAITS, NUMBERS, LOOK, GROUPS = "waits", "numbers", "look", "groups"
-"""What a process answers; see `deadlock.inspection`."""
+WAITS, NUMBERS, LOOK, GROUPS, GOALS = "waits", "numbers", "look", "groups", "goals"
+"""What a process answers; see `deadlock.inspection` and `runtime.reasons`."""
 
 
 def answer_key(domain: int, what: str, zid: str = "*") -> str:

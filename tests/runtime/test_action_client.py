@@ -21,10 +21,10 @@ from graphflow import (
 )
 from graphflow.errors import EncodeError
 from graphflow.msgs.example_interfaces.action import Fibonacci
-from graphflow.runtime import action_client, service_client
+from graphflow.runtime import action_client
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
-from graphflow.runtime.direct import ServerLines
+from graphflow.runtime.reasons import Reasons
 from graphflow.testing import Graph
 from tests.runtime.cast import Asker, Log, Server, pair
 
@@ -148,7 +148,7 @@ REASONS = [
     (Abort("\x1b[2Jcleared\x9b31m\a"), "\\x1b[2Jcleared\\x9b31m\\x07"),
     (OSError("\x1b[2J"), "OSError: \\x1b[2J"),
     (Abort("x" * 100_000), "x" * 1000),
-    (Abort("ä" * 100_000), "ä" * 500),
+    (Abort("ä" * 100_000), "ä" * 1000),
 ]
 
 
@@ -178,23 +178,12 @@ async def aborted(graph: Graph, error: Exception, caplog: pytest.LogCaptureFixtu
 async def test_the_client_learns_why(
     graph: Graph, caplog: pytest.LogCaptureFixture, error: Exception, reason: str
 ) -> None:
-    """The reason comes with the result over a direct line, bounded and fit for a terminal; the log has it too."""
+    """The reason is asked for when the goal has been aborted; it is bounded, and fit for a terminal."""
     caught, said = await aborted(graph, error, caplog)
 
     assert str(caught) == f"/fibonacci aborted the goal: {reason}"
     assert list(caught.result.sequence) == [4]  # type: ignore[attr-defined]
-    [line] = said
-    assert line.endswith(f" was aborted: {reason}")
-
-
-async def test_a_server_sends_no_more_of_a_reason_than_clients_take(
-    graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What is too long does not travel, also if the client would take it."""
-    monkeypatch.setattr(service_client, "NOTE_LIMIT", 1_000_000)
-    caught, _ = await aborted(graph, Abort("x" * 100_000), caplog)
-
-    assert str(caught).count("x") == 1000
+    assert said == []
 
 
 async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
@@ -207,8 +196,8 @@ async def test_an_abort_without_a_reason(graph: Graph, caplog: pytest.LogCapture
 async def test_ros_2_knows_no_reasons(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A server that answers by queries alone, as other programs do, sends what ROS 2 sends and nothing beside it."""
-    monkeypatch.setattr(ServerLines, "client_came", lambda self, client: None)
+    """A server of another kind has nobody to ask."""
+    monkeypatch.setattr(Reasons, "note", lambda *_: None)
     caught, said = await aborted(graph, Abort("the way is blocked"), caplog)
 
     assert (str(caught), said) == ("/fibonacci aborted the goal", [])

@@ -296,6 +296,7 @@ async def test_a_server_that_stops_aborts_its_goals(graph: Graph) -> None:
     goals = [await asker.order(n) for n in (1, 2)]
     await graph.settle()
     await graph.stop(server)
+    await graph.settle()
 
     assert [goal.status.name for goal in goals] == ["ABORTED", "ABORTED"]
 

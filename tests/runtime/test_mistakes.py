@@ -26,7 +26,8 @@ from tests.conftest import PROJECT
 
 PAGE = PROJECT / "docs" / "mistakes.md"
 HEAD = """\
-from graphflow import Client, Node, Param, Publisher, service, subscription, timer
+from graphflow import ActionClient, Client, Node, Param, Publisher, action, service, subscription, timer
+from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 """
@@ -51,7 +52,8 @@ def init(line: str) -> Mistake:
 
 def ticking(line: str) -> Mistake:
     """A line of a timer."""
-    held = "adder = Client(AddTwoInts, 'ad')\nwords = Publisher(String, 'words')\nrate = Param(1.0, gt=0.0)\n"
+    held = "goals = ActionClient(Fibonacci, 'fibonaci')\nadder = Client(AddTwoInts, 'ad')\n"
+    held += "words = Publisher(String, 'words')\nrate = Param(1.0, gt=0.0)\n"
     served = "@service(AddTwoInts, 'add')\ndef add(self, request):\n    return True\n"
     return Mistake(f"{held}{served}@timer(0.1)\nasync def tick(self):\n    {line}", line)
 
@@ -66,6 +68,7 @@ MISTAKES = {
         imported("from std_msgs.msg import String"),
         imported("from graphflow.msgs.std_msg.msg import String"),
         imported("from graphflow.msgs.std_msgs.msg import Strin"),
+        imported("from graphflow import GoalResponse"),
         body("@timer\ndef tick(self): ...", "@timer"),
         body("@timer(0)\ndef tick(self): ...", "@timer(0)"),
         body("@timer(hz='fast')\ndef tick(self): ...", "@timer(hz='fast')"),
@@ -73,6 +76,12 @@ MISTAKES = {
         body('@subscription(String, "chatter")\ndef heard(self): ...', "def heard(self): ..."),
         body('@service(AddTwoInts.Request, "add")\ndef add(self, request): ...', '@service(AddTwoInts.Request, "add")'),
         body('@service(AddTwoInts, "add")\ndef add(self): ...', "def add(self): ..."),
+        body(
+            '@action(Fibonacci, "count", goal_callback=print)\ndef count(self, goal): ...',
+            '@action(Fibonacci, "count", goal_callback=...)',
+        ),
+        body("goals = ActionClient('fibonacci', Fibonacci)"),
+        body("rate = Param(1.0, min=0.0)"),
         body("@timer(1.0, thread=True)\nasync def tick(self): ...", "@timer(1.0, thread=True)"),
         body("@timer(1.0, group=2)\ndef tick(self): ...", "@timer(1.0, group=2)"),
         body("words = Publisher(String, 'my words')"),
@@ -91,6 +100,10 @@ MISTAKES = {
         init('self.create_publisher(String, "my words", 10)'),
         init('self.declare_parameter("rate", None)'),
         init('self.get_parameter("rate")'),
+        init('self.declare_parameter("rate", 1.0); self.rate'),
+        init('self.declare_parameter("rate", 1.0, "a descriptor")'),
+        init('ActionClient(self, Fibonacci, "fibonacci")'),
+        init('self.create_action_server(Fibonacci, "count", self.tick, goal_callback=print)'),
     ],
     "when it runs": [
         ticking("self.adder.call(AddTwoInts.Request())"),
@@ -103,6 +116,13 @@ MISTAKES = {
         ticking('self.words.publish("hello")'),
         ticking('self.rate = "fast"'),
         ticking("self.rate = -1.0"),
+        ticking("Fibonacci(order=3)"),
+        ticking("Fibonacci.Goal(ordr=3)"),
+        ticking("Fibonacci.Goal(3)"),
+        ticking("Fibonacci.Goal().ordr"),
+        ticking("goal = await self.goals.send(Fibonacci.Goal())"),
+        ticking("goal = self.goals.send(Fibonacci.Goal()); goal.feedback"),
+        ticking("goal = await self.goals.send_goal(Fibonacci.Goal())"),
         ticking('await self.create_client(AddTwoInts, "add").call(AddTwoInts.Request())'),
     ],
 }

@@ -13,7 +13,6 @@ from graphflow.errors import ClosedError, LoopBlockedError
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.service_client import ServiceClient
-from graphflow.runtime.services import ServiceServer
 from graphflow.testing import Graph
 from graphflow.transport.base import Inbox
 from graphflow.wire import attachment
@@ -354,19 +353,6 @@ async def test_an_error_text_clears_no_screen(graph: Graph) -> None:
 
     assert caught.value.message == "\\x1b[2Jone\ntwo\\x9b31m"
     assert str(caught.value) == f"the handler of /add raised ValueError: {caught.value.message}"
-
-
-async def test_a_note_is_bounded_and_cannot_be_obeyed(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A server's note comes with the response, a thousand bytes of it, spelt out where a terminal would obey."""
-    notes = [b"", b"\x1b[2Jbe\xff", b"x" * 100_000]
-    monkeypatch.setattr(ServiceServer, "_note", lambda self, request: notes.pop(0))
-    await graph.start(Adder())
-    client = await client_of(graph)
-
-    got = [await client.call_noted(AddTwoInts.Request(a=1, b=2)) for _ in range(3)]
-
-    assert [response.sum for response, _ in got] == [3, 3, 3]
-    assert [note for _, note in got] == ["", "\\x1b[2Jbe\N{REPLACEMENT CHARACTER}", "x" * 1000]
 
 
 async def test_calling_from_a_thread(graph: Graph) -> None:
