@@ -23,11 +23,11 @@ MAX_LENGTH = 255
 """Characters in a full name, as in rmw."""
 
 
-def nearest(word: str, choices: Iterable[str]) -> str | None:
-    """The choice most like `word`, or None when none is like it."""
+def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | None:
+    """The choice most like `word`, or None when none is like it; `cutoff` is 1 for the very same."""
     import difflib  # only after a mistake
 
-    found = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
+    found = difflib.get_close_matches(word, list(choices), n=1, cutoff=cutoff)
     return found[0] if found else None
 
 

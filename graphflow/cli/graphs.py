@@ -20,6 +20,9 @@ from graphflow.wire.profile import PROFILES, VARIABLE
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 _everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
 
+PS_LIMIT = 1.0
+"""Seconds that a supervisor has to say how its nodes are."""
+
 
 @click.command()
 @click.argument("graph", metavar="GRAPH.yaml|NAME")
@@ -141,18 +144,26 @@ def ps(name: str | None, everything: bool, as_json: bool) -> int:
     from graphflow.supervisor.control import ControlClient
 
     runs = [rundir.choose(name)] if name else rundir.running_here(everything=everything)
-    rows = []
+    rows, silent = [], []
     for run in runs:
-        with ControlClient(run.socket) as client:
-            client.send(do="ps")
-            answer = next(client.receive(), None)
+        try:
+            with ControlClient(run.socket) as client:
+                client.send(do="ps")
+                answer = next(client.receive(PS_LIMIT), None)
+        except SupervisorError:
+            silent.append(run)
+            continue
         for node in (answer or {}).get("nodes", []):
             rows.append({"graph": run.graph, "domain": run.domain, **node})
     if as_json:
         output.as_json(rows)
-        return exits.OK
-    output.lines(_table(rows))
-    return exits.OK
+    elif rows:
+        output.lines(_table(rows))
+    for run in silent:
+        output.error(
+            f"the supervisor of {run.graph} (process {run.pid}) does not answer; if it is stopped: kill -CONT {run.pid}"
+        )
+    return exits.TIMEOUT if silent else exits.OK
 
 
 def _table(rows: list[dict[str, Any]]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from typing import Any
 
 import click
@@ -11,11 +12,15 @@ from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.errors import CallTimeout, RemoteError, UsageFault
 from graphflow.introspect import concurrency as found
+from graphflow.introspect.health import examine
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
+from graphflow.wire.process import NUMBERS, answer_key
 
 ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
+BETWEEN_LOOKS = 0.5
+"""Seconds between two looks at what nodes have counted."""
 
 
 def _read(view: View) -> found.ConcurrencyReport:
@@ -148,12 +153,17 @@ def move(node: str, handlers: tuple[str, ...], group: str, timeout: float) -> No
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def doctor(as_json: bool) -> int:
     """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
-    that are blocked or were late, endpoints that do not match.
+    that are blocked or were late, endpoints that do not match, nodes of one name, nodes that hear themselves, lost
+    messages, floods in logs, topics that nobody publishes.
 
-    Exit code 1 when there is one; late loops alone do not count.
+    Exit code 1 when there is one; late loops alone do not count, nor does what may be meant so.
     """
     with View(domain_id()) as view:
+        counted, began = view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), time.monotonic()
         read = _read(view)
+        time.sleep(max(0.0, began + BETWEEN_LOOKS - time.monotonic()))
+        again = view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT)
+        health = examine(view, counted, again, time.monotonic() - began)
         misfits = list(complaints(view.cache))
         unresponsive = found.unresponsive(read, view)
         ours = view.processes()
@@ -172,11 +182,13 @@ def doctor(as_json: bool) -> int:
         "unresponsive": unresponsive,
         "blocked": blocked,
         "misfits": misfits,
+        "health": health.faults,
     }
     if as_json:
-        output.as_json({**faults, "late": late, "silent": others})
+        output.as_json({**faults, "late": late, "hints": health.hints, "silent": others})
     else:
-        output.lines([*(f"{text}\n" for text in read.reports + read.stalls), *unresponsive, *blocked, *misfits, *late])
+        output.lines(f"{text}\n" for text in read.reports + read.stalls)
+        output.lines([*unresponsive, *blocked, *misfits, *health.faults, *late, *health.hints])
         if others:
             output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(others)}")
         if read.unreadable:

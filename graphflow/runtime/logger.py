@@ -45,6 +45,8 @@ class NodeLogger(logging.Logger):
         self._last: dict[_Site, float] = {}
         self._flows: dict[_Site, _Flow] = {}
         self._lock = threading.Lock()
+        self.gathered = 0
+        """Lines that were only counted."""
 
     if TYPE_CHECKING:  # what Python's own methods hand on to `_log`
 
@@ -124,6 +126,7 @@ class NodeLogger(logging.Logger):
             flow.count += 1
             if flow.count > FREE or flow.is_flood:
                 flow.unsaid += 1
+                self.gathered += 1
                 return None
             return ""
 

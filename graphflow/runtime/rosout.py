@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import sys
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import GraphflowError, harmless
 from graphflow.names import did_you_mean
@@ -74,6 +74,15 @@ class Rosout(logging.Handler, Part):
         self._host = host
         self._thread = 0
         self._publisher = TopicPublisher(host, Log, "/rosout", ROSOUT)
+        self._lines = 0
+
+    @property
+    def title(self) -> str:
+        return "log"
+
+    def statistics(self) -> dict[str, Any]:
+        """Lines that the node has logged, and those that were gathered into others."""
+        return {"lines": self._lines, "gathered": getattr(self._host.log, "gathered", 0)}
 
     def open(self) -> None:
         self._thread = threading.get_ident()
@@ -93,6 +102,7 @@ class Rosout(logging.Handler, Part):
     def emit(self, record: logging.LogRecord) -> None:
         if not self._host.is_running or not self._is_ours(record):
             return
+        self._lines += 1
         loop = self._host.context.loop
         if threading.get_ident() == self._thread:
             self._publish(record)

@@ -26,6 +26,8 @@ M = TypeVar("M", bound=Message)
 
 KEEP_ALL_BOUND = 10_000
 """Messages that a KEEP_ALL subscription holds before it counts losses."""
+LOSS_TOLD = 100
+"""Messages dropped from the queue from which on the loss of most is told."""
 SOURCES_BOUND = 4096
 """Publishers that a subscription keeps track of."""
 
@@ -206,6 +208,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, _Source] = {}
         self._gaps = 0
+        self._has_told_loss = False
         self._deadline: SilenceTimer | None = None
 
     def _open(self, key: str) -> None:
@@ -368,7 +371,17 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _count_missing(self, missing: int) -> None:
         """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
         self._gaps += missing
-        lost = self._gaps - self.dropped - self.lost
+        dropped = self.dropped
+        if not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
+            self._has_told_loss = True
+            self.host.log.warning(
+                "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "
+                "handler, give it a group of its own, or have less sent; graphflow doctor goes on counting",
+                self._label,
+                dropped,
+                self.received,
+            )
+        lost = self._gaps - dropped - self.lost
         if lost > 0:
             self._tell("message_lost", lost)
 

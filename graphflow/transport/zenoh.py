@@ -17,13 +17,13 @@ import asyncio
 import logging
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import zenoh
 from zenoh.handlers import Callback
 
 from graphflow.domain import rendezvous_endpoint
-from graphflow.qos import Durability, Qos, Reliability
+from graphflow.qos import Durability, History, Qos, Reliability
 from graphflow.transport.base import EARLY, Answer, Bell, Inbox, Payload
 from graphflow.transport.config import (
     QUERY_LIMIT_MS,
@@ -33,6 +33,8 @@ from graphflow.transport.config import (
     open_session,
 )
 
+DEEP = 100
+"""Depth of a queue from which on what it holds is copied out of the buffers of Zenoh."""
 logger = logging.getLogger("graphflow.transport")
 
 ASK_AGAIN = (0.5, 2.0)
@@ -253,7 +255,9 @@ class ZenohSession:
     def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> _Declared:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
-            return _Declared(self.raw.declare_subscriber(key, inbox.put, allowed_origin=origin))
+            is_deep = qos.history is History.KEEP_ALL or qos.depth > DEEP
+            put = _copying(inbox) if is_deep else inbox.put
+            return _Declared(self.raw.declare_subscriber(key, put, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
         again = _AskingAgain(self, key, inbox) if reliable else None
@@ -353,6 +357,32 @@ class ZenohSession:
     async def close(self) -> None:
         await asyncio.to_thread(close_session, self.raw)
         self.bell.close()
+
+
+class _Bytes(bytes):
+    """A payload that is no longer Zenoh's."""
+
+    def to_bytes(self) -> bytes:
+        return self
+
+
+class _Copied(NamedTuple):
+    """A sample of which nothing is Zenoh's any more."""
+
+    payload: _Bytes
+    attachment: _Bytes | None
+    key_expr: str
+
+
+def _copying(inbox: Inbox) -> Callable[[zenoh.Sample], None]:
+    """Puts copies into a queue that may hold many: a sample keeps alive the whole buffer that it has arrived in."""
+
+    def put(sample: zenoh.Sample) -> None:
+        beside = sample.attachment
+        kept = None if beside is None else _Bytes(beside.to_bytes())
+        inbox.put(_Copied(_Bytes(sample.payload.to_bytes()), kept, str(sample.key_expr)))
+
+    return put
 
 
 def _nothing() -> None:

@@ -90,7 +90,16 @@ def test_the_doctor_tells_of_endpoints_that_do_not_fit(standing: Machine) -> Non
     found = json.loads(standing.look("doctor", "--json", code=1))
     assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
     found.pop("late")
-    assert found == {"deadlocks": [], "stalls": [], "unresponsive": [], "blocked": [], "silent": []}
+    hint = "/office/clerk calls /bank/add, which nobody offers"
+    assert found == {
+        "deadlocks": [],
+        "stalls": [],
+        "unresponsive": [],
+        "blocked": [],
+        "silent": [],
+        "health": [],
+        "hints": [hint],
+    }
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,157 @@
+"""What is wrong with a graph besides its waits: nodes that share a name, hear themselves, lose messages, log in floods,
+or listen where nobody speaks.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from graphflow.introspect.numbers import REPLY_BOUND
+from graphflow.introspect.view import View
+from graphflow.machines.cache import GraphCache
+from graphflow.names import is_hidden, nearest
+from graphflow.wire.liveliness import Kind
+
+FLOOD = 50.0
+"""Lines a second from which on a log is a flood."""
+ECHO = 1.0
+"""Messages a second that a node hears of itself, from which on that is told."""
+LOST_PART, LOST_LEAST = 0.5, 20
+"""Part of the messages, and number of them, from which on the loss is told."""
+_EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
+
+Counts = Mapping[tuple[str, str], Mapping[str, float]]
+"""What each part of each node has counted: by node and part."""
+
+
+class Health(NamedTuple):
+    """What was found."""
+
+    faults: list[str]
+    hints: list[str]
+    """What may be meant to be so."""
+
+
+def examine(view: View, before: list[bytes], now: list[bytes], seconds: float) -> Health:
+    """What is wrong.
+
+    Args:
+        before, now: Two looks at what the processes have counted.
+        seconds: The time between them.
+    """
+    then, counts = read(before), read(now)
+    faults = [
+        *_twins(view),
+        *_echoes(view.cache, then, counts, seconds),
+        *_losses(counts),
+        *_floods(then, counts, seconds),
+        *_refused(view.cache),
+    ]
+    near, far = _unheard(view.cache)
+    return Health([*faults, *near], far)
+
+
+def read(replies: Iterable[bytes]) -> Counts:
+    """The numbers of all processes; what cannot be read is left out."""
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for reply in replies:
+        try:
+            data: Any = json.loads(reply) if len(reply) <= REPLY_BOUND else {}
+            for node, parts in dict(data["nodes"]).items():
+                for part, numbers in dict(parts).items():
+                    kept = {str(k): float(n) for k, n in dict(numbers).items() if isinstance(n, (int, float))}
+                    found[str(node), str(part)] = kept
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
+            continue
+    return found
+
+
+def _twins(view: View) -> Iterator[str]:
+    """Nodes of one name: ROS 2's tools and parameters reach one of them, by chance."""
+    for name, count in Counter(view.cache.nodes(hidden=False)).items():
+        if count > 1:
+            yield f"{count} nodes are called {name} ({view.owner(name)}, among others): rename all but one"
+
+
+def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Iterator[str]:
+    """Nodes that hear what they say."""
+    spoken = {(e.node_name, e.name, e.type) for e in cache.endpoints(Kind.PUBLISHER)}
+    for entity in cache.endpoints(Kind.SUBSCRIPTION):
+        if (entity.node_name, entity.name, entity.type) not in spoken or entity.name in _EVERYBODYS:
+            continue
+        rate = _rate(then, now, (entity.node_name, f"subscription {entity.name}"), ("received",), seconds)
+        said = _rate(then, now, (entity.node_name, f"publisher {entity.name}"), ("published",), seconds)
+        if min(rate, said) >= ECHO:
+            yield (
+                f"{entity.node_name} hears what it says itself on {entity.name}, {rate:.0f} messages a second: remap "
+                "one of the two, or subscribe with ignore_local=True"
+            )
+
+
+def _losses(now: Counts) -> Iterator[str]:
+    for (node, part), numbers in now.items():
+        received, dropped = numbers.get("received", 0.0), numbers.get("dropped", 0.0)
+        if received and dropped >= max(LOST_LEAST, LOST_PART * received):
+            yield (
+                f"{part} of {node} has lost {100 * dropped / received:.0f} % of {received:.0f} messages: its handler "
+                "is slower than they come, or waits for a group; do less in it, or have less sent"
+            )
+
+
+def _floods(then: Counts, now: Counts, seconds: float) -> Iterator[str]:
+    for node, part in now:
+        if part == "log":
+            rate = _rate(then, now, (node, part), ("lines", "gathered"), seconds)
+            if rate >= FLOOD:
+                yield f"{node} logs {rate:.0f} lines a second: say throttle=1.0 where it does"
+
+
+def _refused(cache: GraphCache) -> Iterator[str]:
+    if cache.refused:
+        yield (
+            f"{cache.refused} announcements of nodes or endpoints are malformed and were left out; some process here "
+            "speaks another protocol, or means harm"
+        )
+
+
+def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
+    """Topics that are listened to and never published, and services that are called and never offered.
+
+    Returns:
+        Those that are probably misspelt, and the others.
+    """
+    near: list[str] = []
+    far: list[str] = []
+    for here, there, listens, speaks in (
+        (Kind.SUBSCRIPTION, Kind.PUBLISHER, "listens to", "publishes"),
+        (Kind.CLIENT, Kind.SERVICE, "calls", "offers"),
+    ):
+        offered = {e.name for e in cache.endpoints(there) if not is_hidden(e.name)}
+        for name in sorted({e.name for e in cache.endpoints(here)} - offered):
+            who = sorted({e.node_name for e in cache.endpoints(here, name) if not is_hidden(e.node_name)})
+            if not who or is_hidden(name) or name in _EVERYBODYS:
+                continue
+            best = next((other for other in sorted(offered) if _is_misspelt(name, other)), "")
+            text = f"{' and '.join(who)} {listens} {name}, which nobody {speaks}"
+            (near if best else far).append(f"{text}; did you mean {best}?" if best else text)
+    return near, far
+
+
+def _is_misspelt(name: str, other: str) -> bool:
+    """Whether two names differ in one part, by a few letters; numbers are no mistakes."""
+    ours, theirs = name.split("/"), other.split("/")
+    apart = [pair for pair in zip(ours, theirs, strict=False) if pair[0] != pair[1]]
+    if len(ours) != len(theirs) or len(apart) != 1:
+        return False
+    [(a, b)] = apart
+    return nearest(a, [b], cutoff=0.75) is not None and a.strip("0123456789") != b.strip("0123456789")
+
+
+def _rate(then: Counts, now: Counts, key: tuple[str, str], words: tuple[str, ...], seconds: float) -> float:
+    """What was added in a second."""
+    if key not in then or key not in now:
+        return 0.0
+    return sum(now[key].get(word, 0.0) - then[key].get(word, 0.0) for word in words) / seconds

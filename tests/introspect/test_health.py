@@ -1,0 +1,134 @@
+"""What `doctor` finds besides waits."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from typing import Any
+
+import pytest
+
+from graphflow.introspect import health
+from graphflow.introspect.health import examine, read
+from graphflow.machines.cache import GraphCache
+from graphflow.wire.liveliness import Entity, Kind
+
+
+class Seen:
+    """What `examine` needs of a view."""
+
+    def __init__(self, *tokens: str) -> None:
+        self.cache = GraphCache(tokens)
+
+    def owner(self, name: str) -> str:
+        return "process 7"
+
+
+_numbers = itertools.count(1)
+
+
+def entity_token(node: str, *, zid: str = "a1", kind: Kind = Kind.NODE, name: str = "") -> str:
+    number, about = next(_numbers), () if kind is Kind.NODE else (name, "std_msgs/msg/String", "RIHS01_" + "0" * 64)
+    return Entity(0, zid, len(node), number, kind, "/", node[1:], *about).token
+
+
+def look(**nodes: dict[str, dict[str, float]]) -> list[bytes]:
+    return [json.dumps({"nodes": {f"/{name}": parts for name, parts in nodes.items()}}).encode()]
+
+
+def found(seen: Any, before: list[bytes], now: list[bytes]) -> health.Health:
+    return examine(seen, before, now, 2.0)
+
+
+PUB, SUB, CLIENT, SERVICE = Kind.PUBLISHER, Kind.SUBSCRIPTION, Kind.CLIENT, Kind.SERVICE
+
+
+def test_two_nodes_of_one_name() -> None:
+    """Tools and parameters reach one of them, by chance."""
+    seen = Seen(entity_token("/a", zid="1"), entity_token("/a", zid="2"), entity_token("/b", zid="3"))
+    assert found(seen, [], []).faults == ["2 nodes are called /a (process 7, among others): rename all but one"]
+
+
+@pytest.mark.parametrize(("rate", "is_told"), [(100, True), (1, False)])
+def test_a_node_that_hears_itself(rate: int, is_told: bool) -> None:
+    """Where messages really go round; everybody's topics do not count."""
+    seen = Seen(*(entity_token("/a", kind=kind, name=name) for kind in (PUB, SUB) for name in ("/loop", "/tf")))
+    counted = (("publisher", "published"), ("subscription", "received"))
+    parts = {f"{kind} {name}": key for kind, key in counted for name in ("/loop", "/tf")}
+    before, now = (look(a={part: {key: n} for part, key in parts.items()}) for n in (10, 10 + rate))
+    told = [fault.partition(":")[0] for fault in found(seen, before, now).faults]
+    assert told == (["/a hears what it says itself on /loop, 50 messages a second"] if is_told else [])
+
+
+@pytest.mark.parametrize(("dropped", "is_told"), [(990, True), (400, False)])
+def test_lost_messages(dropped: int, is_told: bool) -> None:
+    """Most of them, that is."""
+    now = look(a={"subscription /scan": {"received": 1000, "dropped": dropped}})
+    told = found(Seen(), [], now).faults
+    assert bool(told) is is_told
+    if told:
+        assert told[0].startswith("subscription /scan of /a has lost 99 % of 1000 messages")
+
+
+def test_a_few_lost_messages_are_nothing() -> None:
+    """However large a part they are."""
+    assert found(Seen(), [], look(a={"subscription /scan": {"received": 10, "dropped": 9}})).faults == []
+
+
+def test_a_flood_in_a_log() -> None:
+    """Lines that were gathered count, too."""
+    before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})
+    assert found(Seen(), before, now).faults == ["/a logs 160 lines a second: say throttle=1.0 where it does"]
+    assert found(Seen(), now, now).faults == []
+
+
+def test_announcements_that_were_refused() -> None:
+    """They are counted."""
+    [fault] = found(Seen("@ros2_lv/0/nonsense"), [], []).faults
+    assert fault.startswith("1 announcements of nodes or endpoints are malformed")
+
+
+def test_where_nobody_speaks() -> None:
+    """What is probably misspelt is wrong; the rest may be meant so, as a robot's command topic."""
+    seen = Seen(
+        entity_token("/goto", kind=SUB, name="/turtle1/posee"),
+        entity_token("/sim", kind=PUB, name="/turtle1/pose"),
+        entity_token("/sim", kind=SUB, name="/turtle1/cmd_vel"),
+        entity_token("/two", kind=SUB, name="/scan2"),
+        entity_token("/sim", kind=PUB, name="/scan1"),
+        entity_token("/goto", kind=CLIENT, name="/spwan"),
+        entity_token("/sim", kind=SERVICE, name="/spawn"),
+    )
+    told = found(seen, [], [])
+    assert told.faults == [
+        "/goto listens to /turtle1/posee, which nobody publishes; did you mean /turtle1/pose?",
+        "/goto calls /spwan, which nobody offers; did you mean /spawn?",
+    ]
+    assert told.hints == [
+        "/two listens to /scan2, which nobody publishes",
+        "/sim listens to /turtle1/cmd_vel, which nobody publishes",
+    ]
+
+
+@pytest.mark.parametrize(
+    "reply",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b'{"nodes": 3}',
+        b'{"nodes": {"/a": {"log": 5}}}',
+        b'{"nodes": {"/a": {"log": {"lines": 1' + b"0" * 400 + b"}}}}",
+        b"[" * 100_000,
+    ],
+)
+def test_what_is_no_answer_is_left_out(reply: bytes) -> None:
+    """Others of the domain are read all the same."""
+    good = look(a={"log": {"lines": 5}})
+    assert read([reply, *good])[("/a", "log")] == {"lines": 5}
+
+
+def test_an_answer_that_is_too_long_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It could cost any time."""
+    monkeypatch.setattr(health, "REPLY_BOUND", 10)
+    assert read(look(a={"log": {"lines": 5}})) == {}
