@@ -6,6 +6,7 @@ import click
 
 from graphflow.cli import output
 from graphflow.cli.types import agree, use_project
+from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import UsageFault
@@ -15,7 +16,7 @@ from graphflow.names import did_you_mean, expand
 from graphflow.wire.liveliness import Kind
 
 
-@click.group()
+@click.group(cls=Verbs)
 def action() -> None:
     """List actions and send goals to them."""
 

@@ -17,6 +17,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.examples import DEADLOCKS, Step, graph_file, heading
+from graphflow.cli.verbs import Verbs
 from graphflow.domain import go_to
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
@@ -26,7 +27,7 @@ _AFTER_REPORT = 1.0
 _END_LIMIT = 20.0
 
 
-@click.group()
+@click.group(cls=Verbs)
 def demo() -> None:
     """Walk through an example, step by step."""
 

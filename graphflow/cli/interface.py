@@ -1,4 +1,4 @@
-"""`graphflow interface show` and `stubs`."""
+"""`graphflow interface show`, `list`, `package`, `packages` and `stubs`."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.types import use_project
+from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
+from graphflow.names import did_you_mean
 
 
-@click.group()
+@click.group(cls=Verbs)
 def interface() -> None:
     """Show message, service and action types."""
 
@@ -34,6 +36,42 @@ def show(type_name: str, no_comments: bool) -> None:
             continue
         output.data(text)
         output.lines(_nested(text, package, 1))
+
+
+@interface.command("list")
+@click.option("-m", "--only-msgs", "only", flag_value="msg", help="Messages only.")
+@click.option("-s", "--only-srvs", "only", flag_value="srv", help="Services only.")
+@click.option("-a", "--only-actions", "only", flag_value="action", help="Actions only.")
+def list_(only: str | None) -> None:
+    """List all types, the project's own too."""
+    from graphflow.msgs import registry
+
+    use_project()
+    for kind, head in (("msg", "Messages:"), ("srv", "Services:"), ("action", "Actions:")):
+        if only in (None, kind):
+            names = [f"{p}/{kind}/{n}" for p in registry.packages() for n in registry.names_in(p, kind)]
+            output.lines([head, *(f"    {name}" for name in names)])
+
+
+@interface.command()
+@click.argument("name", metavar="PACKAGE")
+def package(name: str) -> None:
+    """List the types of a package."""
+    from graphflow.msgs import registry
+
+    use_project()
+    if not registry.package_folders(name):
+        raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
+    output.lines(f"{name}/{kind}/{n}" for kind in registry.KINDS for n in registry.names_in(name, kind))
+
+
+@interface.command()
+def packages() -> None:
+    """List the packages that have types."""
+    from graphflow.msgs import registry
+
+    use_project()
+    output.lines(registry.packages())
 
 
 @interface.command()

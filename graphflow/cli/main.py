@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -13,8 +14,9 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
+from graphflow.cli.verbs import NOT_YET, Verbs
 from graphflow.errors import GraphflowError, UsageFault
-from graphflow.names import did_you_mean, nearest
+from graphflow.names import nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
 _VERBS = {
@@ -49,7 +51,7 @@ _OTHER_WORDS = {"launch": "up", "start": "up", "kill": "down", "interfaces": "in
 """What people coming from other tools type."""
 
 
-class _Verbs(click.Group):
+class _Verbs(Verbs):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
 
@@ -60,14 +62,9 @@ class _Verbs(click.Group):
         command: click.Command = getattr(module, cmd_name.replace("-", "_"))
         return command
 
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args and args[0] not in _VERBS:
-            meant = _OTHER_WORDS.get(nearest(args[0], [*_OTHER_WORDS, *_VERBS]) or "")
-            hint = f"; did you mean {meant!r}?" if meant else did_you_mean(args[0], _VERBS)
-            raise click.UsageError(f"no such command {args[0]!r}{hint or '; graphflow --help lists them'}", ctx)
-        return super().resolve_command(ctx, args)
+    def unknown(self, ctx: click.Context, word: str) -> str:
+        meant = "" if word in NOT_YET else _OTHER_WORDS.get(nearest(word, [*_OTHER_WORDS, *_VERBS]) or "")
+        return f"no such command {word!r}; did you mean {meant!r}?" if meant else super().unknown(ctx, word)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
@@ -101,12 +98,29 @@ def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str
         raise UsageFault(str(error)) from None
 
 
+def _open_standard_streams() -> None:
+    """Put nothing in the place of a standard stream that is closed: the next file that is opened would be it."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number, which this is
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115 - for good
+
+
+def _forget_output() -> None:
+    """Keep the interpreter from flushing, at its end, into what takes no more."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
 def main(args: Sequence[str] | None = None) -> NoReturn:
     """Run a command and end the process with its exit code."""
     sys.exit(_main(args))
 
 
 def _main(args: Sequence[str] | None) -> int:
+    _open_standard_streams()
     try:
         result = cli.main(args, standalone_mode=False)
     except click.UsageError as error:
@@ -118,12 +132,16 @@ def _main(args: Sequence[str] | None) -> int:
     except (KeyboardInterrupt, click.Abort):
         return exits.OK
     except BrokenPipeError:
-        # The reader, `head` perhaps, has had enough. Keep the interpreter from flushing into the broken pipe.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()  # the reader, `head` perhaps, has had enough
         return exits.OK
     except GraphflowError as error:
         output.error(str(error))
         return exits.exit_code(error)
+    except OSError as error:  # a full disk, a file that went away: what the system says is what there is to say
+        _forget_output()
+        what = f"{error.filename}: " if error.filename else "output: " if error.errno == errno.ENOSPC else ""
+        output.error(f"{what}{error.strerror or error}")
+        return exits.FAILED
     return result if isinstance(result, int) else exits.OK
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 import click
 
 from graphflow.cli import output
+from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
@@ -23,7 +24,7 @@ _SECTIONS = (
 _ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.SUBSCRIPTION))
 
 
-@click.group()
+@click.group(cls=Verbs)
 def node() -> None:
     """List and describe nodes."""
 

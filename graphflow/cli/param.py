@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
 
-@click.group()
+@click.group(cls=Verbs)
 def param() -> None:
     """List, get, set, describe, dump and load parameters."""
 

@@ -8,6 +8,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.types import agree, use_project
+from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import ServiceUnavailable, UsageFault
@@ -15,7 +16,7 @@ from graphflow.introspect.view import View
 from graphflow.names import expand
 
 
-@click.group()
+@click.group(cls=Verbs)
 def service() -> None:
     """List and call services."""
 

@@ -9,6 +9,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.profiles import qos_options, take_qos
+from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
@@ -22,7 +23,7 @@ from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
 
 
-@click.group()
+@click.group(cls=Verbs)
 def topic() -> None:
     """List, describe, show and publish to topics."""
 

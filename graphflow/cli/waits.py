@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallTimeout, RemoteError, UsageFault
 from graphflow.introspect import concurrency as found
@@ -64,7 +65,7 @@ def waits(as_json: bool) -> None:
         output.data(f"\n{report}")
 
 
-class _Groups(click.Group):
+class _Groups(Verbs):
     """`groups NODE` alongside `groups move ...`."""
 
     def resolve_command(

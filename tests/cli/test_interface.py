@@ -8,9 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from graphflow.cli import exits
-from graphflow.cli.main import main
+from graphflow.cli.main import cli, main
 from graphflow.msgs import registry
 from tests.cases import slow
 
@@ -162,3 +163,19 @@ def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
     )
     assert done.stdout.splitlines()[0].startswith("nodes/wrong.py:3: error: Unexpected keyword argument"), done.stdout
     assert "Found 1 error" in done.stdout
+
+
+def test_types_are_listed(mylab: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By kind, by package, and the packages; the project's own among them."""
+    runner = CliRunner()
+    listed = runner.invoke(cli, ["interface", "list"]).output.splitlines()
+    assert [line for line in listed if line.endswith(":")] == ["Messages:", "Services:", "Actions:"]
+    assert "    mylab_interfaces/msg/Greeting" in listed
+    assert "    example_interfaces/action/Fibonacci" in listed
+    only = runner.invoke(cli, ["interface", "list", "-a"]).output.splitlines()
+    assert only[0] == "Actions:"
+    assert all("/action/" in line for line in only[1:])
+    assert "mylab_interfaces/msg/Greeting" in runner.invoke(cli, ["interface", "package", "mylab_interfaces"]).output
+    assert "std_srvs" in runner.invoke(cli, ["interface", "packages"]).output.splitlines()
+    wrong = runner.invoke(cli, ["interface", "package", "std_srv"])
+    assert "did you mean 'std_srvs'?" in str(wrong.exception)

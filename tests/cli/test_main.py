@@ -68,7 +68,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["lanch"], "no such command 'lanch'; did you mean 'up'?"),
         (["kill"], "no such command 'kill'; did you mean 'down'?"),
         (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
-        (["topic", "lst"], "No such command 'lst'. Did you mean 'list'?"),
+        (["topic", "lst"], "no such command 'lst'; did you mean 'list'?"),
         (["topic", "list", "--type"], "--show-types"),
         (["topic", "pub"], "Missing argument 'TOPIC'"),
         (["topic", "pub", "/x"], "the topic's type comes before the values: graphflow topic pub /x TYPE ..."),

@@ -1,0 +1,48 @@
+"""Groups of verbs that help with a word they do not know: a misspelt one, or one of `ros2` that is not here yet."""
+
+from __future__ import annotations
+
+import click
+
+from graphflow.names import did_you_mean
+
+NOT_YET = {
+    "bag": "`graphflow topic echo TOPIC > FILE` keeps messages as text; `ros2 bag` records a graph over rmw_zenoh",
+    "component": "nodes that share a `process:` in a graph file run in one process",
+    "daemon": "none is needed: there is no daemon",
+    "lifecycle": "`on_start` and `on_shutdown` of a node, and `graphflow restart NODE`",
+    "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
+    "pkg": "`graphflow init NAME` makes a project; a node is a .py file",
+    "security": "a graph is reachable from this machine only unless `--net` says otherwise",
+    "wtf": "the same is `graphflow doctor`",
+    "topic hz": "the console has it: `graphflow attach`, then `^b :` and `view hz TOPIC`",
+    "topic bw": "the console's view `topics` has rates: `graphflow attach`",
+    "topic delay": "`graphflow topic echo TOPIC --field header.stamp` shows the stamps",
+    "topic type": "`graphflow topic list -t`, or `graphflow topic info TOPIC`",
+    "topic find": "`graphflow topic list -t`",
+    "service type": "`graphflow service list -t`",
+    "service find": "`graphflow service list -t`",
+    "service info": "`graphflow service list -t` and `graphflow node info NODE`",
+    "service echo": "`graphflow topic echo SERVICE/_service_event`, of a service with introspection",
+    "interface proto": "`graphflow interface show TYPE`",
+}
+"""What `ros2` has and graphflow has not yet, and what to use meanwhile."""
+
+
+class Verbs(click.Group):
+    """Verbs, or the verbs of one verb."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
+            raise click.UsageError(self.unknown(ctx, args[0]), ctx)
+        return super().resolve_command(ctx, args)
+
+    def unknown(self, ctx: click.Context, word: str) -> str:
+        """What to say of a word that is no verb."""
+        path = word if ctx.parent is None else f"{ctx.info_name} {word}"
+        if path in NOT_YET:
+            return f"graphflow has no {path!r} yet; meanwhile: {NOT_YET[path]}".replace("`", "")
+        hint = did_you_mean(word, self.list_commands(ctx))
+        return f"no such command {word!r}{hint or f'; graphflow {path.removesuffix(word)}--help lists them'}"
