@@ -23,6 +23,8 @@ from typing import Any, Literal, NamedTuple
 
 FUTURE = ("set_result", "set_exception", "cancel")
 """Methods that end a future."""
+BARRIER = ("wait", "abort", "reset")
+"""Methods that let those go on who wait at a barrier."""
 _WAITS: dict[CodeType, tuple[str, ...]] = {
     asyncio.Event.wait.__code__: ("set",),
     asyncio.Queue.get.__code__: ("put", "put_nowait"),
@@ -38,6 +40,7 @@ _WAITS: dict[CodeType, tuple[str, ...]] = {
     queue.Queue.put.__code__: ("get", "get_nowait"),
     queue.Queue.join.__code__: ("task_done",),
     concurrent.futures.Future.result.__code__: FUTURE,
+    asyncio.Barrier.wait.__code__: BARRIER,
 }
 """Waits of asyncio and of threads, and the methods of the same object that end them."""
 DEEDS = {
@@ -48,9 +51,10 @@ DEEDS = {
     ("task_done",): "works off",
     ("notify", "notify_all"): "notifies",
     ("release",): "releases",
+    BARRIER: "comes to",
 }
 """What those methods do, in words, by the methods."""
-ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)}
+ENDINGS = {"clear", *(name for names in _WAITS.values() for name in names)} - {"wait"}
 _TASK_GROUP_EXITS = tuple(
     getattr(asyncio.TaskGroup, name).__code__ for name in ("__aexit__", "_aexit") if hasattr(asyncio.TaskGroup, name)
 )
@@ -205,6 +209,14 @@ def deadlines(coroutine: Any) -> Iterator[float]:
     for context in entered(coroutine):
         if isinstance(context, asyncio.Timeout) and (due := context.when()) is not None:
             yield due
+
+
+def sent_to_loop(frame: FrameType) -> Any:
+    """The task of the coroutine that a thread has sent to a loop and waits for in this frame; None for no such wait."""
+    if frame.f_code is not concurrent.futures.Future.result.__code__:
+        return None
+    found = (_enclosed(callback, "source") for callback in frame.f_locals["self"]._done_callbacks)
+    return next((task for task in found if asyncio.isfuture(task)), None)
 
 
 class ObjectWait(NamedTuple):

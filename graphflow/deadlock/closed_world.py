@@ -33,12 +33,31 @@ from graphflow.deadlock.conditions import (
     makes_task,
 )
 from graphflow.deadlock.protocols import Subject
-from graphflow.deadlock.source import Function, FunctionNode, Unknown, Use, is_nested, is_own, source_of, walk
+from graphflow.deadlock.source import (
+    LAMBDA,
+    Function,
+    FunctionNode,
+    Unknown,
+    Use,
+    is_nested,
+    is_own,
+    source_of,
+    walk,
+)
 from graphflow.executor.ledger import PendingGoal
+from graphflow.executor.runner import Runner
 from graphflow.msgs.base import Message
 
-_BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
-_MAKERS = {*(tool.__name__ for tool in TOOLS), "create_future", "Lock", "Semaphore", "BoundedSemaphore", "Condition"}
+BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
+_MAKERS = {
+    *(tool.__name__ for tool in TOOLS),
+    "create_future",
+    "Lock",
+    "Semaphore",
+    "BoundedSemaphore",
+    "Condition",
+    "Barrier",
+}
 _MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
 _CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
 _ARRAYS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
@@ -65,25 +84,6 @@ class Setters(NamedTuple):
     """Whether a deadline ends the wait for good, and not only this attempt."""
 
 
-def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
-    """What can end a wait; None when that is not known.
-
-    Args:
-        frames: The frames of the coroutine that waits, the outermost first.
-        waiter: The future that it waits for, if a coroutine waits.
-        is_bounded: Whether the wait is given up after some time.
-    """
-    try:
-        question = _Question(frames, node)
-        is_bounded = is_bounded or question.is_bounded
-        if is_bounded and question.is_repeated:  # what matters is when it stops trying again
-            return question.of_loop()
-        found = question.of_object(waiter) or question.of_loop()
-        return found and found._replace(gives_up=is_bounded)
-    except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
-        return None
-
-
 def cancellers(thing: Any, node: Subject) -> Setters | None:
     """What cancels a task or goal that the node keeps without being asked to, as timers and tasks do; None for nothing.
 
@@ -100,7 +100,7 @@ def cancellers(thing: Any, node: Subject) -> Setters | None:
     for name in held:
         uses = source.uses(name)
         if getattr(instance, name) is not thing or source.foreign(name) or any(use.kind == "given" for use in uses):
-            if any(use.method not in _BEGINNINGS for use in (*source.foreign("cancel"), *source.uses("cancel"))):
+            if any(use.method not in BEGINNINGS for use in (*source.foreign("cancel"), *source.uses("cancel"))):
                 raise Unknown
             continue
         methods |= {use.method for use in uses if use.kind == "called" and use.name == "cancel"}
@@ -108,13 +108,18 @@ def cancellers(thing: Any, node: Subject) -> Setters | None:
     alone = {runner.spec.handler for runner in node.runners if runner.spec.kind == "timer"}
     alone |= {method_of(task) for task in node.tasks}
     what = " and ".join(f"self.{name}" for name in sorted(held))
-    found = frozenset(source.above(methods - _BEGINNINGS, entries) & alone)
+    found = frozenset(source.above(methods - BEGINNINGS, entries) & alone)
     return Setters(what, found) if found else None
 
 
 def entries_of(node: Subject) -> set[str]:
     """The methods of a node that graphflow runs: handlers and tasks."""
-    return {runner.spec.handler for runner in node.runners} | {method_of(task) for task in node.tasks}
+    return {handler_of(runner) for runner in node.runners} | {method_of(task) for task in node.tasks}
+
+
+def handler_of(runner: Runner) -> str:
+    """The method that a runner calls, or the word for any lambda."""
+    return runner.spec.handler if runner.spec.handler.isidentifier() else LAMBDA
 
 
 @dataclass(frozen=True)
@@ -136,11 +141,14 @@ def _spans(node: ast.stmt, line: int) -> bool:
     return node.lineno <= line <= (node.end_lineno or line)
 
 
-class _Question:
+class Question:
     """What ends one wait."""
 
-    def __init__(self, frames: list[FrameType], node: Subject) -> None:
-        self._node, self._instance = node, node.instance
+    owner = ""
+    """The attribute by which the node holds the object in which it waits; empty for the node itself."""
+
+    def __init__(self, frames: list[FrameType], node: Subject, instance: object = None) -> None:
+        self._node, self._instance = node, node.instance if instance is None else instance
         self._source = source_of(self._instance)
         self._waits = [wait for wait in map(object_wait, frames) if wait is not None]
         self.is_bounded = any(wait.is_bounded for wait in self._waits)
@@ -149,11 +157,11 @@ class _Question:
             function = self._source.function(frame.f_code)
             if function is not None and frame.f_locals.get("self") is self._instance:
                 self._places.append(_Spot(frame, function))
-            elif frame.f_locals.get("self") is self._instance and not _is_library(frame):
+            elif frame.f_locals.get("self") is self._instance and not is_library(frame):
                 raise Unknown  # a method whose source was not found
-            elif self._places and not _is_library(frame):
+            elif self._places and not is_library(frame):
                 self._places.clear()  # foreign code comes in between and may do as it likes
-        if not self._places:
+        if not self._places and instance is None:
             raise Unknown
 
     @property
@@ -206,9 +214,9 @@ class _Question:
 
     def _ended_in_container(self, name: str, methods: tuple[str, ...]) -> Setters | None:
         """Something in a list or dictionary may be ended by any method that ends such a thing."""
-        if any(use.kind == "given" for use in self._source.uses(name)) or self._source.foreign(name):
+        if any(use.kind == "given" for use in self._source.uses(name)) or self._source.foreign(name, self.owner):
             raise Unknown
-        if any(not use.method for ending in methods for use in self._source.foreign(ending)):
+        if any(not use.method for ending in methods for use in self._source.foreign(ending, self.owner)):
             raise Unknown
         found: set[str] = set()
         for method, functions in self._source.methods.items():
@@ -222,7 +230,7 @@ class _Question:
 
     def _uses(self, name: str) -> Iterator[Use]:
         """The uses of a tool, such as an event, none of which makes it known to other code."""
-        if any(use.kind != "called" or use.name not in QUESTIONS for use in self._source.foreign(name)):
+        if any(use.kind != "called" or use.name not in QUESTIONS for use in self._source.foreign(name, self.owner)):
             raise Unknown
         for use in self._source.uses(name):
             ends = use.name in ENDINGS or use.kind == "entered"
@@ -257,7 +265,7 @@ class _Question:
                     raise Unknown
                 changing.add(use.method)
         what = " and ".join(f"self.{name}" for name in sorted(attributes))
-        if conditions.tasks and not changing - _BEGINNINGS:
+        if conditions.tasks and not changing - BEGINNINGS:
             return Setters(what, frozenset(), tasks=tuple(conditions.tasks))
         found = self._reached(what, changing)
         return None if found is None else found._replace(tasks=tuple(conditions.tasks))
@@ -276,10 +284,10 @@ class _Question:
             yield from self._ends_of_goal(name)
             return
         known = isinstance(value, (*CONTAINERS, *arrays()))
-        for use in self._source.foreign(name):
+        for use in self._source.foreign(name, self.owner):
             if use.kind in ("assigned", "changed") or (known and use.kind not in ("read", "part")):
                 raise Unknown
-        for use in (*self._source.foreign(name), *self._source.uses(name)):
+        for use in (*self._source.foreign(name, self.owner), *self._source.uses(name)):
             if isinstance(value, CONTAINERS) and use.kind == "part" and use.name:  # its `append`, for others to call
                 raise Unknown
         for use in self._source.uses(name):
@@ -293,7 +301,7 @@ class _Question:
                 yield use
 
     def _ends_of_goal(self, name: str) -> Iterator[Use]:
-        if self._source.foreign(name):
+        if self._source.foreign(name, self.owner):
             raise Unknown
         for use in self._source.uses(name):
             if use.kind == "given" or use.is_nested:
@@ -309,21 +317,26 @@ class _Question:
         if use.kind == "called":
             return isinstance(value, PLAIN) or use.name in LOOKING
         if use.kind == "given" and isinstance(value, Message):  # its fields may be set through the other name
-            functions = self._source.methods[use.method]
+            functions = self._source.methods.get(use.method, [])
             return not any(_sets_fields(function) for function in functions)
         return use.kind != "changed"
 
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
         """The handlers and tasks that call those methods, if nothing else does."""
-        entries = entries_of(self._node)
-        above = self._source.above(set(methods) - _BEGINNINGS, entries)
-        if above & self._node.hooks:
+        return handlers_above(what, methods, self._node)
+
+
+def handlers_above(what: str, methods: Iterable[str], node: Subject) -> Setters | None:
+    """The handlers and tasks of a node that call those methods, if nothing else does."""
+    source, entries = source_of(node.instance), entries_of(node)
+    above = source.above(set(methods) - BEGINNINGS, entries)
+    if above & node.hooks:
+        raise Unknown
+    for method in above - entries - BEGINNINGS:
+        if source.above({method}, entries) == {method}:  # no caller is seen, so some other code calls it
             raise Unknown
-        for method in above - entries - _BEGINNINGS:
-            if self._source.above({method}, entries) == {method}:  # no caller is seen, so some other code calls it
-                raise Unknown
-        found = frozenset(above & entries)
-        return Setters(what, found) if found else None
+    found = frozenset(above & entries)
+    return Setters(what, found) if found else None
 
 
 def method_of(task: Any) -> str:
@@ -334,7 +347,7 @@ def method_of(task: Any) -> str:
 _LIBRARIES = ("graphflow.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")
 
 
-def _is_library(frame: FrameType) -> bool:
+def is_library(frame: FrameType) -> bool:
     """Whether a frame is of code that sooner or later yields to the handler's, and does nothing else."""
     name = f"{frame.f_globals.get('__name__', '')}."
     return name.startswith(_LIBRARIES)

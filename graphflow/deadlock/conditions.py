@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import FUTURE
 from graphflow.deadlock.source import ClassSource, FunctionNode, Unknown, looks, walk
+from graphflow.deadlock.user_code import is_users_module
 from graphflow.executor.ledger import PendingGoal
 from graphflow.msgs.base import Message
 
@@ -243,7 +244,10 @@ class LoopConditions:
                     raise Unknown
 
     def _attribute(self, name: str, seen: frozenset[str]) -> None:
-        declared = next((vars(c)[name] for c in type(self._node).__mro__ if name in vars(c)), None)
+        owner = next((c for c in type(self._node).__mro__ if name in vars(c)), None)
+        declared = None if owner is None else vars(owner)[name]
+        if name == "is_running" and owner is not None and not is_users_module(owner.__module__):
+            return  # the end of the node ends any wait
         if isinstance(declared, property):
             self._returned(name, seen)
             return

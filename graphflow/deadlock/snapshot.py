@@ -21,7 +21,8 @@ from weakref import WeakKeyDictionary
 
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
-from graphflow.deadlock.closed_world import Setters, cancellers, method_of, setters
+from graphflow.deadlock.closed_world import Setters, cancellers, handler_of, method_of
+from graphflow.deadlock.held import setters
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import called_in, innermost, is_users
@@ -336,6 +337,9 @@ class _Look:
     def _of_future(self, future: Any, way: _Way) -> Condition:
         ledger = self._ledger
         if future in ledger.threads:
+            sent = next((task for task in map(aio.sent_to_loop, reversed(way.frames)) if task is not None), None)
+            if sent is not None and id(sent) not in way.tasks:
+                return self._of_future(sent, way)
             asking = ledger.asking.get(ledger.threads[future].ident or 0)
             return self._closed_world(way, None) if asking is None else self._condition(asking, way)
         if future in ledger.calls:
@@ -388,11 +392,11 @@ class _Look:
 
     def _set_by(self, found: Setters, way: _Way) -> Condition:
         node = way.node
-        runners = [r for n, r in self._runners if n is node and r.spec.handler in found.handlers]
+        runners = [r for n, r in self._runners if n is node and handler_of(r) in found.handlers]
         # Runs under way count too, even those that have released their slot.
         others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
         others += [t for t in list(node.tasks) if t is not way.root and method_of(t) in found.handlers]
-        known = {r.spec.handler for r in runners} | {method_of(t) for t in list(node.tasks)}
+        known = {handler_of(r) for r in runners} | {method_of(t) for t in list(node.tasks)}
         if not found.handlers <= known:  # one of them does not exist and cannot be waited for
             return FREE
         is_held = False

@@ -8,7 +8,9 @@ source unusable: `Unknown`.
 from __future__ import annotations
 
 import ast
+import dataclasses
 import inspect
+import sys
 import tokenize
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -16,6 +18,7 @@ from functools import cache
 from types import CodeType
 from typing import Any, Literal, NamedTuple
 
+from graphflow.deadlock.fresh import messages_of
 from graphflow.deadlock.user_code import is_users_module
 
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
@@ -38,6 +41,10 @@ _SAME |= {"diagonal", "copyto"}
 _INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
 """Methods by which attributes change in ways that their names do not show."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
+
+
+LAMBDA = "<lambda>"
+"""What Python calls all of them."""
 
 
 class Unknown(Exception):
@@ -97,6 +104,10 @@ class ClassSource:
     """Mentions on anything other than `self`, anywhere in the files."""
     _callers: dict[str, set[str]] = field(default_factory=dict)
     _properties: set[str] = field(default_factory=set)
+    _globals: dict[ast.Module, dict[str, Any]] = field(default_factory=dict)
+    """What the names of each file mean."""
+    _fresh: dict[ast.AST, set[str]] = field(default_factory=dict)
+    """By function: local names of messages that it has made or received."""
     _is_known: bool = True
 
     def function(self, code: CodeType) -> Function | None:
@@ -113,16 +124,18 @@ class ClassSource:
             raise Unknown
         return self._uses.get(attribute, [])
 
-    def foreign(self, attribute: str) -> list[Use]:
-        """What is done to an attribute of that name on anything other than `self`."""
-        return self._foreign.get(attribute, [])
+    def foreign(self, attribute: str, owner: str = "") -> list[Use]:
+        """What is done to an attribute of that name on anything other than `self`, and other than `self.owner`."""
+        found = self._foreign.get(attribute, [])
+        return [use for use in found if not (owner and _is_part_of(use.syntax, owner))]
 
-    def above(self, methods: set[str], handlers: set[str]) -> set[str]:
+    def above(self, methods: set[str], handlers: set[str], owner: str = "") -> set[str]:
         """Those methods and all that call them, directly or through each other.
 
         Args:
             methods: Names of methods.
             handlers: Methods that graphflow calls, which may be given to it.
+            owner: The attribute by which a node holds the object; what is done by way of it counts there.
 
         Raises:
             Unknown: Some other code may call one of them.
@@ -130,7 +143,7 @@ class ClassSource:
         found, todo = set(methods), list(methods)
         while todo:
             method = todo.pop()
-            self._refuse_strangers(method, method in handlers)
+            self._refuse_strangers(method, method in handlers, owner)
             for caller in self._callers.get(method, set()) - found:
                 found.add(caller)
                 todo.append(caller)
@@ -159,12 +172,12 @@ class ClassSource:
         blocks += [self._others[name] for name in called & set(self._others)]
         return any(isinstance(node, (ast.Raise, ast.Assert)) for b in blocks[1:] for node in ast.walk(b))
 
-    def _refuse_strangers(self, method: str, is_handler: bool) -> None:
+    def _refuse_strangers(self, method: str, is_handler: bool, owner: str) -> None:
         for use in self.uses(method):
             calls = use.kind == "invoked" or method in self._properties
             if use.is_nested or use.is_started or not (calls or (is_handler and use.is_registered)):
                 raise Unknown
-        if self._foreign.get(method):
+        if self.foreign(method, owner):
             raise Unknown
 
     # how it is read
@@ -173,8 +186,11 @@ class ClassSource:
         """The methods of one class."""
         if module not in self._modules:
             self._modules.append(module)
+            self._globals[module] = vars(sys.modules.get(cls.__module__, object))
             self._others |= {item.name: item for item in module.body if isinstance(item, FunctionNode)}
         written = {function for function in map(_code_of, vars(cls).values()) if function is not None}
+        if dataclasses.is_dataclass(cls):  # which makes methods that do what the fields say
+            written = {code for code in written if code.co_filename != "<string>"}
         self._is_known &= not _INTERCEPTING & vars(cls).keys()
         self._is_known &= all(code.co_filename == file for code in written)  # none put there by other code
         lines = {line for d in ast.walk(module) if isinstance(d, ast.ClassDef) for line in _function_lines(d)}
@@ -198,6 +214,9 @@ class ClassSource:
         defined = {d.name for m in self._modules for d in ast.walk(m) if isinstance(d, (ast.ClassDef, *_NESTED[:2]))}
         for name, functions in self.methods.items():
             for function in functions:
+                lambdas = {
+                    n: above for n, above in walk(function) if isinstance(n, ast.Lambda) and _registers(above[-1])
+                }
                 decorators = {ast.unparse(decorator) for decorator in function.decorator_list}
                 if decorators & {"property", "cached_property", "functools.cached_property"}:
                     self._properties.add(name)
@@ -207,7 +226,10 @@ class ClassSource:
                     self._is_known = False
                 for node, parents in walk(function):
                     inside.add(node)
-                    if isinstance(node, ast.Attribute):
+                    handler = next((n for n in parents if n in lambdas), None)
+                    if isinstance(node, ast.Attribute) and handler is not None:
+                        self._note(LAMBDA, node, parents[parents.index(handler) :])
+                    elif isinstance(node, ast.Attribute):
                         self._note(name, node, parents)
                     elif isinstance(node, ast.Name):
                         self._is_known &= node.id not in _BY_NAME
@@ -225,7 +247,7 @@ class ClassSource:
                 if is_own(node) and any(isinstance(parent, ast.ClassDef) for parent in parents):
                     continue  # of another class; in a function of the module, `self` may be the node
                 if not (isinstance(node.value, ast.Name) and node.value.id in imported):
-                    self._foreign.setdefault(node.attr, []).append(_use("", node, parents))
+                    self._note_foreign("", node, parents, module)
 
     def _set_by_name(self, call: ast.Call) -> None:
         """`setattr(other, "ready", True)`."""
@@ -238,11 +260,27 @@ class ClassSource:
             case _:
                 self._is_known = False
 
+    def _note_foreign(
+        self, method: str, node: ast.Attribute, parents: Sequence[ast.AST], module: ast.Module | None
+    ) -> None:
+        """What is done to an attribute of something other than the node; of a message it is none of the node's."""
+        root: ast.expr = node
+        while isinstance(root, (ast.Attribute, ast.Subscript)):
+            root = root.value
+        function = next((p for p in reversed(parents) if isinstance(p, FunctionNode)), None)
+        if module is not None and function is not None and isinstance(root, ast.Name):
+            if function not in self._fresh:
+                self._fresh[function] = messages_of(function, self._globals[module])
+            if root.id in self._fresh[function]:
+                return
+        self._foreign.setdefault(node.attr, []).append(_use(method, node, parents))
+
     def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
-        use = _use(method, node, parents)
         if not (is_own(node) or _is_super(node.value)):
-            self._foreign.setdefault(node.attr, []).append(use)
+            module = next((m for m in self._modules if parents[0] in _parts_of(m)), None)
+            self._note_foreign(method, node, parents, module)
             return
+        use = _use(method, node, parents)
         if node.attr == "__dict__":
             self._is_known = False
         if node.attr in self.methods:
@@ -253,6 +291,11 @@ class ClassSource:
                 self._callers.setdefault(node.attr, set()).add(method)
         if is_own(node):
             self._uses.setdefault(node.attr, []).append(use)
+
+
+@cache
+def _parts_of(module: ast.Module) -> frozenset[ast.AST]:
+    return frozenset(ast.walk(module))
 
 
 def _code_of(member: object) -> CodeType | None:
@@ -400,6 +443,10 @@ def _imports(module: ast.Module) -> Iterator[ast.alias]:
     for node in ast.walk(module):
         if isinstance(node, ast.Import):
             yield from node.names
+
+
+def _is_part_of(node: ast.Attribute, owner: str) -> bool:
+    return isinstance(node.value, ast.Attribute) and node.value.attr == owner and is_own(node.value)
 
 
 def is_own(node: ast.AST) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import sysconfig
 from collections.abc import Iterable
 from pathlib import Path, PurePath
@@ -19,6 +20,12 @@ _PYTHONS = sysconfig.get_path("stdlib")
 def is_users_module(name: str) -> bool:
     """Whether a module holds classes of users; the nodes that come with graphflow count as theirs."""
     return name.partition(".")[0] not in _NOT_THEIRS or name.startswith("graphflow.nodes.")
+
+
+def is_users_object(thing: object) -> bool:
+    """Whether something is of a class of the user's, with attributes of its own; a node's message is none."""
+    file = getattr(sys.modules.get(type(thing).__module__), "__file__", None)
+    return file is not None and is_users(file) and hasattr(thing, "__dict__")
 
 
 def is_users(file: str) -> bool:

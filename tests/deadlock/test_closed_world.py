@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from graphflow.deadlock.asyncio_frames import frames_of, waiter_of
-from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, method_of, setters
+from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, method_of
+from graphflow.deadlock.held import setters
 from graphflow.deadlock.source import Unknown
 from graphflow.executor.ledger import PendingGoal
 from graphflow.testing.clock import settle

@@ -1,0 +1,42 @@
+"""Local names that stand for messages, of a function read from its source: what is done to their fields is not done to
+the node.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import Any
+
+from graphflow.msgs.base import Message
+
+
+def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict[str, Any]) -> set[str]:
+    """Local names of a function that stand for messages: all that is bound to them is made there, or annotated so."""
+    bound: dict[str, list[ast.expr | None]] = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made)):
+                bound.setdefault(name, []).append(made)
+            case ast.arg(arg=name, annotation=annotation):
+                bound.setdefault(name, []).append(annotation)
+            case ast.Name(id=name, ctx=ast.Store()):
+                bound.setdefault(name, []).append(None)
+    # The name that an assignment binds was met there and as a name.
+    made_here = {name: [v for v in values if v is not None] for name, values in bound.items()}
+    stored = {name: sum(v is None for v in values) for name, values in bound.items()}
+    arguments = {a.arg for a in ast.walk(function.args) if isinstance(a, ast.arg)}
+    return {
+        name
+        for name, values in made_here.items()
+        if values and all(_is_message(value, globals_) for value in values)
+        if stored[name] == len(values) - (name in arguments)
+    }
+
+
+def _is_message(expression: ast.expr, globals_: dict[str, Any]) -> bool:
+    """Whether an expression is a message class."""
+    first, *rest = ast.unparse(expression).strip("'\"").split(".")
+    value = globals_.get(first)
+    for part in rest:
+        value = getattr(value, part, None)
+    return isinstance(value, type) and issubclass(value, Message)

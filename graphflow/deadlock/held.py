@@ -1,0 +1,107 @@
+"""What ends a wait in a method of the node, or in an object that the node holds, such as a navigator of its own.
+
+The object belongs to the closed world if the node has made it, keeps it in one attribute, and gives it to nobody.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from types import FrameType
+from typing import Any
+
+from graphflow.deadlock.asyncio_frames import is_inside, object_wait
+from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library
+from graphflow.deadlock.protocols import Subject
+from graphflow.deadlock.source import ClassSource, Unknown, Use, source_of
+from graphflow.deadlock.user_code import is_users, is_users_object
+
+_MADE_BY = {"__init__", "__post_init__"}
+"""Methods that make an object."""
+
+
+def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
+    """What can end a wait; None when that is not known.
+
+    Args:
+        frames: The frames of the coroutine that waits, the outermost first.
+        waiter: The future that it waits for, if a coroutine waits.
+        is_bounded: Whether the wait is given up after some time.
+    """
+    try:
+        question = _question(frames, node)
+        is_bounded = is_bounded or question.is_bounded
+        if is_bounded and question.is_repeated:  # what matters is when it stops trying again
+            return question.of_loop()
+        found = question.of_object(waiter) or question.of_loop()
+        return found and found._replace(gives_up=is_bounded)
+    except (Unknown, SyntaxError, TypeError, ValueError, AttributeError, RecursionError):  # or no source to be read
+        return None
+
+
+def _question(frames: list[FrameType], node: Subject) -> Question:
+    """What ends a wait in a method of the node, or of an object that it holds and knows alone."""
+    for frame in reversed(frames):
+        innermost = frame.f_locals.get("self")
+        if innermost is node.instance or not (is_library(frame) or is_users(frame.f_code.co_filename)):
+            break
+        held = [name for name, value in vars(node.instance).items() if value is innermost]
+        if held and is_users_object(innermost):
+            return HeldQuestion(frames, node, held[0], innermost)
+    things = [wait.thing for wait in map(object_wait, frames) if wait is not None]
+    for name, value in vars(node.instance).items() if things else ():  # a dataclass of the node's with an event in it
+        if is_users_object(value) and any(is_inside(part, t) for part in vars(value).values() for t in things):
+            return HeldQuestion(frames, node, name, value)
+    return Question(frames, node)
+
+
+class HeldQuestion(Question):
+    """What ends a wait in an object that the node holds in one attribute, made by the node, and given to nobody."""
+
+    def __init__(self, frames: list[FrameType], node: Subject, owner: str, held: object) -> None:
+        self.owner = owner
+        super().__init__(frames, node, held)
+        self._looked: set[str] = set()
+        self._endings: tuple[str, ...] = ()
+
+    def _uses(self, name: str) -> Iterator[Use]:
+        self._looked.add(name)
+        return super()._uses(name)
+
+    def _changes(self, name: str) -> Iterator[Use]:
+        self._looked.add(name)
+        return super()._changes(name)
+
+    def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
+        """The node's handlers that end the wait: by the object's methods, or in the object itself."""
+        known = set(self._source.methods)
+        ending = self._source.above(set(methods) - _MADE_BY, known, self.owner)
+        source, found = source_of(self._node.instance), set[str]()
+        if source.foreign(self.owner):
+            raise Unknown
+        for use in source.uses(self.owner):
+            if use.kind in ("given", "invoked", "entered") or use.is_nested:
+                raise Unknown
+            if use.kind == "assigned" and (use.method not in BEGINNINGS or not isinstance(use.value, ast.Call)):
+                raise Unknown
+            if use.kind == "called" and use.name not in known:
+                raise Unknown
+            if use.kind in ("changed", "part") and use.name in self._looked:
+                if use.part is not None:
+                    raise Unknown
+                if use.kind == "changed" and self._ends(use, source):
+                    found.add(use.method)
+            if use.kind == "called" and use.name in ending:
+                found.add(use.method)
+        return handlers_above(what.replace("self.", f"self.{self.owner}."), found, self._node)
+
+    def _ended(self, name: str, thing: Any, methods: tuple[str, ...]) -> Setters | None:
+        self._endings = methods
+        return super()._ended(name, thing, methods)
+
+    def _ends(self, use: Use, source: ClassSource) -> bool:
+        """Whether what a method of the node does to a part of the object can end the wait."""
+        nodes = [n for function in source.methods.get(use.method, []) for n in ast.walk(function)]
+        parts = {n for n in nodes if isinstance(n, ast.Attribute) and n.value is use.syntax}
+        called = {n.attr for n in nodes if isinstance(n, ast.Attribute) and n.value in parts}
+        return not (self._endings and called) or bool(called & {*self._endings})

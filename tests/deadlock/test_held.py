@@ -1,0 +1,276 @@
+"""Waits in objects that a node holds, by way of children, threads and lambdas: programs that cannot go on, and such as
+look like them and may.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import pytest
+
+from graphflow import Node
+from graphflow.msgs.geometry_msgs.msg import Pose, PoseStamped
+from graphflow.msgs.std_msgs.msg import String
+from graphflow.testing import Graph
+from tests.deadlock.cast import Caplog, Robot, reports, say
+from tests.flat import flat
+
+
+class Navigator:
+    """Drives somewhere, as far as anybody knows."""
+
+    def __init__(self) -> None:
+        self.is_there = False
+
+    async def wait(self) -> None:
+        while not self.is_there:
+            await asyncio.sleep(0.05)
+
+    def mark(self) -> None:
+        self.is_there = True
+
+    def look(self) -> bool:
+        return self.is_there
+
+
+@dataclass
+class State:
+    ready: asyncio.Event = field(default_factory=asyncio.Event)
+
+
+class Navigates(Robot):
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav = Navigator()
+
+    async def go(self, _: String) -> None:
+        await self.nav.wait()
+
+    async def arrive(self, _: String) -> None:
+        self.nav.mark()
+
+
+class NavigatesByHand(Navigates):
+    async def arrive(self, _: String) -> None:
+        self.nav.is_there = True
+
+
+class KeepsState(Robot):
+    def __init__(self) -> None:
+        super().__init__()
+        self.state = State()
+
+    async def go(self, _: String) -> None:
+        await self.state.ready.wait()
+
+    async def arrive(self, _: String) -> None:
+        self.state.ready.set()
+
+
+class Comes(Robot):
+    def __init__(self) -> None:
+        super().__init__()
+        self.barrier = asyncio.Barrier(2)
+
+    async def go(self, _: String) -> None:
+        await self.barrier.wait()
+
+    async def arrive(self, _: String) -> None:
+        await self.barrier.wait()
+
+
+class RunsWhile(Robot):
+    """The most usual loop there is."""
+
+    pose: Any = None
+
+    async def go(self, _: String) -> None:
+        while self.is_running and self.pose is None:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, message: String) -> None:
+        self.pose = message
+
+    def unrelated(self, given: PoseStamped) -> PoseStamped:
+        """Fills messages, whose fields are called as the node's attribute is."""
+        made = PoseStamped()
+        made.pose = Pose()
+        given.pose = made.pose
+        return made
+
+
+class ByALambda(RunsWhile):
+    def __init__(self) -> None:
+        super().__init__()
+        self.create_subscription(String, "/arrive", lambda message: self.keep(message), 10, group=self.motion)
+
+    async def arrive(self, message: String) -> None:
+        """Nothing."""
+
+    def keep(self, message: String) -> None:
+        self.pose = message
+
+
+class SendsToTheLoop(KeepsState):
+    def __init__(self) -> None:
+        super().__init__()
+        self.there = asyncio.Event()
+        self.create_subscription(String, "/drive", self.drive, 10, group=self.motion, thread=True)
+
+    async def go(self, _: String) -> None:
+        """Nothing."""
+
+    def drive(self, _: String) -> None:
+        asyncio.run_coroutine_threadsafe(self.there.wait(), self.context.loop).result()
+
+    async def arrive(self, _: String) -> None:
+        self.there.set()
+
+
+class Gathers(KeepsState):
+    async def poll(self) -> None:
+        while not self.state.ready.is_set():
+            await self.clock.sleep(0.05)
+
+    async def go(self, _: String) -> None:
+        async with asyncio.TaskGroup() as group:
+            group.create_task(self.wait_there())
+            group.create_task(self.clock.sleep(0.1))
+
+    async def wait_there(self) -> None:
+        await asyncio.gather(self.state.ready.wait(), self.clock.sleep(0.1))
+
+
+@pytest.mark.parametrize(
+    ("program", "what", "how"),
+    [
+        (Navigates, "self.nav.is_there", "arrive, which sets it,"),
+        (NavigatesByHand, "self.nav.is_there", "arrive, which sets it,"),
+        (KeepsState, "self.state.ready", "arrive, which sets it,"),
+        (Comes, "self.barrier", "arrive, which comes to it,"),
+        (RunsWhile, "self.pose", "arrive, which sets it,"),
+        (ByALambda, "self.pose", "sets it"),
+        (SendsToTheLoop, "self.there", "arrive, which sets it,"),
+        (Gathers, "self.state.ready", "arrive, which sets it,"),
+    ],
+)
+async def test_a_program_that_cannot_go_on(
+    graph: Graph, caplog: Caplog, program: type[Node], what: str, how: str
+) -> None:
+    """It is told what for, and who is kept out."""
+    graph.deadlock = "report"
+    await graph.start(program())
+    await say(graph, "/go", "/drive", "/arrive") if program is SendsToTheLoop else await say(graph, "/go", "/arrive")
+    for _ in range(4):  # a thread needs time of its own
+        await asyncio.sleep(0.02)
+        await graph.clock.advance(0.5)
+    [text] = reports(caplog)
+    told = flat(text)
+    assert told.startswith("LIKELY DEADLOCK: subscription ")
+    assert f" waits for {what}, and " in told
+    assert how in told
+
+
+# Programs that look like them
+
+
+class GivesItAway(Navigates):
+    """Somebody else may mark it."""
+
+    known: ClassVar[list[Navigator]] = []
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.known.append(self.nav)
+
+
+class TakesWhatIsThere(Navigates):
+    """It was made elsewhere, where it is known."""
+
+    everybodys = Navigator()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav = self.everybodys
+
+
+class Restless(Navigator):
+    """Is there by itself after a while."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        threading.Timer(600.0, self.mark).cancel()
+
+
+class IsThereByItself(Navigates):
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav = Restless()
+
+
+class IsReplaced(Navigates):
+    """The one that is waited for may be another one's by now."""
+
+    async def arrive(self, _: String) -> None:
+        self.nav = Navigator()
+
+
+class OnlyLooks(Navigates):
+    """Nobody marks it that is seen: it is not understood."""
+
+    async def arrive(self, _: String) -> None:
+        self.nav.look()
+
+
+class FillsWhatMayBeTheNode(Robot):
+    """What is filled is no message."""
+
+    scan: Any = None
+
+    async def go(self, _: String) -> None:
+        while self.is_running and self.scan is None:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, message: String) -> None:
+        self.scan = message
+
+    def unrelated(self, given: Any) -> Any:
+        given.scan = None
+        return given
+
+
+class MarkedOutside(Navigates):
+    """A handler of no group marks it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.create_subscription(String, "/free", self.free, 10)
+
+    def free(self, _: String) -> None:
+        self.nav.mark()
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        GivesItAway,
+        TakesWhatIsThere,
+        IsThereByItself,
+        IsReplaced,
+        OnlyLooks,
+        FillsWhatMayBeTheNode,
+        MarkedOutside,
+    ],
+)
+async def test_a_program_that_may_go_on(graph: Graph, caplog: Caplog, program: type[Node]) -> None:
+    """Nothing is told."""
+    graph.deadlock = "report"
+    await graph.start(program())
+    await say(graph, "/go", "/arrive")
+    for _ in range(4):
+        await asyncio.sleep(0.02)
+        await graph.clock.advance(0.5)
+    assert reports(caplog) == []
