@@ -83,8 +83,12 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     ways = findings(resolved, found)
     for way in ways:
         output.talk(str(way))
-    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, no problems")
-    return exits.FAILED if any(way.grade == "CERTAIN" for way in ways) else exits.OK
+    certain = [way for way in ways if way.grade == "CERTAIN"]
+    possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
+    told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
+    more = f"no mistakes, {', '.join(told)}" if told else "no problems"
+    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
+    return exits.FAILED if certain else exits.OK
 
 
 def _count(things: Sized, word: str) -> str:

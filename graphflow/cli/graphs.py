@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 import click
@@ -20,6 +21,8 @@ from graphflow.wire.profile import PROFILES, VARIABLE
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 _everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
 
+DETAIL = 60
+"""Characters of what is wrong with a node that `ps` shows; its log has the rest."""
 PS_LIMIT = 1.0
 """Seconds that a supervisor has to say how its nodes are."""
 
@@ -173,7 +176,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
         (
             row["graph"],
             row["node"],
-            row["state"] + (f" ({row['detail']})" if row["detail"] else ""),
+            row["state"] + (f" ({shorten(row['detail'], DETAIL, placeholder=' ...')})" if row["detail"] else ""),
             str(row["pid"] or "-"),
             ago(now - row["since"]),
             row["class"],

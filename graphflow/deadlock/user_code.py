@@ -31,12 +31,13 @@ def is_users_object(thing: object) -> bool:
 def is_users(file: str) -> bool:
     """Whether a source file is neither graphflow's nor Python's own."""
     is_made = file.startswith("<") and "/" in file  # <std_msgs/msg/String>: a codec
-    if _is_ours(file) or is_made or file.startswith("<frozen"):
+    if is_ours(file) or is_made or file.startswith("<frozen"):
         return False
     return not file.startswith(_PYTHONS) or "site-packages" in file
 
 
-def _is_ours(file: str) -> bool:
+def is_ours(file: str) -> bool:
+    """Whether a source file is graphflow's own."""
     return file.startswith(_OURS) and not file.startswith(_DEMOS)
 
 
@@ -62,7 +63,7 @@ def called_in(frames: Iterable[FrameType], instance: object) -> str:
 def users_part(error: BaseException) -> TracebackType | None:
     """An error's traceback without graphflow's frames at its beginning; whole if there are no others."""
     rest = error.__traceback__
-    while rest is not None and _is_ours(rest.tb_frame.f_code.co_filename):
+    while rest is not None and is_ours(rest.tb_frame.f_code.co_filename):
         rest = rest.tb_next
     return rest or error.__traceback__
 

@@ -10,9 +10,11 @@ import logging
 import sys
 import threading
 import time
-import traceback
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
+
+from graphflow.deadlock.asyncio_frames import stack_of
+from graphflow.deadlock.user_code import is_ours, is_users
 
 logger = logging.getLogger("graphflow")
 
@@ -22,6 +24,8 @@ ANSWER_WITHIN = 0.1
 """Seconds after which a busy loop that was pinged counts as late."""
 REPORT_AFTER = 1.0
 """Seconds after which a blocked loop is reported with its stack."""
+STACK_SHOWN = 6
+"""Lines of that stack, from the user's code inwards."""
 _IDLE = ("select", "poll", "_poll", "run_forever", "_run_once", "run_until_complete")
 """Functions in which a loop waits for something to happen."""
 
@@ -99,11 +103,16 @@ class Watchdog:
             logger.warning("the event loop runs again after %.1f s", took)
 
     def _stack(self) -> str:
-        frame = sys._current_frames().get(self._loop_thread)
-        stack = "".join(traceback.format_stack(frame)[-6:]) if frame is not None else ""
+        frames = stack_of(self._loop_thread)
+        files = [frame.f_code.co_filename for frame in frames]
+        shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
+        last = max((i for i, file in enumerate(files) if is_users(file)), default=-1)
+        first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=0)
+        where = f" in {shown[last]}" if last >= 0 else ""
+        stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         return (
-            f"the event loop has been blocked for {self.blocked_for:.1f} s: nothing else in this process can run.\n"
-            f"Await what takes long, or move it to a thread: thread=True, or await self.offload(...)\n{stack}"
+            f"the event loop has been blocked for {self.blocked_for:.1f} s{where}: nothing else in this process can "
+            f"run.\nAwait what takes long, or move it to a thread: thread=True, or await self.offload(...){stack}"
         )
 
     def close(self) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 from graphflow.errors import Place
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
+from graphflow.machines.regrouping import Regrouping
 from graphflow.names import Remap
 
 
@@ -71,6 +72,17 @@ class PlannedNode:
     """Full names of nodes, or names of steps, that come first."""
     concurrency: dict[str, PlannedGroup] = field(default_factory=dict)
     """What differs from the groups the class declares, by group name."""
+
+    def regrouping(self, file: str) -> Regrouping:
+        """What the graph file says of the node's groups, and where.
+
+        Args:
+            file: The graph's own file, which may include the one that has the node.
+        """
+        groups = {name: group.change for name, group in self.concurrency.items()}
+        if self.place.file == file:
+            return Regrouping(groups, file, "nodes", self.place.line)
+        return Regrouping(groups, file, "override")
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,7 @@ from graphflow.errors import Place
 from graphflow.graph.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface
+from graphflow.machines.regrouping import Regrouping
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
@@ -85,7 +86,7 @@ class _Actor:
 
 def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
     """What the source of a plan's classes shows; each way into a deadlock once."""
-    world = _World()
+    world = _World(plan.file)
     for node in plan.nodes:
         interface = interfaces[node.class_path]
         if isinstance(interface, Interface):
@@ -110,12 +111,16 @@ def warnings(ways: list[Finding], file: str) -> list[str]:
 class _World:
     """The handlers of a graph and the calls between them."""
 
-    def __init__(self) -> None:
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._regroupings: dict[str, Regrouping] = {}
+        """What the file says of groups, by node."""
         self._calls: dict[_Actor, list[_Call]] = {}
         self._servers: dict[str, _Actor | None] = {}
         self._unresolved: list[Finding] = []
 
     def add(self, node: PlannedNode, interface: Interface) -> None:
+        self._regroupings[node.name] = node.regrouping(self._file)
         names, source = resolver(node), _Source(interface)
         clients = {e.attribute: names.resolve(e.name, "service") for e in interface.endpoints if "client" in e.kind}
         for handler in interface.handlers:
@@ -169,12 +174,19 @@ class _World:
                     f"{actor} awaits {call.name}, whose handler {server.handler} needs {slot}, "
                     f"which the chain of calls itself holds: {self._told(way)}"
                 )
-                yield Finding(grade, call.place, f"{text}. {_remedy(server, actor)}"), slot, call.place
+                yield (
+                    Finding(grade, call.place, f"{text}. {self._remedy(server, actor)}"),
+                    slot,
+                    call.place,
+                )
             else:
                 held[slot] += 1
                 yield from self._follow(server, way, held)
                 held[slot] -= 1
             held[actor.slot] += call.is_released
+
+    def _remedy(self, server: _Actor, actor: _Actor) -> str:
+        return _remedy(server, actor, self._regroupings[server.node])
 
     def _told(self, way: list[_Call]) -> str:
         return ", then ".join(f"{call.name} ({Path(call.place.file).name}:{call.place.line})" for call in way)
@@ -201,7 +213,7 @@ class _World:
                 for actor, call, _ in steps
             )
             actor, call, server = steps[0]
-            remedy = _remedy(server, actor)
+            remedy = self._remedy(server, actor)
             yield Finding("POSSIBLE", call.place, f"{told}. {remedy}"), frozenset(ring)
 
 
@@ -223,14 +235,22 @@ def _ring(start: _Slot, edges: Mapping[_Slot, Mapping[_Slot, object]]) -> list[_
     return None
 
 
-def _remedy(server: _Actor, actor: _Actor) -> str:
+def _remedy(server: _Actor, actor: _Actor, regrouping: Regrouping) -> str:
+    """What ends it, with the line for the graph file, which keeps what the file says already."""
+    handler = server.handler
+    if server.slot.is_own and server.kind == "action":
+        return f"Let several goals run at a time: policy='parallel' where {handler} is declared"
     if server == actor and not server.slot.is_own:
-        deeper = f"{{concurrency: {{{server.slot.name}: {{limit: N}}}}}}"
-        return f"Allow as many runs as the recursion is deep: {server.node}: {deeper}"
-    if server.slot.is_own:
-        return f"Let several runs of {server.handler} overlap: give it a group with limit: none"
-    own = f"{server.handler}_group"
-    return f"Give {server.handler} a group of its own: {server.node}: {{concurrency: {{{own}: [{server.handler}]}}}}"
+        told, changed = (
+            "Allow as many runs as the recursion is deep, in place of 2",
+            regrouping.limited(server.slot.name, 2),
+        )
+    elif server.slot.is_own:
+        told = f"Let several runs of {handler} overlap: give it a group without a limit"
+        changed = regrouping.moved([handler], f"{handler}_group").limited(f"{handler}_group", None)
+    else:
+        told, changed = f"Give {handler} a group of its own", regrouping.moved([handler], f"{handler}_group")
+    return f"{told}, {changed.where} {' '.join(line.strip() for line in changed.lines(server.node, ''))}"
 
 
 def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slot:

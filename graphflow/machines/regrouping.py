@@ -21,11 +21,13 @@ class Regrouping:
         groups: The changes by group name.
         file: The graph file to write them to; empty where the node was started without one.
         section: The key of that file under which the node is written: `override` for one that comes from an include.
+        line: Where its entry is in that file; 0 if it has none.
     """
 
     groups: Mapping[str, GroupChange] = field(default_factory=dict)
     file: str = ""
     section: str = "nodes"
+    line: int = 0
 
     def moved(self, handlers: Sequence[str], group: str, *, thread: bool | None = None) -> Regrouping:
         """The same with handlers in that group, and in no other."""
@@ -41,7 +43,7 @@ class Regrouping:
         )
         return replace(self, groups=left)
 
-    def limited(self, group: str, limit: int) -> Regrouping:
+    def limited(self, group: str, limit: int | None) -> Regrouping:
         """The same with another limit of a group."""
         here = self.groups.get(group, GroupChange())
         return replace(self, groups={**self.groups, group: replace(here, limit=limit, sets_limit=True)})
@@ -49,6 +51,8 @@ class Regrouping:
     @property
     def where(self) -> str:
         """The place in the graph file to write it to, in words."""
+        if self.line:
+            return f"as the concurrency: of the entry at {self.file}:{self.line}"
         return f"in {self.file or 'the graph file'} under {self.section}:"
 
     def lines(self, node: str, indent: str) -> list[str]:

@@ -55,7 +55,7 @@ def _regrouping(regrouping: Regrouping) -> Json:
     groups: dict[str, Json] = {
         name: [list(c.handlers), c.limit, c.sets_limit, c.when_full, c.thread] for name, c in regrouping.groups.items()
     }
-    return [regrouping.file, regrouping.section, groups]
+    return [regrouping.file, regrouping.section, regrouping.line, groups]
 
 
 def _condition(condition: Condition, depth: int = 0) -> Json:
@@ -131,9 +131,9 @@ def _read_activity(row: list[object]) -> ActivityView:
 
 
 def _read_regrouping(row: list[object]) -> Regrouping:
-    file, section, groups = row
+    file, section, line, groups = row
     changes = {_text(name): _read_change(_list(change)) for name, change in _mapping(groups).items()}
-    return Regrouping(changes, _text(file), _text(section))
+    return Regrouping(changes, _text(file), _text(section), _int(line))
 
 
 def _read_change(row: list[object]) -> GroupChange:

@@ -40,8 +40,14 @@ WORDS = (
     Word(
         "`rclpy.init`, `spin`, `shutdown`",
         "`graphflow.run(Talker)`; in your own program `async with graphflow.running(node):`",
+        names="init spin shutdown ok try_shutdown create_node",
     ),
-    Word("`spin_once`, `spin_until_future_complete`", "not needed: `await`", "executor"),
+    Word(
+        "`spin_once`, `spin_until_future_complete`",
+        "not needed: `await`",
+        "executor",
+        names="spin_once spin_until_future_complete",
+    ),
     Word('`super().__init__("talker")`', "the same, or leave it out: the name is then the class's in snake case"),
     Word("`from std_msgs.msg import String`", "`from graphflow.msgs.std_msgs.msg import String`"),
     Word('`create_publisher(String, "chatter", 10)`', 'the same, or `chatter = Publisher(String, "chatter", 10)`'),
@@ -66,7 +72,8 @@ WORDS = (
     Word("`future.add_done_callback(f)`", "the lines after the `await`"),
     Word(
         '`declare_parameter("rate", 1.0)`',
-        '`rate = Param(1.0)`; `self.declare_parameter("rate", 1.0)` returns the value',
+        '`rate = Param(1.0)`, then `self.rate`; `self.declare_parameter("rate", 1.0)` returns a copy of the value: '
+        'where it is used, read `self.parameters.get("rate")`',
     ),
     Word(
         "`declare_parameters(ns, [...])`",

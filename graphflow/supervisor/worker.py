@@ -17,7 +17,6 @@ from typing import Any, Protocol
 from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
-from graphflow.machines.regrouping import Regrouping
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
@@ -61,11 +60,7 @@ def make_node(planned: PlannedNode, file: str) -> Node:
         names.namespace,
         [r.remap() for r in planned.remaps],
         overrides,
-        Regrouping(
-            {name: group.change for name, group in planned.concurrency.items()},
-            file,
-            "nodes" if planned.place.file == file else "override",
-        ),
+        planned.regrouping(file),
     )
     node = make_within(cls, given, names.name)
     if not isinstance(node, Node):

@@ -109,5 +109,5 @@ def test_check_of_a_certain_deadlock(machine: Machine) -> None:
     """There is no problem with the file, and the exit code is 1; its fixed twin has neither."""
     text = machine.look("check", "deadlock/self_call_broken", code=1)
     assert "self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add" in text
-    assert "1 node, 0 steps, no problems" in text
+    assert "1 node, 0 steps, no mistakes, 1 deadlock" in text
     assert "CERTAIN" not in machine.look("check", "deadlock/self_call_fixed")

@@ -144,7 +144,7 @@ def test_advice_that_is_followed(lab: Lab, name: str) -> None:
     """The report names the line, and with what it says to write the graph goes on."""
     case = WRITTEN[name]
     up = start(lab, case)
-    up.wait_for(f"{case.stuck}   (student.py:{line_of('stuck', case.program)} in {case.function}, for ")
+    up.wait_for(f"{case.stuck}   (student.py:{line_of('stuck', case.program)} in {case.function},")
     up.wait_for("Any one of these ends it:")
     up.wait_for(f"      {case.fix}\n", limit=2.0)
     [headline] = reports(up.text)

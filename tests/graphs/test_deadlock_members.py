@@ -134,7 +134,7 @@ def test_a_loop_that_is_held(lab: Lab) -> None:
     """The watchdog tells it, with the line; who waits for that process is in no deadlock (row 22)."""
     up = hold(lab, "Sleepy")
     up.wait_for("[graphflow]: the event loop has been blocked for 1.")
-    up.wait_for(f'ring.py", line {line_of("held: Sleepy")}, in hold')
+    up.wait_for(f"ring.py:{line_of('held: Sleepy')} in hold")
 
     let_go(lab)
     wait_for_all(up, [*answered("a"), "the event loop runs again after"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 import yaml
 
@@ -52,6 +54,7 @@ def test_another_limit() -> None:
 def test_where_it_is_written() -> None:
     """The file and its section; without a file, whichever comes."""
     assert SAID.where == "in lab.yaml under nodes:"
+    assert replace(SAID, line=6).where == "as the concurrency: of the entry at lab.yaml:6"
     assert Regrouping().where == "in the graph file under nodes:"
 
 

@@ -74,13 +74,16 @@ CHANGES = st.builds(
     st.none() | st.sampled_from(get_args(WhenFull)),
     st.none() | st.booleans(),
 )
+REGROUPINGS = st.builds(Regrouping, st.dictionaries(TEXT, CHANGES, max_size=2), TEXT, TEXT, WHOLE)
 PICTURES = st.builds(
     WaitGraph,
     st.lists(ACTIVITIES, max_size=3).map(lambda some: {a.id: a for a in some}),
     st.lists(GROUPS, max_size=3).map(lambda some: {g.id: g for g in some}),
     st.lists(QUEUES, max_size=3).map(lambda some: {q.id: q for q in some}),
     st.dictionaries(TEXT, TEXT, max_size=3),
-    st.dictionaries(TEXT, st.builds(Regrouping, st.dictionaries(TEXT, CHANGES, max_size=2), TEXT, TEXT), max_size=2),
+    st.dictionaries(
+        TEXT, st.builds(Regrouping, st.dictionaries(TEXT, CHANGES, max_size=2), TEXT, TEXT, WHOLE), max_size=2
+    ),
 )
 JUNK: st.SearchStrategy[Any] = st.recursive(
     st.none() | st.booleans() | WHOLE | st.floats() | TEXT | st.sampled_from(["call", "slot", "join", "set", "all"]),

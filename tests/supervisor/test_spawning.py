@@ -72,7 +72,7 @@ async def test_ending_what_has_ended(tmp_path: Path) -> None:
 async def test_closing_ends_its_workers(tmp_path: Path) -> None:
     """Also one that has not yet connected."""
     starter, heard, _ = await opened(tmp_path)
-    job = {"process": "/a", "root": str(tmp_path), "nodes": []}
+    job = {"process": "/a", "file": "lab.yaml", "root": str(tmp_path), "nodes": []}
     starter.spawn("/a", job, str(tmp_path / "a.log"), {})
     while not heard:
         await asyncio.sleep(0)

@@ -33,7 +33,7 @@ async def start(starter: Starter) -> None:
     await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda: print("lost"))
 
     async def follow(name: str, class_path: str, env: dict[str, str], end: Callable[[str, int], None] | None) -> None:
-        job = {"process": name, "root": str(ROOT), "nodes": [planned(class_path)]}
+        job = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": [planned(class_path)]}
         (log := ROOT / f"{name}.log").touch()
         starter.spawn(name, job, str(log), env)
         pid = 0
