@@ -57,7 +57,7 @@ def _say_goodbye(run: GraphRun, how: str, exit_code: int | None) -> int:
     if how == "stop":
         return take_down(run, now=False)
     if not run.is_alive:
-        output.error(f"the supervisor of {run.graph} died; its log is {run.logs}/supervisor.log")
+        output.error(f"the supervisor of {run.graph} died; its log is {run.logs}/{rundir.SUPERVISOR_LOG}")
         output.talk(f"start the graph again with: graphflow up {shown(Path(run.file))}")
         return exits.FAILED
     nodes = len(_rows(run)["nodes"])

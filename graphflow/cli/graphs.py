@@ -208,7 +208,7 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
             raise
         folder, alive = found, False
         output.talk(f"no graph is running; this is the latest run of {folder.parent.name}, {folder.name}")
-    files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != "supervisor.log"}
+    files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != rundir.SUPERVISOR_LOG}
     wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
     for node in wanted:
         if node not in files:

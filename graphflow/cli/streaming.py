@@ -14,7 +14,7 @@ from typing import Any
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.supervisor.control import ControlClient
-from graphflow.supervisor.rundir import GraphRun
+from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
 
 _POLL = 0.1
 """Seconds between reads of the log files."""
@@ -121,7 +121,7 @@ class _Stream:
     def _lost(self) -> int:
         assert self._logs is not None
         self._logs.show()
-        output.error(f"the supervisor died; its log is {self._run['logs']}/supervisor.log")
+        output.error(f"the supervisor died; its log is {self._run['logs']}/{SUPERVISOR_LOG}")
         return exits.FAILED
 
     def _show(self, event: dict[str, Any]) -> int | None:

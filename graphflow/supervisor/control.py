@@ -91,6 +91,8 @@ class ControlServer:
             self._token = secrets.token_hex(16)
             self._server = await asyncio.start_server(self._accept, "127.0.0.1", 0)
             return f"{_TCP}{self._server.sockets[0].getsockname()[1]}/{self._token}"
+        if self._server is not None:
+            self._server.close()
         path.unlink(missing_ok=True)
         mask = os.umask(0o177)
         try:

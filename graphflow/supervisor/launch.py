@@ -22,11 +22,15 @@ if TYPE_CHECKING:
     from graphflow.graph.check import Interfaces
     from graphflow.graph.plan import Plan
     from graphflow.runtime.context import Context
+    from graphflow.supervisor.control import ControlServer
     from graphflow.supervisor.rundir import GraphRun, RunDirectory
     from graphflow.supervisor.starter import Starter
     from graphflow.supervisor.supervisor import Supervisor
 
 Report = dict[str, Any]
+
+REACHABLE_EVERY = 2.0
+"""Seconds between two looks whether the run directory is still there."""
 
 
 def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) -> Report:
@@ -174,10 +178,12 @@ class _Launch:
         directory = rundir.RunDirectory(domain, plan.name)
         directory.claim()
         try:
-            refuse_taken_names([n.name for n in plan.nodes], domain)
+            names = [n.name for n in plan.nodes]
+            refuse_taken_names(names, domain)
+            directory.claim_names(names)  # another graph may be starting at this very moment
             run_id = rundir.new_run_id()
             logs = rundir.open_logs(plan.name, run_id)
-            _log_to(logs / "supervisor.log")
+            _log_to(logs / rundir.SUPERVISOR_LOG)
             context = await Context.open(domain, link=False)
             try:
                 context.open_link()
@@ -200,13 +206,14 @@ class _Launch:
         import asyncio
         from dataclasses import replace
 
-        from graphflow.supervisor.control import ControlServer
+        from graphflow.supervisor import control as controlling
+        from graphflow.supervisor import rundir
         from graphflow.supervisor.supervisor import Supervisor
 
         supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
         _tell_notes(supervisor.note)
-        await self._starter.open(Path(run.logs) / "supervisor.log", supervisor.heard, supervisor.starter_lost)
-        control = ControlServer(supervisor)
+        await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
+        control = controlling.ControlServer(supervisor)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
@@ -218,6 +225,7 @@ class _Launch:
         os.close(self._report_pipe)
         self._report_pipe = -1
         linked = asyncio.create_task(context.wait_linked())
+        kept = asyncio.create_task(_keep_reachable(supervisor, control, directory, run))
         warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
         try:
             code = await supervisor.run()
@@ -225,9 +233,33 @@ class _Launch:
             return code
         finally:
             linked.cancel()
+            kept.cancel()
             warned.cancel()
             await control.close()
             await self._starter.close()
+
+
+async def _keep_reachable(
+    supervisor: Supervisor, control: ControlServer, directory: RunDirectory, run: GraphRun
+) -> None:
+    """Make the run directory again when it is taken away, as at a logout; else stop, for no verb could do it."""
+    import asyncio
+
+    from graphflow.errors import SupervisorError
+
+    while True:
+        await asyncio.sleep(REACHABLE_EVERY)
+        if directory.is_there(run):
+            continue
+        try:
+            directory.restore()
+            if not is_portable():
+                await control.open(directory.socket)
+            directory.write(run)
+        except (OSError, SupervisorError) as error:
+            supervisor.begin_stop(now=False, reason=f"its run directory was taken away: {error}")
+            return
+        supervisor.note("the run directory was taken away, and was made again")
 
 
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:

@@ -2,9 +2,10 @@
 
     $XDG_RUNTIME_DIR/graphflow/<domain>/<graph>/       run.json, control.sock      (0700)
     $XDG_RUNTIME_DIR/graphflow/<domain>.<graph>.lock   held while the graph runs
-    $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, supervisor.log; `latest` points to the newest
+    $XDG_STATE_HOME/graphflow/<graph>/<run id>/        <node>.log, +supervisor.log; `latest` points to the newest
 
-Without XDG_RUNTIME_DIR a private folder under the temporary directory is used; ROS_LOG_DIR moves the logs.
+Without XDG_RUNTIME_DIR, or where that is no absolute path, a private folder under the temporary directory is used;
+ROS_LOG_DIR moves the logs.
 A graph runs when its run file names a process that is alive and was started when the file says.
 """
 
@@ -17,6 +18,7 @@ import stat
 import sys
 import tempfile
 import time
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +27,10 @@ from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
 from graphflow.system import is_portable, user_id
 
+SUPERVISOR_LOG = "+supervisor.log"
+"""What the supervisor says of itself; no node can be called so."""
+NAMES_PATIENCE = 5.0
+"""Seconds that another graph may take to claim its names."""
 SOCKET_PATH_LIMIT = 100
 """Bytes that a Unix socket's path may have, leaving room for the C string's end."""
 
@@ -35,8 +41,8 @@ def runtime_root() -> Path:
     Raises:
         SupervisorError: The folder cannot be made, or belongs to another user.
     """
-    given = os.environ.get("XDG_RUNTIME_DIR")
-    root = Path(given) / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
+    given = _folder("XDG_RUNTIME_DIR")
+    root = given / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
         found = root.lstat()
@@ -49,14 +55,22 @@ def runtime_root() -> Path:
 
 def state_root() -> Path:
     """The folder of what is kept for this user from one run to the next."""
-    state = os.environ.get("XDG_STATE_HOME")
-    return (Path(state) if state else Path.home() / ".local" / "state") / "graphflow"
+    return (_folder("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "graphflow"
 
 
 def log_root() -> Path:
     """The folder of all logs."""
     given = os.environ.get("ROS_LOG_DIR")
-    return Path(given) if given else state_root()
+    return Path(given).absolute() if given else state_root()
+
+
+def _folder(variable: str) -> Path | None:
+    """A folder that the environment names; a relative one would be another in each place, and counts as none.
+
+    Source: XDG Base Directory Specification.
+    """
+    given = os.environ.get(variable, "")
+    return Path(given) if os.path.isabs(given) else None
 
 
 def new_run_id() -> str:
@@ -165,7 +179,7 @@ class RunDirectory:
             SupervisorError: The graph is already running, or the directory cannot be made.
         """
         # Next to the directory, and never removed: the process that holds the lock on this one file owns the directory.
-        lock = self.path.parents[1] / f"{self.path.parent.name}.{self.path.name}.lock"
+        lock = _lock_of(self.path)
         try:
             self._lock = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
         except OSError as error:
@@ -185,6 +199,44 @@ class RunDirectory:
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
             raise SupervisorError(f"{self.path}: {error.strerror}") from None
+
+    def claim_names(self, names: Iterable[str]) -> None:
+        """Claim the names of the graph's nodes, before it is known to the network that there are such nodes.
+
+        Raises:
+            SupervisorError: Another graph of this user, domain and rendezvous has claimed some of them.
+        """
+        root, endpoint = self.path.parents[1], rendezvous_endpoint()
+        guard = os.open(root / "names.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        try:
+            _lock_soon(guard, root / "names.lock")
+            for file in self.path.parent.glob("*/names"):
+                claimed = file.read_text(encoding="utf-8").split("\n") if file.parent != self.path else []
+                taken = sorted(set(names).intersection(claimed)) if claimed[:1] == [endpoint] else []
+                if taken and _is_locked(_lock_of(file.parent)):
+                    raise SupervisorError(
+                        f"already in domain {self.path.parent.name}: {', '.join(taken)} (graph {file.parent.name}). "
+                        f"Stop it with: graphflow down --graph {file.parent.name}"
+                    )
+            (self.path / "names").write_text("\n".join([endpoint, *names]), encoding="utf-8")
+        except OSError as error:
+            raise SupervisorError(f"{error.filename or root}: {error.strerror}") from None
+        finally:
+            os.close(guard)
+
+    def is_there(self, run: GraphRun) -> bool:
+        """Whether verbs still find the graph: a logout takes the directory away."""
+        return read_run(self.path / "run.json") == run
+
+    def restore(self) -> None:
+        """Make the directory again. Raises SupervisorError if that is not possible."""
+        try:
+            self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        except OSError as error:
+            raise SupervisorError(f"{self.path}: {error.strerror}") from None
+        if self._lock is not None:
+            os.close(self._lock)
+        self.claim()
 
     @property
     def socket(self) -> Path:
@@ -207,7 +259,7 @@ class RunDirectory:
 
     def release(self) -> None:
         """Remove what `claim` and `write` left."""
-        for name in ("run.json", "run.json.new", "control.sock"):
+        for name in ("run.json", "run.json.new", "names", "control.sock"):
             (self.path / name).unlink(missing_ok=True)
         self.socket.unlink(missing_ok=True)
         for folder in (self.path, self.path.parent):
@@ -218,6 +270,39 @@ class RunDirectory:
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
+
+
+def _lock_of(directory: Path) -> Path:
+    return directory.parents[1] / f"{directory.parent.name}.{directory.name}.lock"
+
+
+def _is_locked(file: Path) -> bool:
+    """Whether the process that has locked a file lives."""
+    try:
+        fd = os.open(file, os.O_RDWR | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        _lock(fd)
+    except OSError:
+        return True
+    finally:
+        os.close(fd)
+    return False
+
+
+def _lock_soon(fd: int, file: Path) -> None:
+    """Lock a file that others hold for a moment only."""
+    deadline = time.monotonic() + NAMES_PATIENCE
+    while True:
+        try:
+            _lock(fd)
+        except OSError:
+            if time.monotonic() > deadline:
+                raise SupervisorError(f"{file} has been locked for {NAMES_PATIENCE:g} s; is a graph stopped?") from None
+            time.sleep(0.01)
+        else:
+            return
 
 
 def _lock(fd: int) -> None:

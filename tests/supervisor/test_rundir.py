@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -272,3 +273,72 @@ def test_without_proc_psutil_tells(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rundir, "Path", lambda path: Path("/nowhere" + path))
     assert start_time(os.getpid()) is not None
     assert start_time(2**22 + 1) is None
+
+
+@pytest.mark.parametrize("variable", ["XDG_RUNTIME_DIR", "XDG_STATE_HOME"])
+def test_a_relative_folder_counts_as_none(variable: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """It would be another one for each verb that is typed elsewhere."""
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv(variable, "here")
+    monkeypatch.chdir(tmp_path)
+    assert runtime_root().is_absolute()
+    assert log_root().is_absolute()
+    monkeypatch.setenv("ROS_LOG_DIR", "logs")
+    assert log_root() == tmp_path / "logs"
+
+
+def test_no_node_writes_into_the_log_of_the_supervisor() -> None:
+    """Whatever it is called."""
+    assert log_file(Path("/l"), "/supervisor").name != rundir.SUPERVISOR_LOG
+    assert not rundir.SUPERVISOR_LOG.removesuffix(".log").replace(".", "_").isidentifier()
+
+
+def test_names_are_claimed_by_one_graph_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a domain and a rendezvous; whoever has ended or died claims nothing."""
+    first, second = start("first"), start("second")
+    first.claim_names(["/a", "/b"])
+    first.claim_names(["/a", "/b"])
+    with pytest.raises(SupervisorError, match=r"already in domain 7: /b \(graph first\)"):
+        second.claim_names(["/b", "/c"])
+    second.claim_names(["/c"])
+    elsewhere = start("third", domain=8)
+    elsewhere.claim_names(["/a"])
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/y")
+    second.claim_names(["/a"])
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/x")
+    assert first._lock is not None
+    os.close(first._lock)  # as when its process dies
+    first._lock = None
+    second.claim_names(["/a", "/b"])
+    for directory in (first, second, elsewhere):
+        directory.release()
+
+
+def test_another_graph_that_claims_names_is_waited_for_but_not_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes a moment, unless it is stopped meanwhile."""
+    monkeypatch.setattr(rundir, "NAMES_PATIENCE", 0.05)
+    directory = start()
+    with (runtime_root() / "names.lock").open("w") as held:
+        rundir._lock(held.fileno())
+        with pytest.raises(SupervisorError, match=r"names.lock has been locked for 0.05 s"):
+            directory.claim_names(["/a"])
+    directory.claim_names(["/a"])
+    directory.release()
+
+
+def test_a_directory_that_is_taken_away_is_made_again(folders: Path) -> None:
+    """And nobody else can claim it."""
+    directory = start()
+    assert directory.is_there(a_run())
+    shutil.rmtree(folders / "run")
+    assert not directory.is_there(a_run())
+    directory.restore()
+    directory.write(a_run())
+    assert directory.is_there(a_run())
+    with pytest.raises(SupervisorError, match="already running"):
+        RunDirectory(7, "chase").claim()
+    shutil.rmtree(folders / "run")
+    (folders / "run").touch()
+    with pytest.raises(SupervisorError, match=f"{folders / 'run'}"):
+        directory.restore()
