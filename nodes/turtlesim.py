@@ -4,7 +4,8 @@ A node that knows its topics and services in advance declares them on its class.
 topics and services of its own, so they are made when it hatches, with the `create_*` methods that declarations
 use too, and closed when it is killed. What turtles do is in `turtle_world.py`, which knows nothing about nodes.
 
-There is no window. Ask for a picture, an SVG file in the response's `message`, whenever you want one:
+There is no window. With `-p view:=true` a page in your browser shows the turtles live; its address is logged. Or ask
+for a picture, an SVG file in the response's `message`, whenever you want one:
 
     graphflow service call /turtlesim/snapshot std_srvs/srv/Trigger
 
@@ -14,11 +15,13 @@ Source: turtlesim 1.8.
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
 from typing import Any
 
 import graphflow
 from graphflow import Abort, InvalidName, Node, Param, service, task, timer
-from graphflow.msgs.geometry_msgs.msg import Twist
+from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
 from graphflow.msgs.turtlesim.msg import Color, Pose
@@ -26,10 +29,13 @@ from graphflow.msgs.turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, 
 
 from .turtle_canvas import Colour, Pen
 from .turtle_picture import svg
+from .turtle_view import TurtleView
 from .turtle_world import SIZE, TICK, NameTaken, Turtle, World, normalize
 
 TURNING_SPEED = 1.0
 """Turning speed of `rotate_absolute`, in rad/s."""
+PATIENCE = 2.0
+"""Seconds that the loop may take to draw a picture for the view."""
 CLOSE_ENOUGH = 0.02
 """Radians from the goal within which `rotate_absolute` ends."""
 
@@ -52,12 +58,46 @@ class TurtleSim(Node):
     background_g = Param(86, ge=0, le=255, doc="Green part of the background colour.")
     background_b = Param(255, ge=0, le=255, doc="Blue part of the background colour.")
     holonomic = Param(False, doc="Whether turtles also move sideways, as linear.y says.")
+    view = Param(False, read_only=True, doc="Whether a page shows the turtles in a browser on this machine.")
+    view_port = Param(0, ge=0, le=65535, read_only=True, doc="The page's port; 0 takes a free one.")
 
     def __init__(self, name: str | None = None, **options: Any) -> None:
         super().__init__(name, **options)
         self.world = World()
         self.reins: dict[str, Reins] = {}
         self.hatch_first()
+
+    async def on_start(self) -> None:
+        if self.view:
+            await self.enter(self.shown())
+
+    @asynccontextmanager
+    async def shown(self) -> AsyncGenerator[None, None]:
+        """The page that shows the turtles."""
+        loop = asyncio.get_running_loop()
+
+        async def picture() -> str:
+            return svg(self.world, self.background)
+
+        def drive(linear: float, angular: float) -> None:
+            loop.call_soon_threadsafe(self.drive_first, linear, angular)
+
+        try:
+            page = TurtleView(
+                self.view_port, lambda: asyncio.run_coroutine_threadsafe(picture(), loop).result(PATIENCE), drive
+            )
+        except OSError as error:
+            raise graphflow.GraphflowError(f"port {self.view_port} of the view: {error.strerror}") from None
+        self.log.info("Watch the turtles, and steer with the arrow keys: %s", page.url)
+        try:
+            yield
+        finally:
+            await asyncio.to_thread(page.close)
+
+    def drive_first(self, linear: float, angular: float) -> None:
+        """Steer turtle1, or the oldest that is there."""
+        for reins in list(self.reins.values())[:1]:
+            reins.command(Twist(linear=Vector3(x=linear), angular=Vector3(z=angular)))
 
     @property
     def background(self) -> Colour:

@@ -159,6 +159,7 @@ class _Preload:
         pid = os.fork()
         if pid == 0:
             try:
+                os.setpgid(0, 0)
                 self._channel.close()
                 os.close(read)
                 answer_probe(request, write)
@@ -178,6 +179,7 @@ class _Preload:
         if not done:
             os.kill(pid, signal.SIGKILL)
         os.waitpid(pid, 0)
+        sweep(pid)  # what the import has started
         result = probe_result(data, done, request["classes"])
         if any(found.get("needs_numpy") for found in result.values()):
             import numpy  # noqa: F401 - once, for all workers

@@ -9,7 +9,8 @@ import sys
 from collections.abc import Iterable
 from typing import Any
 
-from graphflow.supervisor.preload import PROBE_LIMIT, answer_probe, probe_result
+from graphflow.supervisor.preload import PROBE_LIMIT, answer_probe, probe_result, sweep
+from graphflow.system import detached
 
 
 def probe(classes: Iterable[str], root: str) -> dict[str, Any]:
@@ -21,19 +22,24 @@ def begin(classes: Iterable[str], root: str) -> subprocess.Popen[bytes]:
     """Start importing classes."""
     request = json.dumps({"classes": sorted(set(classes)), "root": root})
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.probe", request]
-    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, **detached()}
+    return subprocess.Popen(command, stdout=subprocess.PIPE, **quiet)
 
 
 def finish(probing: subprocess.Popen[bytes], classes: Iterable[str]) -> dict[str, Any]:
-    """The result of the import."""
+    """The result of the import; what it has started ends here."""
     with probing:
         try:
             out, _ = probing.communicate(timeout=PROBE_LIMIT)
         except subprocess.TimeoutExpired:
-            probing.kill()
             return probe_result(b"", False, sorted(set(classes)))
+        finally:
+            probing.kill()
+            if hasattr(os, "killpg"):
+                sweep(probing.pid)
     return probe_result(out, True, sorted(set(classes)))
 
 
 if __name__ == "__main__":
     answer_probe(json.loads(sys.argv[1]), os.dup(1))
+    os._exit(0)  # a thread that the import has started may never end

@@ -31,6 +31,8 @@ SUPERVISOR_LOG = "+supervisor.log"
 """What the supervisor says of itself; no node can be called so."""
 NAMES_PATIENCE = 5.0
 """Seconds that another graph may take to claim its names."""
+LOG_NAME_LIMIT = 200
+"""Characters of a node's name in that of its log: file systems take 255 bytes in all."""
 SOCKET_PATH_LIMIT = 100
 """Bytes that a Unix socket's path may have, leaving room for the C string's end."""
 
@@ -105,8 +107,11 @@ def latest_logs(graph: str | None) -> Path | None:
 
 
 def log_file(folder: Path, node: str) -> Path:
-    """The log of one node: `/turtle1/follower` logs to `turtle1.follower.log`."""
-    return folder / f"{node.strip('/').replace('/', '.')}.log"
+    """The log of one node: `/turtle1/follower` logs to `turtle1.follower.log`; a name too long for a file is cut."""
+    name = node.strip("/").replace("/", ".")
+    if len(name) > LOG_NAME_LIMIT:
+        name = f"{name[:LOG_NAME_LIMIT]}-{hashlib.sha256(name.encode()).hexdigest()[:16]}"
+    return folder / f"{name}.log"
 
 
 def start_time(pid: int) -> float | None:

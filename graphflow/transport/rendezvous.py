@@ -8,6 +8,7 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import zenoh
 
@@ -20,6 +21,8 @@ TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
 ANSWER_LIMIT = 0.5
 """Seconds a listener may take to answer."""
+_LISTENS = "0A"
+"""State of a TCP socket that listens, in Linux's tables."""
 PATIENCE = 2.0
 """Seconds it has when it is asked again, before it is called mute: a busy machine may take that long."""
 
@@ -36,7 +39,7 @@ def address(endpoint: str) -> tuple[str, int]:
         raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: write it as tcp/127.0.0.1:7447")
     if not (host in ("localhost", "[::1]") or host.startswith("127.")):
         raise TransportError(f"{ENDPOINT_VARIABLE}={endpoint!r}: the rendezvous is on this machine only, at 127.0.0.1")
-    return host, int(port)
+    return host.strip("[]"), int(port)
 
 
 def join() -> zenoh.Session | None:
@@ -82,6 +85,9 @@ def _is_listening(endpoint: str) -> bool:
 
 
 def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
+    uid = _listener_uid(address(endpoint)[1])
+    if uid == user_id():  # whatever anybody announces
+        return
     here = {str(zid) for zid in session.info.routers_zid()}  # other machines' may be linked to it
     for reply in session.liveliness().get(f"{TOKENS}/**", timeout=ANSWER_LIMIT):
         if reply.ok is None:
@@ -95,6 +101,19 @@ def _refuse_strangers(session: zenoh.Session, endpoint: str) -> None:
             )
 
 
+def _listener_uid(port: int) -> int | None:
+    """The user who listens on a TCP port, as Linux knows it; None where the system does not tell."""
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        try:
+            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
+        except OSError:
+            continue
+        for fields in map(str.split, lines):
+            if fields[3] == _LISTENS and int(fields[1].rpartition(":")[2], 16) == port:
+                return int(fields[7])
+    return None
+
+
 def _user_name(uid: str) -> str:
     try:
         import pwd
@@ -106,12 +125,11 @@ def _user_name(uid: str) -> str:
 
 def occupied(endpoint: str, what: str) -> str:
     """A sentence about a process that occupies an endpoint and is of no use there, and what to do about it."""
-    host, port = address(endpoint)
-    owner = _listener(port)
+    owner = _listener(address(endpoint)[1])
     return (
         f"{endpoint}: {owner or 'the process listening there'} {what}. End it"
         f"{f' (or continue it, if it is stopped: kill -CONT {owner.split()[1]})' if owner else ''}, "
-        f"or set {ENDPOINT_VARIABLE}=tcp/{host}:OTHER_PORT"
+        f"or set {ENDPOINT_VARIABLE}={endpoint.rpartition(':')[0]}:OTHER_PORT"
     )
 
 

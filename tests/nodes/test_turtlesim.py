@@ -60,6 +60,8 @@ def test_it_is_called_turtlesim_and_says_what_it_makes_at_run_time() -> None:
         "background_r": 69,
         "background_g": 86,
         "background_b": 255,
+        "view": False,
+        "view_port": 0,
         "holonomic": False,
     }
     assert {(e.name, e.type) for e in interface.endpoints} == {

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -13,8 +15,9 @@ from graphflow.graph.plan import Plan
 from graphflow.interface import Interface
 from graphflow.supervisor import probe as probe_module
 from graphflow.supervisor.classes import read_interfaces
+from graphflow.supervisor.preload import PROBE_LIMIT
 from graphflow.supervisor.probe import probe
-from tests.conftest import PROGRAMS
+from tests.conftest import PROGRAMS, alive
 
 
 @pytest.fixture
@@ -81,3 +84,25 @@ def test_nothing_to_look_at() -> None:
     """A plan without classes has no Interfaces."""
     plan = Plan("empty", "f.yaml", "/nowhere", ())
     assert probe([n.class_path for n in plan.nodes], plan.root) == {}
+
+
+@pytest.mark.real
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="no process groups here")
+def test_what_an_import_starts_ends_with_it(tmp_path: Path) -> None:
+    """A thread that never ends does not hold it up, and a child does not stay."""
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "busy.py").write_text(
+        "import pathlib, subprocess, threading, time\n"
+        "from graphflow import Node\n"
+        "threading.Thread(target=time.sleep, args=(600,)).start()\n"
+        "child = subprocess.Popen(['sleep', '600'])\n"
+        f"pathlib.Path({str(tmp_path / 'pid')!r}).write_text(str(child.pid))\n"
+        "class Busy(Node): ...\n"
+    )
+    began = time.monotonic()
+    assert "problem" not in probe(["nodes.busy:Busy"], str(tmp_path))["nodes.busy:Busy"]
+    assert time.monotonic() - began < PROBE_LIMIT / 2
+    pid = int((tmp_path / "pid").read_text())
+    while alive(pid):
+        assert time.monotonic() - began < PROBE_LIMIT
+        time.sleep(0.01)

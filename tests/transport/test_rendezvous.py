@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 import threading
+from pathlib import Path
 
 import pytest
 import zenoh
@@ -40,15 +41,36 @@ def test_a_zenoh_router_that_is_there_is_joined(foreign_router: zenoh.Session) -
     assert rendezvous.establish() is None
 
 
-def test_another_users_rendezvous_is_refused_by_name(foreign_router: zenoh.Session) -> None:
+@pytest.mark.parametrize("known", [True, False], ids=["known to the system", "by its token alone"])
+def test_another_users_rendezvous_is_refused_by_name(
+    foreign_router: zenoh.Session, known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Two users of one machine would otherwise drive each other's robots."""
     zid = foreign_router.info.zid()
     stranger = os.getuid() + 1
+    monkeypatch.setattr(rendezvous, "_listener_uid", lambda port: stranger if known else None)
     with foreign_router.liveliness().declare_token(f"{rendezvous.TOKENS}/{zid}/{stranger}/4242"):
         with pytest.raises(TransportError, match=rf"belongs to user .*{stranger}.*process 4242.*--private"):
             rendezvous.establish()
         with pytest.raises(TransportError, match="belongs to user"):
             Client()
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="the system does not tell who listens")
+def test_a_forged_token_locks_nobody_out(foreign_router: zenoh.Session) -> None:
+    """The system knows whose rendezvous it is, whatever anybody announces."""
+    zid = foreign_router.info.zid()
+    with foreign_router.liveliness().declare_token(f"{rendezvous.TOKENS}/{zid}/{os.getuid() + 1}/4242"):
+        assert rendezvous.establish() is None
+        Client().close()
+
+
+def test_who_listens(port: int) -> None:
+    """This user, or nobody."""
+    assert rendezvous._listener_uid(port) is None
+    with socket.create_server(("127.0.0.1", port)):
+        assert rendezvous._listener_uid(port) in (os.getuid(), None)
+    assert rendezvous.address("tcp/[::1]:7447") == ("::1", 7447)
 
 
 @pytest.mark.parametrize("greeting", [b"", b"SSH-2.0-OpenSSH_9.2\r\n"])
