@@ -39,12 +39,16 @@ class LogReader:
         for path, (offset, partial) in list(self._files.items()):
             try:
                 with path.open("rb") as file:
+                    if file.seek(0, 2) < offset:  # a new one was begun; the rest is in the one put aside
+                        partial += _rest(path.with_name(f"{path.name}.1"), offset)
+                        offset = 0
                     file.seek(offset)
                     data = partial + file.read()
+                    offset = file.tell()
             except FileNotFoundError:
                 continue
             lines, _, rest = data.rpartition(b"\n")
-            self._files[path] = (offset + len(data) - len(partial), rest)
+            self._files[path] = (offset, rest)
             if lines:
                 texts = lines.decode(errors="replace").split("\n")
                 self._print(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
@@ -55,6 +59,16 @@ class LogReader:
             output.colored(name, self._colours[path], (f" | {text}" for text in texts))
         else:
             output.lines(f"{name} | {text}" for text in texts)
+
+
+def _rest(path: Path, offset: int) -> bytes:
+    """What a file has from some place on; nothing if there is none."""
+    try:
+        with path.open("rb") as file:
+            file.seek(offset)
+            return file.read()
+    except OSError:
+        return b""
 
 
 def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:

@@ -12,6 +12,7 @@ Heard = Callable[[dict[str, Any]], None]
     {"event": "spawned", "process": ..., "pid": ...}
     {"event": "ready", "process": ..., "node": ...}
     {"event": "failed", "process": ..., "error": ...}
+    {"event": "log_lost", "process": ..., "why": ...}
     {"event": "exited", "process": ..., "status": ...}     as subprocess gives it: negative for a signal
 """
 

@@ -37,6 +37,8 @@ class Process:
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
         self.error = ""
+        self.log_error = ""
+        """Why lines of its log were lost."""
         self.restarts = 0
         self.stop_asked = False
         self.failed = False
@@ -103,7 +105,9 @@ class Supervisor:
                 "class": node.class_path,
                 "log": process.log,
                 "restarts": process.restarts,
-                "detail": process.error or (str(process.exit) if process.exit and process.exit.failed else ""),
+                "detail": process.error
+                or (str(process.exit) if process.exit and process.exit.failed else "")
+                or (f"its log is not written whole: {process.log_error}" if process.log_error else ""),
             }
             for process in self._processes.values()
             for node in process.nodes
@@ -218,6 +222,9 @@ class Supervisor:
                 self._finished(process.name)
         elif what == "failed":
             process.error = event["error"]
+        elif what == "log_lost":
+            process.log_error = str(event["why"])
+            self._tell(event="note", text=f"{process.name}: its log is not written whole: {process.log_error}")
         elif what == "exited":
             process.exit = Exit.of_status(event["status"])
             self._happen(process, Event.EXIT)
@@ -310,6 +317,7 @@ class Supervisor:
         job = {
             "process": process.name,
             "nodes": [self._planned[n.name] for n in process.nodes],
+            "log": process.log,
             "file": self.plan.file,
             "root": self.plan.root,
             "domain": self._context.domain,
@@ -319,7 +327,7 @@ class Supervisor:
         }
         again = process.exit is not None
         process.restarts += again
-        process.pid, process.exit, process.error = None, None, ""
+        process.pid, process.exit, process.error, process.log_error = None, None, "", ""
         process.stop_asked = process.failed = False
         process.waiting_for = {n.name for n in process.nodes}
         self._tell(event="starting", process=process.name, again=again)

@@ -23,6 +23,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
 from graphflow.runtime.surroundings import Surroundings, make_within
+from graphflow.supervisor import logfile
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.transport import loop
 
@@ -126,13 +127,16 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     """Run a worker to its end; does not return.
 
     Args:
-        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`.
+        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`, and
+            `log`, the file that its output goes to.
     """
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
-    faulthandler.enable()
+    faulthandler.enable(2)
+    if "log" in job:
+        logfile.write_to(job["log"], lambda why: report.tell(event="log_lost", process=job["process"], why=why))
     if hasattr(signal, "SIGUSR2"):
-        faulthandler.register(signal.SIGUSR2)  # `kill -USR2` logs where a process hangs, even in C
+        faulthandler.register(signal.SIGUSR2, 2)  # `kill -USR2` logs where a process hangs, even in C
     setup_console()
     code = 0
     try:
