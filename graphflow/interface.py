@@ -47,6 +47,8 @@ class EndpointInfo:
     type: str
     attribute: str
     place: Place
+    group: str = ""
+    """Of a client: the group that its responses wait for; empty for none."""
 
 
 @dataclass(frozen=True, slots=True)

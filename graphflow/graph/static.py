@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -69,6 +69,8 @@ class _Call:
     is_certain: bool
     is_released: bool
     """Whether the handler has released its slot."""
+    reply: _Slot | None = None
+    """What the response needs to arrive."""
 
 
 @dataclass(frozen=True)
@@ -123,12 +125,17 @@ class _World:
         self._regroupings[node.name] = node.regrouping(self._file)
         names, source = resolver(node), _Source(interface)
         clients = {e.attribute: names.resolve(e.name, "service") for e in interface.endpoints if "client" in e.kind}
+        replies = {e.attribute: _group(node, interface, e.group) for e in interface.endpoints if e.group}
         for handler in interface.handlers:
             if handler.kind == "task":
                 continue
             actor = _Actor(node.name, handler.name, handler.kind, _slot(node, interface, handler))
             found = list(source.calls(handler.name))
-            self._calls[actor] = [replace(c, name=clients[c.name]) for c in found if c.name in clients]
+            self._calls[actor] = [
+                replace(c, name=clients[c.name], reply=replies.get(c.name)) for c in found if c.name in clients
+            ]
+            for place, what in source.lost_sight_of(handler.name, clients):
+                self._unresolved.append(Finding("unresolved", place, f"{actor} {what}"))
             for call in found:
                 if call.name not in clients:
                     text = f"{actor} calls self.{call.name}, which is made at run time"
@@ -153,7 +160,20 @@ class _World:
     def chains(self) -> Iterator[tuple[Finding, frozenset[_Slot]]]:
         """Chains of calls that return to a group that they fill themselves."""
         seen: set[tuple[_Slot, Place]] = set()
-        for actor in self._calls:
+        for actor, calls in self._calls.items():
+            for call in calls:
+                if (
+                    call.reply is not None
+                    and call.reply == actor.slot
+                    and call.reply.limit == 1
+                    and not call.is_released
+                ):
+                    grade: Grade = "CERTAIN" if call.is_certain else "IF THIS BRANCH RUNS"
+                    text = (
+                        f"{actor} awaits {call.name}, whose response needs {actor.slot}, which it holds itself. Let "
+                        "replies through: declare the client without group="
+                    )
+                    yield Finding(grade, call.place, text), frozenset([actor.slot])
             for finding, slot, last in self._follow(actor, [], Counter([actor.slot])):
                 if (slot, last) not in seen:
                     seen.add((slot, last))
@@ -261,6 +281,10 @@ def _slot(node: PlannedNode, interface: Interface, handler: HandlerInfo) -> _Slo
             name = "" if group == NO_GROUP else group
     if not name:
         return _Slot(node.name, handler.name, 1, is_own=True)
+    return _group(node, interface, name)
+
+
+def _group(node: PlannedNode, interface: Interface, name: str) -> _Slot:
     declared = interface.groups.get(name, GroupInfo())
     change = node.concurrency[name].change if name in node.concurrency else GroupChange()
     if (change.when_full or declared.when_full) == "cancel_running":
@@ -316,6 +340,30 @@ class _Source:
                     seen=seen | {method},
                 )
 
+    def lost_sight_of(
+        self, method: str, clients: Collection[str], seen: frozenset[str] = frozenset()
+    ) -> Iterator[tuple[Place, str]]:
+        """Where clients get out of sight: handed to other code, or called in a task of their own."""
+        if method not in self._methods or method in seen:
+            return
+        file, function = self._methods[method]
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call) and _is_own(node.func):
+                assert isinstance(node.func, ast.Attribute)
+                yield from self.lost_sight_of(node.func.attr, clients, seen | {method})
+            is_task = isinstance(node, ast.Call) and _word(node.func) in _TASK_MAKERS
+            for child in ast.walk(node) if is_task else ():
+                if _is_own(child) and isinstance(child, ast.Attribute) and child.attr in clients:
+                    yield Place(file, child.lineno), f"uses self.{child.attr} in a task, whose end is not followed"
+            handed = [*node.args, *(k.value for k in node.keywords)] if isinstance(node, ast.Call) else []
+            handed += [node.value] if isinstance(node, (ast.Assign, ast.Return)) and node.value is not None else []
+            for value in handed:
+                if _is_own(value) and isinstance(value, ast.Attribute) and value.attr in clients:
+                    yield Place(file, value.lineno), f"hands self.{value.attr} on, and its calls there are not followed"
+
+
+_TASK_MAKERS = ("create_task", "ensure_future", "spawn")
+
 
 def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
     """A function's nodes, and whether they are reached whenever it runs; without the functions inside it."""
@@ -323,7 +371,7 @@ def _walk(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
         if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             continue
         # The handler does not wait for a task that it makes and does not await.
-        if isinstance(child, ast.Call) and _word(child.func) in ("create_task", "ensure_future", "spawn"):
+        if isinstance(child, ast.Call) and _word(child.func) in _TASK_MAKERS:
             continue
         reached = always and not isinstance(child, _BRANCHES)
         yield child, reached

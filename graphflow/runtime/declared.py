@@ -178,7 +178,8 @@ def interface_of(cls: type[NodeClass]) -> Interface:
             is_topic = isinstance(declared, (Publisher, Subscription))
             type_name = declared.type.SCHEMA.name if is_topic else declared.type.NAME  # type: ignore[union-attr]
             kind: Any = kinds[type(declared)]
-            endpoints.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place))
+            group = declared.group.name if isinstance(declared, Client) and declared.group is not None else ""
+            endpoints.append(EndpointInfo(kind, declared.name, type_name, attribute, declared.place, group))
     methods = handlers(cls)
     for attribute, handler in methods.items():
         for name in handler.rate.parameters() if handler.rate is not None else ():

@@ -26,6 +26,8 @@ def found(file: Path) -> list[str]:
     [
         ("self_call_broken", ["CERTAIN"]),
         ("self_call_fixed", []),
+        ("classic_broken", ["CERTAIN"]),
+        ("classic_fixed", []),
         ("crossing_broken", ["POSSIBLE"]),
         ("crossing_fixed", []),
         ("recursion_broken", ["IF THIS BRANCH RUNS"]),
@@ -161,3 +163,44 @@ def test_a_service_with_two_servers(tmp_path: Path) -> None:
     (tmp_path / "g.yaml").write_text("nodes: {/other: {class: static_cases:Beside}, /n: {class: static_cases:One}}")
 
     assert not any("IF THIS BRANCH RUNS" in text for text in found(tmp_path / "g.yaml"))
+
+
+OUT_OF_SIGHT = """
+import asyncio
+from graphflow import Client, Group, Node, service, timer
+from graphflow.msgs.std_srvs.srv import Trigger
+
+
+async def ask(client):
+    return await client.call(Trigger.Request())
+
+
+class Asker(Node):
+    work = Group(1)
+    other = Client(Trigger, "answer")
+
+    @service(Trigger, "answer", group=work)
+    async def answer(self, request: Trigger.Request) -> Trigger.Response:
+        return Trigger.Response()
+
+    @timer(1.0, group=work)
+    async def tick(self) -> None:
+        await self.help()
+        await asyncio.create_task(self.other.call(Trigger.Request()))
+
+    async def help(self) -> None:
+        if await self.other.wait_ready(1.0):
+            await ask(self.other)
+"""
+
+
+def test_what_gets_out_of_sight_is_said(tmp_path: Path) -> None:
+    """A client that is handed on, also by a method that is called, or used in a task."""
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "out_of_sight.py").write_text(OUT_OF_SIGHT)
+    (tmp_path / "graph.yaml").write_text("nodes:\n  /asker: {class: nodes.out_of_sight:Asker}\n")
+    told = [text.partition(": unresolved: ")[2] for text in found(tmp_path / "graph.yaml")]
+    assert sorted(filter(None, told)) == [
+        "timer tick of /asker hands self.other on, and its calls there are not followed",
+        "timer tick of /asker uses self.other in a task, whose end is not followed",
+    ]
