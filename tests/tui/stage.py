@@ -184,7 +184,10 @@ class Stage:
             self.console.post_message(events.Key(name, _character(name)))
             for _ in range(3):
                 await self.pilot._wait_for_screen()
-            while self.console.is_running and not self.console.keyboard.is_quiet:
+            deadline = time.monotonic() + LIMIT
+            # A dialog that has just been opened is drawn a moment later; nothing is ever drawn empty.
+            while self.console.is_running and not (self.console.keyboard.is_quiet and self.text.strip()):
+                assert time.monotonic() < deadline, f"{key} is not done"
                 await self.pilot.pause(0.005)
 
     async def prefix(self, *keys: str) -> None:
