@@ -295,14 +295,15 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         sent = ClientGoalHandle(self, goal)
         self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)
+        may_be_there = False
         try:
             if not self.server_is_ready():
                 await self.expect_ready(DISCOVERY_GRACE if timeout is None else min(timeout, DISCOVERY_GRACE))
+            may_be_there = True
             answer = await self._send.call(request, timeout=timeout)
         except (CancelledError, CallTimeout) as error:
-            # The server may have it by now.
             del self._goals[sent.goal_id]
-            if self._cancel.is_open:
+            if may_be_there and self._cancel.is_open:
                 withdrawing = self._in_background(self._withdraw(sent))
                 if isinstance(error, CancelledError):  # a cancelled caller may end the node next
                     await _seen_through(withdrawing)

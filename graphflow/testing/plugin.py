@@ -59,5 +59,21 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
         async with asyncio.timeout(LIMIT):
             await pyfuncitem.obj(**arguments)
 
-    runner.run(limited())
+    try:
+        runner.run(limited())
+    except TimeoutError as error:
+        if isinstance(error.__cause__, asyncio.CancelledError):
+            error.add_note(_too_long(error.__cause__))
+        raise
     return True
+
+
+def _too_long(ended: BaseException) -> str:
+    """What to say of a test that has not come to its end; its clock stands still unless it is advanced."""
+    from graphflow.deadlock.user_code import place_in
+
+    where = place_in(ended)
+    return (
+        f"the test was not done after {LIMIT:g} s{f', and waited in {where}' if where else ''}. If it waits for time, "
+        "advance the clock meanwhile: start it with asyncio.ensure_future, then await graph.clock.advance(1.0)"
+    )

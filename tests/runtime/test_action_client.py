@@ -241,3 +241,14 @@ async def test_a_closed_client_loses_its_goals(graph: Graph) -> None:
     with pytest.raises(GoalLost, match="the client of /fibonacci was closed before the goal ended"):
         await waiting
     assert goal.status is GoalStatus.LOST
+
+
+async def test_a_goal_that_nobody_offers_can_be_given_up(graph: Graph) -> None:
+    """At once: there is nothing to be withdrawn from anybody."""
+    asker = Asker()
+    await graph.start(asker)
+    sending = asyncio.ensure_future(asker.fibonacci.send_goal(Fibonacci.Goal(order=1)))
+    await graph.settle()
+    sending.cancel()
+    await graph.settle()
+    assert sending.cancelled()

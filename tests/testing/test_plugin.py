@@ -123,7 +123,9 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
     )
 
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*asyncio.Event().wait()  # here*", "*TimeoutError*"])
+    result.stdout.fnmatch_lines(
+        ["*asyncio.Event().wait()  # here*", "*TimeoutError*", "*waited in *test_it.py:4*advance the clock*"]
+    )
 
 
 def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:
