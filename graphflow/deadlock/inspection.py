@@ -26,8 +26,11 @@ from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 
 LAG_LIMIT = 0.2
 """Seconds to wait for the event loop to come round before it is called late."""
-ANSWERS, LOOKS = 200, 20
-"""How often a second other processes can have the waits or the numbers told anew, and a deadlock looked for."""
+ANSWERS, LOOKS, MOVES = 200, 20, 200
+"""How often a second other processes can have the waits or the numbers told anew, a deadlock looked for, or a handler
+moved."""
+MOVES_AT_ONCE = 64
+"""Requests that are taken in before others have a turn of the loop."""
 MOVE_BOUND = 10_000
 """Bytes of a request to move a handler."""
 _KINDS = ("timer", "subscription", "service", "action")
@@ -41,7 +44,7 @@ class Inspection:
         self._thread = threading.get_ident()
         now_ns = process.clock.monotonic_ns
         self._waits_allowed, self._numbers_allowed = Allowance(ANSWERS, now_ns), Allowance(ANSWERS, now_ns)
-        self._looks_allowed = Allowance(LOOKS, now_ns)
+        self._looks_allowed, self._moves_allowed = Allowance(LOOKS, now_ns), Allowance(MOVES, now_ns)
         self._last_waits = self._last_numbers = b"{}"
         """What is answered to those who ask too often."""
         session, domain = process.session, process.domain
@@ -50,7 +53,7 @@ class Inspection:
             session.open_report(answer_key(domain, LOOK, session.zid), self._look),
             session.open_report(answer_key(domain, NUMBERS, session.zid), self._numbers),
         )
-        self._inbox = Inbox(session.bell, None, self._asked)
+        self._inbox = Inbox(session.bell, MOVE_BOUND, self._asked)
         self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox)
 
     def _waits(self) -> bytes:
@@ -101,8 +104,10 @@ class Inspection:
         return b""
 
     def _asked(self) -> None:
-        while self._inbox.items:
+        for _ in range(min(MOVES_AT_ONCE, len(self._inbox.items))):
             request = self._inbox.items.popleft()
+            if not self._moves_allowed.take():
+                continue  # it ends without an answer
             try:
                 if len(request.payload) > MOVE_BOUND:
                     raise InvalidName(f"a request of {len(request.payload)} bytes names no handler")
@@ -112,6 +117,8 @@ class Inspection:
                 request.reply_error(RemoteError(type(error).__name__, str(error)).to_payload())
             else:
                 request.reply(json.dumps(answer).encode(), attachment.pack(0, 0, bytes(16)))
+        if self._inbox.items:  # whoever asks all the time must not hold the loop
+            self._process.loop.call_soon(self._asked)
 
     def _move(self, node_name: str, handler: str, group: str) -> dict[str, Any]:
         node = next((n for n in self._process.nodes if n.full_name == node_name), None)

@@ -314,7 +314,7 @@ class Search:
             if is_first:
                 logger.log(logging.WARNING if in_vain else logging.ERROR, "%s", text)
             elif not in_vain:
-                logger.error("%s", again(headline(deadlock, graph), self._told[_lines(members)]))
+                logger.error("%s", again(headline(deadlock, graph), self._told.get(_lines(members), 2)))
             self._behind[ring] = victims
         if told not in self._behind and not is_first:
             self._behind[told] = victims
@@ -410,6 +410,8 @@ class Search:
             for deadlock in explained(graph, deadlocked(graph)):
                 self._tell(deadlock, graph)
                 self._process.loop.call_soon_threadsafe(self.arm)  # to see it cleared
+        except Exception as error:  # the thread that looks must go on looking
+            logger.debug("the search for deadlocks: %r", error, exc_info=error)
         finally:
             self._lock.release()
 

@@ -29,6 +29,8 @@ class GraphCache:
 
     def __init__(self, tokens: Iterable[str] = ()) -> None:
         self._entities: dict[str, Entity] = {}
+        self._of_node: dict[tuple[str, int], dict[str, None]] = {}
+        """The tokens of each node: its own and those of its endpoints, in order."""
         self.refused = 0
         """Tokens that are malformed, or beyond `TOKENS_BOUND`."""
         for token in tokens:
@@ -46,10 +48,14 @@ class GraphCache:
             gone = self._entities.pop(token, None)
             if gone is None:
                 return []
-            changes = [GraphChange(gone, False)]
+            changes, node = [GraphChange(gone, False)], (gone.zid, gone.nid)
+            rest = self._of_node[node]
+            del rest[token]
             if gone.kind is Kind.NODE:
-                rest = [t for t, e in self._entities.items() if (e.zid, e.nid) == (gone.zid, gone.nid)]
                 changes += [GraphChange(self._entities.pop(t), False) for t in rest]
+                rest = {}
+            if not rest:
+                del self._of_node[node]
             return changes
         if token in self._entities:
             return []
@@ -58,6 +64,7 @@ class GraphCache:
             self.refused += 1
             return []
         self._entities[token] = entity
+        self._of_node.setdefault((entity.zid, entity.nid), {})[token] = None
         return [GraphChange(entity, True)]
 
     def __iter__(self) -> Iterator[Entity]:

@@ -164,7 +164,7 @@ class ServerLines:
     def _heard(self, payload: bytes, beside: bytes, sequence: int, gid: bytes) -> None:
         if sequence == _HELLO:
             self._greet(payload, gid)
-        elif gid in self._senders:
+        elif sequence > 0 and gid in self._senders:
             self._unanswered += 1
             self._asked(DirectRequest(payload, beside, self._answer))
 

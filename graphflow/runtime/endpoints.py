@@ -15,8 +15,14 @@ from graphflow.msgs import registry
 from graphflow.qos import Qos
 from graphflow.runtime.events import OnEvent, QosEvent, QosEventKind
 from graphflow.runtime.host import Host, Part
+from graphflow.times import to_ns
 from graphflow.transport.base import Closable
 from graphflow.wire.liveliness import Entity, Kind
+
+COMPLAIN_EVERY = 10.0
+"""Seconds after which the same complaint about a counterpart is told again."""
+COMPLAINTS = 100
+"""Complaints that are remembered."""
 
 
 class Endpoint(Part):
@@ -44,6 +50,8 @@ class Endpoint(Part):
         self._events: deque[QosEvent] = deque()
         self._event_totals: Counter[QosEventKind] = Counter()
         self._stop_listening: Callable[[], None] = _nothing
+        self._complained: dict[str, int] = {}
+        """Until when a complaint is not told again, in nanoseconds."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name} [{self.type_name}]>"
@@ -140,11 +148,20 @@ class Endpoint(Part):
             self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
             self._matched(other, change.alive)
         if change.alive and judged.complaint:
-            self.host.log.warning("%s", judged.complaint)
+            self._complain(judged.complaint)
             if judged.reaches:
                 self._tell("incompatible_qos", detail=", ".join(judged.policies))
             else:
                 self._tell("incompatible_type", detail=other.node_name)
+
+    def _complain(self, text: str) -> None:
+        """Log what is wrong with a counterpart, but not each time that it comes and goes."""
+        now_ns = self.host.context.clock.monotonic_ns()
+        if now_ns >= self._complained.get(text, 0):
+            if len(self._complained) >= COMPLAINTS:
+                self._complained.clear()
+            self._complained[text] = now_ns + to_ns(COMPLAIN_EVERY)
+            self.host.log.warning("%s", text)
 
     def _matched(self, other: Entity, alive: bool) -> None:
         """A counterpart that is reached came or went."""

@@ -21,6 +21,8 @@ LONGEST = 1_000
 """Characters of a reason that are sent."""
 PATIENCE = 0.5
 """Seconds that a server has to say why."""
+AT_ONCE = 64
+"""Questions that are answered before others have a turn of the loop."""
 _ID_SIZE = 16
 """Bytes of a goal's id."""
 
@@ -31,7 +33,7 @@ class Reasons:
     def __init__(self, session: Session, domain: int) -> None:
         self._session, self._domain = session, domain
         self._by_goal: OrderedDict[bytes, str] = OrderedDict()
-        self._inbox = Inbox(session.bell, None, self._asked)
+        self._inbox = Inbox(session.bell, KEPT, self._asked)
         self._server: Closable | None = None
 
     def open(self) -> None:
@@ -47,10 +49,12 @@ class Reasons:
             self._by_goal.popitem(last=False)
 
     def _asked(self) -> None:
-        while self._inbox.items:
+        for _ in range(min(AT_ONCE, len(self._inbox.items))):
             request = self._inbox.items.popleft()
             goal_id = bytes(request.payload[:_ID_SIZE])
             request.reply(self._by_goal.get(goal_id, "").encode(), attachment.pack(0, 0, bytes(_ID_SIZE)))
+        if self._inbox.items:  # whoever asks all the time must not hold the loop
+            asyncio.get_running_loop().call_soon(self._asked)
 
     async def ask(self, zid: str, goal_id: bytes) -> str:
         """Why a goal of another process's server did not come to its end; empty if that says nothing."""

@@ -33,6 +33,10 @@ from graphflow.transport.config import (
     open_session,
 )
 
+OWN = "@graphflow/"
+"""What the keys begin with that ROS 2 does not know."""
+WATCHED_AT_ONCE = 64
+"""Tokens that are taken in before others have a turn of the loop."""
 DEEP = 100
 """Depth of a queue from which on what it holds is copied out of the buffers of Zenoh."""
 logger = logging.getLogger("graphflow.transport")
@@ -149,12 +153,19 @@ class _ZenohRequest:
 
     @property
     def attachment(self) -> bytes | None:
-        attachment = self._query.attachment
+        try:
+            attachment = self._query.attachment
+        except zenoh.ZError:  # it has been answered meanwhile, as another thread looks at what waits
+            return None
         return attachment.to_bytes() if attachment is not None else None
 
     def reply(self, payload: Payload, attachment: bytes) -> None:
         with self._query as query:
-            query.reply(self._key, payload, attachment=attachment)
+            if self._key.startswith(OWN):  # one that reads no answers must not hold the loop
+                drop = zenoh.CongestionControl.DROP
+                query.reply(self._key, payload, attachment=attachment, congestion_control=drop)
+            else:
+                query.reply(self._key, payload, attachment=attachment)
 
     def reply_error(self, payload: bytes) -> None:
         with self._query as query:
@@ -293,9 +304,11 @@ class ZenohSession:
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> _Declared:
         def deliver() -> None:
-            while inbox.items:
+            for _ in range(min(WATCHED_AT_ONCE, len(inbox.items))):
                 sample = inbox.items.popleft()
                 changed(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+            if inbox.items:  # a storm of tokens must not hold the loop
+                self.loop.call_soon(deliver)
 
         inbox = Inbox(self.bell, None, deliver)
         subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
@@ -304,7 +317,7 @@ class ZenohSession:
     def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
         def asked(query: zenoh.Query) -> None:
             with query:
-                query.reply(key, report())
+                query.reply(key, report(), congestion_control=zenoh.CongestionControl.DROP)
 
         return _Declared(self.raw.declare_queryable(key, asked))  # on Zenoh's callback thread: the loop may be blocked
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from graphflow import Group, Node, service, subscription, timer
-from graphflow.deadlock.inspection import LOOKS, groups_of
+from graphflow.deadlock.inspection import LOOKS, MOVES, groups_of
 from graphflow.errors import RemoteError
 from graphflow.executor.groups import GROUPS_BOUND
 from graphflow.machines.wait_graph_json import from_json
@@ -182,6 +182,21 @@ async def test_who_asks_too_often_gets_the_last_answer(graph: Graph, monkeypatch
     assert inspection._waits_allowed.refused > 200
     assert inspection._numbers_allowed.refused > 200
     assert LOOKS <= len(looked) < 200
+
+
+async def test_who_moves_handlers_all_the_time_is_not_answered(graph: Graph) -> None:
+    """What is too much ends without an answer; later requests are answered again."""
+    node = await start(graph)
+    answers: list[Answer | None] = []
+    session = graph.network.session(asyncio.get_running_loop())
+    caller = session.open_caller(answer_key(0, GROUPS, node.context.session.zid), lambda: None)
+    for _ in range(MOVES + 300):
+        caller.call(wanted(), b"", answers.append)
+    await settle()
+    assert MOVES <= sum(answer is not None for answer in answers) < MOVES + 100
+    assert sum(answer is None for answer in answers) == MOVES + 300
+    await graph.clock.advance(1.0)
+    assert not (await ask(graph, node, wanted())).is_error
 
 
 async def test_closing_it(graph: Graph) -> None:

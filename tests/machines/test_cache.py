@@ -179,6 +179,9 @@ def test_any_history_of_tokens(events: list[tuple[Entity, bool]]) -> None:
 
         assert set(cache) == set(model.values()) == {e for e, there in told.items() if there}
     assert all(parse_token(e.token) == e for e in cache)
+    for entity in GRAPH:
+        cache.apply(entity.token, alive=False)
+    assert not cache._of_node  # nothing is remembered of what has gone
 
 
 def test_what_is_refused_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:

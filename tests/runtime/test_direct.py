@@ -268,3 +268,17 @@ def test_a_hello_may_come_before_the_token() -> None:
     hello(server, client_entity(1))
     hello(server, client_entity(1))
     assert board.opened == [("abc", "2"), ("abc", "1")]
+
+
+@pytest.mark.parametrize("sequence", [-1, -(2**63)])
+def test_a_request_has_a_number_that_counts_up(sequence: int) -> None:
+    """A negative one says of an answer that it is an error, and is nothing that could be asked."""
+    made: Any = Lines()
+    asked: list[Any] = []
+    server = ServerLines(made, client_entity(99), None, asked.append)  # type: ignore[arg-type]
+    client = client_entity(1)
+    server.client_came(client)
+    hello(server, client)
+    server._heard(b"", attachment.pack(1, 0, client.gid), 1, client.gid)
+    server._heard(b"", attachment.pack(sequence, 0, client.gid), sequence, client.gid)
+    assert len(asked) == 1

@@ -9,9 +9,9 @@ import pytest
 from graphflow import ClosedError, Node, Qos
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
-from graphflow.msgs.std_msgs.msg import String
+from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.runtime.core import core_of
-from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.endpoints import COMPLAIN_EVERY, Endpoint
 from graphflow.runtime.host import Host
 from graphflow.testing import Graph
 from graphflow.wire.liveliness import Entity, Kind
@@ -170,3 +170,23 @@ async def test_an_endpoint_that_cannot_be_declared_is_not_announced(graph: Graph
         await graph.start(node)
 
     assert not graph.network.tokens
+
+
+async def test_a_counterpart_that_comes_and_goes_is_complained_of_now_and_then(
+    graph: Graph, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whoever flaps must not fill the log."""
+    ear, mouth = Node("ear"), Node("mouth")
+    ear.create_subscription(String, "/words", lambda _: None, 10)
+    await graph.start(ear, mouth)
+    for _ in range(5):
+        flapping = mouth.create_publisher(Int32, "/words", 10)
+        await graph.settle()
+        flapping.close()
+        await graph.settle()
+    told = [m for r in caplog.records if r.name.endswith("ear") and "nothing passes" in (m := r.getMessage())]
+    assert len(told) == 1
+    await graph.clock.advance(COMPLAIN_EVERY)
+    mouth.create_publisher(Int32, "/words", 10)
+    await graph.settle()
+    assert sum("nothing passes" in r.getMessage() for r in caplog.records if r.name.endswith("ear")) == 2
