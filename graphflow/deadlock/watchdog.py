@@ -106,7 +106,8 @@ class Watchdog:
         frames = stack_of(self._loop_thread)
         files = [frame.f_code.co_filename for frame in frames]
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
-        last = max((i for i, file in enumerate(files) if is_users(file)), default=-1)
+        begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # before it is what has started graphflow
+        last = max((i for i, file in enumerate(files) if i >= begun and is_users(file)), default=-1)
         first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=0)
         where = f" in {shown[last]}" if last >= 0 else ""
         stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
