@@ -33,7 +33,9 @@ def test_what_the_work_returns_is_the_exit_code() -> None:
 
     async def work(node: Node) -> int:
         cache = node.context.cache
-        await node.context.wait_for(lambda: {"/talker", name} <= set(cache.nodes()))
+        await node.context.wait_for(
+            lambda: "/talker" in cache.nodes() and any(e.name == f"{name}/get_logger_levels" for e in cache)
+        )
         seen.update(e.name for e in cache if e.node_name == name)
         return 4
 
