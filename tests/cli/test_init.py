@@ -9,11 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import LIMIT, PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path) -> None:
     """Its own node is the one that runs, with its own interface; pytest is content; the check finds nothing."""
     text = machine.run("init", "mylab", cwd=tmp_path)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.graphs.lab import Lab, at_it, line_of, reports, ring_of, wait_for_all, wait_for_ring
 
@@ -19,6 +20,7 @@ def lab(machine: Machine, tmp_path: Path) -> Lab:
     return Lab(machine, tmp_path / "lab")
 
 
+@slow
 def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
     """Before, during and after a deadlock, and when nothing runs."""
     run = lab.machine.run

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -21,6 +22,7 @@ def test_a_profile_chooses_definitions(machine: Machine) -> None:
     assert "'lyrica' is not a wire profile; did you mean 'lyrical'?" in machine.run(*event, code=2)
 
 
+@slow
 def test_peers_of_another_profile_are_told_apart(machine: Machine) -> None:
     """A graph on Kilted's wire has Kilted's types; a node on Jazzy's says what is wrong and what to do."""
     machine.run("up", "-d", "turtlesim", "--wire", "kilted")

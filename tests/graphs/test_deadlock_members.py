@@ -44,6 +44,7 @@ def test_a_member_that_is_cancelled(lab: Lab) -> None:
     assert len(reports(up.text)) == 1
 
 
+@slow
 def test_a_member_whose_call_times_out(lab: Lab) -> None:
     """The report says when that will be; then the other is answered, and the report clears (row 19)."""
     up = lab.up({**ring_of("ab"), "/a": member("b", more=", params: {limit: 1.5}")})
@@ -56,6 +57,7 @@ def test_a_member_whose_call_times_out(lab: Lab) -> None:
     assert up.text.count("times out in") == 1
 
 
+@slow
 @pytest.mark.parametrize("is_reporter", [True, False])
 def test_kill_minus_9_of_a_member(lab: Lab, is_reporter: bool) -> None:
     """Whoever waits for it is told so at once, the others are answered, and no deadlock is left (row 20)."""
@@ -99,6 +101,7 @@ def test_a_stopped_process_is_no_member(lab: Lab) -> None:
     assert len(reports(up.text)) == 1
 
 
+@slow
 def test_a_server_that_is_stopped_while_it_serves(lab: Lab) -> None:
     """Its caller's deadline ends the wait, and nothing is reported, also when it goes on (row 21)."""
     up = lab.up({"/a": member("slow", more=", params: {limit: 1.5}"), "/slow": "class: nodes.ring:Slow"})
@@ -130,6 +133,7 @@ def let_go(lab: Lab) -> None:
     os.close(os.open(lab.root / "nodes" / "pipe", os.O_WRONLY | os.O_NONBLOCK))
 
 
+@slow
 def test_a_loop_that_is_held(lab: Lab) -> None:
     """The watchdog tells it, with the line; who waits for that process is in no deadlock (row 22)."""
     up = hold(lab, "Sleepy")
@@ -143,6 +147,7 @@ def test_a_loop_that_is_held(lab: Lab) -> None:
     assert reports(up.text) == []
 
 
+@slow
 def test_the_doctor_sees_a_loop_that_is_held(lab: Lab) -> None:
     """What the log tells, `doctor` tells too."""
     up = hold(lab, "Sleepy")

@@ -11,6 +11,7 @@ import signal
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Program
 from tests.graphs.lab import (
     Lab,
@@ -60,6 +61,7 @@ def test_members_that_answer_in_a_group_of_its_own(lab: Lab) -> None:
     assert reports(up.text) == []
 
 
+@slow
 def test_a_ring_that_is_closed_late(lab: Lab) -> None:
     """However long its members have waited, it is told soon after the last one has begun to."""
     up = lab.up(ring_of("abc"))
@@ -137,6 +139,7 @@ def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     assert reports(fixed.text) == []
 
 
+@slow
 def test_a_call_that_blocks_the_loop_it_needs_is_one_report(lab: Lab) -> None:
     """It is told once, though the other process finds it, too (rows 17, 29)."""
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
@@ -160,6 +163,7 @@ def close_and_open(lab: Lab, programs: list[Program]) -> None:
     assert len(reports(*(program.text for program in programs))) == 1
 
 
+@slow
 def test_two_supervisors_are_one_report(lab: Lab) -> None:
     """A ring through two graphs, each of a terminal of its own, is told once (row 29)."""
     files = [lab.write({node: about}, name=f"lab_{node[1:]}") for node, about in ring_of("ab").items()]
@@ -174,6 +178,7 @@ def test_no_supervisor_is_needed(lab: Lab) -> None:
     close_and_open(lab, [lab.machine.start(*words, *remap, cwd=lab.root) for remap in remaps])
 
 
+@slow
 def test_one_who_asks_two_is_one_report(lab: Lab) -> None:
     """One asks two others at once, who both ask back: that is told once, also if the pictures differ in age (row 29).
 

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 pytestmark = pytest.mark.real
@@ -94,6 +95,7 @@ def test_the_unquoted_command_of_the_slides(machine: Machine) -> None:
     assert pub.end() == 0
 
 
+@slow
 def test_via_points(machine: Machine) -> None:
     """The scheduler sends the follower on, over services of the project's own."""
     up = machine.start("up", "graphs/via_points.yaml")

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_bare_client_drives_an_action(machine: Machine) -> None:
     """One goal succeeds and its result can be asked for twice; one is cancelled; codes say what cannot be cancelled."""
     machine.start("run", "nodes.fibonacci_server:FibonacciServer")

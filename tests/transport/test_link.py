@@ -74,6 +74,7 @@ def reaches(machine: Machine, node: str) -> bool:
     return node in machine.run("node", "list", code=None).split()
 
 
+@slow
 @pytest.mark.real
 def test_data_services_and_parameters_both_ways(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """50 ms away and with every fiftieth packet lost, either side's nodes are as the other's own."""
@@ -97,6 +98,7 @@ def test_data_services_and_parameters_both_ways(hosts: Hosts, near: Machine, far
     assert graph.end() == 0
 
 
+@slow
 @pytest.mark.real
 def test_an_outage_is_told_and_ends(hosts: Hosts, near: Machine, far: Machine, tmp_path: Path) -> None:
     """With the cable cut the graph runs on and says so; mended, both sides find each other again."""
@@ -160,6 +162,7 @@ def test_a_robot_that_comes_later_is_waited_for(hosts: Hosts, near: Machine, far
     assert graph.end() == 0
 
 
+@slow
 @pytest.mark.real
 def test_commands_reach_a_robot_without_a_graph_of_ones_own(hosts: Hosts, near: Machine, far: Machine) -> None:
     """On a laptop where nothing runs, every verb takes --connect."""

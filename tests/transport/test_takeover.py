@@ -43,6 +43,7 @@ def test_terminals_in_any_order_see_each_other(machine: Machine, order: tuple[tu
     machine.until(lambda: nodes(machine) == ["/draw_circle", "/listener", "/talker"], "all three are seen")
 
 
+@slow
 def test_the_others_go_on_when_the_rendezvous_is_killed(machine: Machine) -> None:
     """They keep talking, one of them takes over, and a newcomer finds everyone; twice in a row."""
     programs = [machine.start("run", *words) for words in (CIRCLE, TALKER, LISTENER)]

@@ -16,6 +16,7 @@ import psutil
 import pytest
 
 from graphflow.tui.logs import Logs
+from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import nothing_is_left, rows, supervisor_of
 from tests.tui.terminal import Terminal
@@ -96,6 +97,7 @@ def test_leaving_and_coming_back(machine: Machine, terminal: Open, counting: str
     assert len(numbers) > 500
 
 
+@slow
 def test_a_console_that_is_killed_or_hangs_or_loses_its_terminal(
     machine: Machine, terminal: Open, counting: str
 ) -> None:
@@ -148,6 +150,7 @@ def test_a_console_that_is_killed_or_hangs_or_loses_its_terminal(
     nothing_is_left(machine, [pid])
 
 
+@slow
 def test_several_consoles_and_sizes(machine: Machine, terminal: Open, counting: str) -> None:
     """Each has its own view; what one does is told in the other; small terminals show one pane."""
     machine.run("up", "-d", counting)
@@ -186,6 +189,7 @@ def test_a_graph_that_cannot_start_says_why(machine: Machine, terminal: Open) ->
     t.until("ended with 2")
 
 
+@slow
 def test_nodes_of_others(machine: Machine, terminal: Open) -> None:
     """Without a supervisor of ours the console shows what it can, and says what it cannot."""
     node = machine.start("run", "nodes.talker:Talker")
@@ -205,6 +209,7 @@ def test_waiting_never_ends_in_silence(machine: Machine, terminal: Open) -> None
     t.until("ended with 3")
 
 
+@slow
 def test_the_tour_of_the_deadlocks(machine: Machine, terminal: Open) -> None:
     """It says what to press: f ends the ring, n leaves for the next; then nothing is left."""
     t = terminal("demo deadlock self_call")
