@@ -39,9 +39,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Tell the modules of tests, which are imported next."""
+    """Tell the modules of tests, which are imported next, and keep what Python has compiled."""
     if config.getoption("--cases"):
         os.environ["GRAPHFLOW_CASES"] = config.getoption("--cases")
+    if sys.dont_write_bytecode:  # each of hundreds of interpreters would compile the whole package
+        sys.dont_write_bytecode = False
+        sys.pycache_prefix = str(config.rootpath / ".pytest_cache" / "pycache")
+        os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
+        del os.environ["PYTHONDONTWRITEBYTECODE"]
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
@@ -219,5 +224,5 @@ def alive(pid: int) -> bool:
     """Whether a process lives; a zombie does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # the second if it ends between opening and reading
         return False
