@@ -31,10 +31,14 @@ def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | 
     return found[0] if found else None
 
 
-def did_you_mean(word: str, choices: Iterable[str]) -> str:
-    """A sentence that helps with a misspelt `word`: the nearest choice, else all of a short list, else nothing."""
+def did_you_mean(word: str, choices: Iterable[str], hidden: Iterable[str] = ()) -> str:
+    """A sentence that helps with a misspelt `word`: the nearest choice, else all of a short list, else nothing.
+
+    Args:
+        hidden: Choices that are named only if they are near.
+    """
     known = sorted(choices)
-    best = nearest(word, known)
+    best = nearest(word, [*known, *sorted(hidden)])
     if best is not None:
         return f"; did you mean {best!r}?"
     if 0 < len(known) <= 12:

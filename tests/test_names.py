@@ -362,6 +362,14 @@ def test_did_you_mean(word: str, choices: list[str], text: str) -> None:
     assert did_you_mean(word, choices) == text
 
 
+def test_choices_that_are_named_only_when_near() -> None:
+    """They do not fill a list."""
+    assert did_you_mean("/nobody", ["/add"], ["/arm/list_parameters"]) == "; there is /add"
+    assert did_you_mean("/arm/list_params", ["/add"], ["/arm/list_parameters"]) == (
+        "; did you mean '/arm/list_parameters'?"
+    )
+
+
 def test_nearest_is_none_when_nothing_is_near() -> None:
     """No choice is better than a wild one."""
     assert nearest("cmd_vel", iter(["cmd_val", "odom"])) == "cmd_val"

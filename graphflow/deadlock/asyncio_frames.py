@@ -188,6 +188,16 @@ def shielded(outer: Any) -> Any:
     return None
 
 
+def stands_for_others(future: Any) -> bool:
+    """Whether a future ends as others do, which may have been made later: it is a task, or asyncio made it of some."""
+    return hasattr(future, "get_coro") or gathered(future) is not None or shielded(future) is not None
+
+
+def has_failed(future: Any) -> bool:
+    """Whether a future that is done was cancelled or has an error."""
+    return bool(future.cancelled() or future.exception() is not None)
+
+
 def _enclosed(function: Any, name: str) -> Any:
     """The variable of that name in the closure of a function; None if it has none."""
     names = getattr(getattr(function, "__code__", None), "co_freevars", ())

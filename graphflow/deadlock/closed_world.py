@@ -27,23 +27,24 @@ from graphflow.deadlock.conditions import (
     PLAIN,
     QUESTIONS,
     TOOLS,
+    VIEWLESS,
     Loop,
     LoopConditions,
     arrays,
     makes_task,
 )
+from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new
+from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import (
     LAMBDA,
     Function,
-    FunctionNode,
     Unknown,
     Use,
-    is_nested,
     is_own,
     source_of,
-    walk,
 )
+from graphflow.deadlock.syntax import FunctionNode, is_nested, walk
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
 from graphflow.msgs.base import Message
@@ -59,11 +60,6 @@ _MAKERS = {
     "Barrier",
 }
 _MAKERS |= {"PriorityQueue", "LifoQueue", "create_task", "ensure_future"}
-_CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
-_ARRAYS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
-_ARRAYS |= {"fill", "sort", "put", "partition"}
-"""Methods of arrays that return no other view of them."""
-_CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
 
 
 class Setters(NamedTuple):
@@ -82,6 +78,13 @@ class Setters(NamedTuple):
     """What the handlers do to it."""
     gives_up: bool = False
     """Whether a deadline ends the wait for good, and not only this attempt."""
+    module: str = ""
+    """The module that holds what is set, if it is not the node that does."""
+
+    def is_shared(self, node: Subject, nodes: Iterable[Subject]) -> bool:
+        """Whether other nodes of the process may end the wait too: those whose methods are in that module."""
+        others = [cls for other in nodes if other is not node for cls in type(other.instance).__mro__]
+        return any(cls.__module__ == self.module for cls in others)
 
 
 def cancellers(thing: Any, node: Subject) -> Setters | None:
@@ -96,11 +99,11 @@ def cancellers(thing: Any, node: Subject) -> Setters | None:
     held = {name for name, value in vars(instance).items() if value is thing or _holds(value, thing)}
     if not held:
         return None
-    source, methods = source_of(instance), set[str]()
+    source, methods, over = source_of(instance), set[str](), beginnings_of(node)
     for name in held:
         uses = source.uses(name)
         if getattr(instance, name) is not thing or source.foreign(name) or any(use.kind == "given" for use in uses):
-            if any(use.method not in BEGINNINGS for use in (*source.foreign("cancel"), *source.uses("cancel"))):
+            if any(use.method not in over for use in (*source.foreign("cancel"), *source.uses("cancel"))):
                 raise Unknown
             continue
         methods |= {use.method for use in uses if use.kind == "called" and use.name == "cancel"}
@@ -108,13 +111,25 @@ def cancellers(thing: Any, node: Subject) -> Setters | None:
     alone = {runner.spec.handler for runner in node.runners if runner.spec.kind == "timer"}
     alone |= {method_of(task) for task in node.tasks}
     what = " and ".join(f"self.{name}" for name in sorted(held))
-    found = frozenset(source.above(methods - BEGINNINGS, entries) & alone)
+    found = frozenset(source.above(methods - over, entries) & alone)
     return Setters(what, found) if found else None
 
 
 def entries_of(node: Subject) -> set[str]:
-    """The methods of a node that graphflow runs: handlers and tasks."""
-    return {handler_of(runner) for runner in node.runners} | {method_of(task) for task in node.tasks}
+    """The methods of a node that graphflow runs: handlers and tasks, and `on_start` with those that wait for it."""
+    found = {handler_of(runner) for runner in node.runners} | {method_of(task) for task in node.tasks}
+    return found | ({handler_in(part.title) for part in node.unopened} | {"on_start"} if node.starting else set())
+
+
+def beginnings_of(node: Subject) -> set[str]:
+    """The methods whose work is over, or yet to come, whatever waits now."""
+    return BEGINNINGS - {"on_start"} if node.starting else BEGINNINGS
+
+
+def handler_in(title: str) -> str:
+    """The method in the title of what a node runs, or the word for any lambda."""
+    name = title.rpartition(" ")[2]
+    return name if name.isidentifier() else LAMBDA
 
 
 def handler_of(runner: Runner) -> str:
@@ -236,7 +251,7 @@ class Question:
             ends = use.name in ENDINGS or use.kind == "entered"
             if use.kind in ("given", "changed", "invoked") or (ends and (use.kind == "part" or use.is_nested)):
                 raise Unknown
-            if not _is_new(use, _MAKERS):
+            if not is_new(use.value, _MAKERS):
                 raise Unknown
             yield use
 
@@ -264,11 +279,17 @@ class Question:
                 if use.syntax in inside or use.method in below:  # the loop itself changes what it looks at
                     raise Unknown
                 changing.add(use.method)
-        what = " and ".join(f"self.{name}" for name in sorted(attributes))
-        if conditions.tasks and not changing - BEGINNINGS:
+        for name in conditions.names:
+            for use in changes(name, place.frame.f_globals["__name__"], self._source):
+                if use.syntax in inside or use.method in below:
+                    raise Unknown
+                changing.add(use.method)
+        what = " and ".join([*(f"self.{name}" for name in sorted(attributes)), *sorted(conditions.names)])
+        if conditions.tasks and not changing - beginnings_of(self._node):
             return Setters(what, frozenset(), tasks=tuple(conditions.tasks))
         found = self._reached(what, changing)
-        return None if found is None else found._replace(tasks=tuple(conditions.tasks))
+        module = place.frame.f_globals["__name__"] if conditions.names else ""
+        return None if found is None else found._replace(tasks=tuple(conditions.tasks), module=module)
 
     def _changes(self, name: str) -> Iterator[Use]:
         """The uses of an attribute that may change it."""
@@ -291,7 +312,7 @@ class Question:
             if isinstance(value, CONTAINERS) and use.kind == "part" and use.name:  # its `append`, for others to call
                 raise Unknown
         for use in self._source.uses(name):
-            if known and (use.kind in ("given", "invoked") or not _is_new(use, _CONTAINER_MAKERS)):
+            if known and (use.kind in ("given", "invoked") or not is_new(use.value, CONTAINER_MAKERS)):
                 raise Unknown
             if isinstance(value, (*arrays(), Message)) and _has_second_name(use, value):
                 raise Unknown
@@ -328,11 +349,11 @@ class Question:
 
 def handlers_above(what: str, methods: Iterable[str], node: Subject) -> Setters | None:
     """The handlers and tasks of a node that call those methods, if nothing else does."""
-    source, entries = source_of(node.instance), entries_of(node)
-    above = source.above(set(methods) - BEGINNINGS, entries)
+    source, entries, over = source_of(node.instance), entries_of(node), beginnings_of(node)
+    above = source.above(set(methods) - over, entries)
     if above & node.hooks:
         raise Unknown
-    for method in above - entries - BEGINNINGS:
+    for method in above - entries - over:
         if source.above({method}, entries) == {method}:  # no caller is seen, so some other code calls it
             raise Unknown
     found = frozenset(above & entries)
@@ -371,21 +392,10 @@ def _places(made: ast.expr | None) -> int:
     raise Unknown
 
 
-def _is_new(use: Use, makers: set[str]) -> bool:
-    """Whether what is assigned is made on the spot."""
-    if use.kind != "assigned" or use.value is None:
-        return True
-    if isinstance(use.value, ast.Call):
-        maker = use.value.func.value if isinstance(use.value.func, ast.Subscript) else use.value.func  # Queue[str]()
-        return ast.unparse(maker).split(".")[-1] in makers
-    made = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp, ast.Constant, ast.BinOp)
-    return isinstance(use.value, made)
-
-
 def _has_second_name(use: Use, value: Any) -> bool:
     """Whether a part of an array or message, through which it can be changed, is passed on."""
     if use.kind == "called" and isinstance(value, arrays()):
-        return use.name not in LOOKING | _ARRAYS
+        return use.name not in LOOKING | VIEWLESS
     if use.part is None:
         return False
     path: list[ast.expr] = []

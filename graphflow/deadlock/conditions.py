@@ -21,7 +21,8 @@ from types import FrameType, MappingProxyType, ModuleType, NoneType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import FUTURE
-from graphflow.deadlock.source import ClassSource, FunctionNode, Unknown, looks, walk
+from graphflow.deadlock.source import ClassSource, Unknown, looks
+from graphflow.deadlock.syntax import FunctionNode, walk
 from graphflow.deadlock.user_code import is_users_module
 from graphflow.executor.ledger import PendingGoal
 from graphflow.msgs.base import Message
@@ -44,6 +45,9 @@ CONTAINERS = (list, dict, set, deque)
 LOOKING = {"get", "keys", "values", "items", "index", "count", "copy", "startswith", "endswith", "lower", "upper"}
 LOOKING |= {"issubset", "issuperset", "isdisjoint", "all", "any", "sum", "min", "max", "mean"}
 """Methods that do not change what they are called on."""
+VIEWLESS = {"astype", "tolist", "item", "tobytes", "argmax", "argmin", "std", "nonzero", "round", "cumsum", "dot"}
+VIEWLESS |= {"fill", "sort", "put", "partition"}
+"""Methods of arrays that return no other view of them."""
 _PURE = {"abs", "all", "any", "bool", "dict", "float", "frozenset", "int", "len", "list", "max", "min", "round", "set"}
 _PURE |= {"sorted", "str", "sum", "tuple"}
 _TASK_MAKERS = ("create_task", "ensure_future")
@@ -83,6 +87,13 @@ class _Scope(NamedTuple):
             value = getattr(value, name, self)
         return value is not self and _is_plain(value)
 
+    def is_of_module(self, name: str) -> bool:
+        """Whether a name is one of the module's, for something whose changes can be seen."""
+        if name in self.locals or name in self.constants or name not in self.globals:
+            return False
+        value = self.globals[name]
+        return _holds_plain(value) or (name in self.rebound and _is_plain(value))
+
     def is_mathematics(self, function: ast.expr) -> bool:
         """Whether an expression is a function that looks at its arguments and at nothing else."""
         name, *path = ast.unparse(function).split(".")
@@ -103,6 +114,8 @@ class LoopConditions:
     def __init__(self, loop: Loop, function: FunctionNode, frame: FrameType, source: ClassSource, node: object) -> None:
         self._loop, self._source, self._node = loop, source, node
         self._found: set[str] = set()
+        self.names: set[str] = set()
+        """Names of the module that decide it, too, by values that can change."""
         self.tasks: list[asyncio.Future[Any]] = []
         """Things that decide it and that end by themselves."""
         inside = set(ast.walk(loop))
@@ -206,6 +219,8 @@ class LoopConditions:
                     if bound is None:
                         raise Unknown
                     self._read(bound, scope, seen | {name})
+            case ast.Name(id=name) if scope.is_of_module(name):
+                self.names.add(name)
             case _:
                 raise Unknown
 
@@ -389,9 +404,9 @@ def _is_of_inner_loop(parents: list[ast.AST]) -> bool:
 
 
 def arrays() -> tuple[type, ...]:
-    """The class of numpy's arrays; nothing where numpy is not loaded, since no arrays exist there."""
-    numpy = sys.modules.get("numpy")
-    return () if numpy is None else (numpy.ndarray,)
+    """The classes of arrays, Python's and numpy's; not of modules that are not loaded, since none exist there."""
+    known = (("array", "array"), ("numpy", "ndarray"))
+    return tuple(getattr(sys.modules[module], name) for module, name in known if module in sys.modules)
 
 
 def _is_plain(value: Any) -> bool:
@@ -402,8 +417,8 @@ def _is_plain(value: Any) -> bool:
 
 def _holds_plain(container: Any) -> bool:
     if isinstance(container, arrays()):
-        array: Any = container
-        return bool(array.dtype.kind != "O")  # of objects
+        dtype = getattr(container, "dtype", None)
+        return dtype is None or bool(dtype.kind != "O")  # of objects
     if not isinstance(container, CONTAINERS):
         return False
     return all(_is_plain(part) for part in list(container.values() if isinstance(container, dict) else container))

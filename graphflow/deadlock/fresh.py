@@ -9,6 +9,10 @@ from typing import Any
 
 from graphflow.msgs.base import Message
 
+CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
+CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
+"""Functions whose results nothing else knows."""
+
 
 def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict[str, Any]) -> set[str]:
     """Local names of a function that stand for messages: all that is bound to them is made there, or annotated so."""
@@ -40,3 +44,14 @@ def _is_message(expression: ast.expr, globals_: dict[str, Any]) -> bool:
     for part in rest:
         value = getattr(value, part, None)
     return isinstance(value, type) and issubclass(value, Message)
+
+
+def is_new(value: ast.expr | None, makers: set[str]) -> bool:
+    """Whether what is assigned, if anything is, is made on the spot."""
+    if value is None:
+        return True
+    if isinstance(value, ast.Call):
+        maker = value.func.value if isinstance(value.func, ast.Subscript) else value.func  # Queue[str]()
+        return ast.unparse(maker).split(".")[-1] in makers
+    made = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp, ast.Constant, ast.BinOp)
+    return isinstance(value, made)

@@ -6,7 +6,7 @@ import asyncio
 from asyncio import AbstractEventLoop
 from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups
@@ -14,6 +14,15 @@ from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.transport.base import Session
+
+
+class Unopened(NamedTuple):
+    """What a node runs only once its `on_start` has returned."""
+
+    title: str
+    """Kind and handler: `service add`."""
+    services: tuple[str, ...] = ()
+    """The full names of the services that it offers."""
 
 
 class Subject(Protocol):
@@ -30,6 +39,14 @@ class Subject(Protocol):
     @property
     def runners(self) -> Sequence[Runner]:
         """The runners of its handlers."""
+
+    @property
+    def starting(self) -> asyncio.Task[Any] | None:
+        """The task in which its `on_start` runs, until that returns."""
+
+    @property
+    def unopened(self) -> Sequence[Unopened]:
+        """What will run once `on_start` has returned."""
 
     @property
     def tasks(self) -> AbstractSet[asyncio.Task[Any]]:

@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 from graphflow.deadlock.chains import Chains
 from graphflow.deadlock.protocols import Surroundings
-from graphflow.deadlock.snapshot import Snapshot, id_of
+from graphflow.deadlock.snapshot import Snapshot
 from graphflow.deadlock.stalls import Stalls
-from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive, calls_of
+from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.errors import DeadlockError, Place
 from graphflow.executor.clock import Alarm
@@ -32,7 +32,18 @@ from graphflow.machines.cache import GraphChange
 from graphflow.machines.explain import again, explanation, headline, hopeless, is_in_vain, title
 from graphflow.machines.reduction import deadlocked
 from graphflow.machines.rings import Deadlock, explained, is_ring
-from graphflow.machines.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph, goal_id, joined
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    Call,
+    Condition,
+    Opening,
+    WaitGraph,
+    calls_of,
+    goal_id,
+    joined,
+    parts_of,
+)
 from graphflow.machines.wait_graph_json import from_json
 from graphflow.times import to_ns
 from graphflow.wire.process import LOOK, WAITS, answer_key
@@ -71,6 +82,13 @@ class Report(NamedTuple):
     """The members, each of which waits for the next."""
     is_in_vain: bool
     """Whether a deadline will end it."""
+    calls: dict[str, list[str]]
+    """What each member calls, by name."""
+
+    def is_another(self, graph: WaitGraph) -> bool:
+        """Whether its members call something else by now."""
+        now = {name: _called(graph.activities[name]) for name in self.order if name in graph.activities}
+        return any(not set(names).issubset(self.calls[name]) for name, names in now.items())
 
 
 class Foreign(NamedTuple):
@@ -227,7 +245,9 @@ class Search:
     def _leaves(self, activity: ActivityView, graph: WaitGraph) -> bool:
         """Whether an activity waits for another process."""
         here = {a.serves for a in graph.activities.values()} | {c for q in graph.queues.values() for c in q.calls}
-        return any(call.id not in here for call in calls_of(activity.wait))
+        opening = {service for queue in graph.queues.values() for service in queue.opens}
+        wanted = [part.service for part in parts_of(activity.wait) if isinstance(part, Opening)]
+        return any(call.id not in here for call in calls_of(activity.wait)) or not opening.issuperset(wanted)
 
     # other processes
 
@@ -310,7 +330,8 @@ class Search:
         if first == mine and told not in self.reports:
             involved = {a.process for a in behind} | processes
             in_vain, text = is_in_vain(deadlock, graph), explanation(deadlock, graph)
-            self.reports[ring] = Report(text, who, involved, deadlock.ring, in_vain)
+            calls = {activity.id: _called(activity) for activity in members}
+            self.reports[ring] = Report(text, who, involved, deadlock.ring, in_vain, calls)
             if is_first:
                 logger.log(logging.WARNING if in_vain else logging.ERROR, "%s", text)
             elif not in_vain:
@@ -345,7 +366,7 @@ class Search:
         activity, call = min(calls, key=lambda pair: (round(pair[0].age, 1), pair[0].id))
         if activity.process != self._process.session.zid:
             return
-        futures = [future for future, entry in ledger.calls.items() if id_of(entry) == call.id]
+        futures = [future for future, entry in ledger.calls.items() if entry.id == call.id]
         futures += [f for f, goal in ledger.goals.items() if goal_id(goal.goal_id) == call.id and f is not goal.ended]
         for future in futures:
             if not future.done():
@@ -359,7 +380,8 @@ class Search:
         """
         for ring, report in list(self.reports.items()):
             unknown = report.processes - processes
-            if is_ring(report.order, graph, dead) or any(entity.zid in unknown for entity in self._process.cache):
+            stands = is_ring(report.order, graph, dead) and not report.is_another(graph)
+            if stands or any(entity.zid in unknown for entity in self._process.cache):
                 continue
             del self.reports[ring]
             self._behind.pop(ring, None)
@@ -419,6 +441,10 @@ class Search:
 def _lines(members: list[ActivityView]) -> frozenset[tuple[str, Place]]:
     """What a deadlock is known by when it comes again: its members, and the lines in which they wait."""
     return frozenset((title(activity), activity.place) for activity in members)
+
+
+def _called(activity: ActivityView) -> list[str]:
+    return [call.name for call in calls_of(activity.wait)]
 
 
 def _nothing(*_: object) -> None:

@@ -11,27 +11,25 @@ import asyncio
 import queue
 import threading
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import PurePath
 from types import FrameType
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
-from graphflow.deadlock.closed_world import Setters, cancellers, handler_of, method_of
+from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, handler_in, handler_of, method_of
 from graphflow.deadlock.held import setters
+from graphflow.deadlock.openings import start_of, unopened
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import called_in, innermost, is_users
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.errors import DecodeError, Place
 from graphflow.executor.activity import Activity
-from graphflow.executor.clock import ClockTimeout
+from graphflow.executor.clock import ClockTimeout, WallClock
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.ledger import PendingCall
 from graphflow.executor.runner import Run, Runner
 from graphflow.machines.wait_graph import (
     FREE,
@@ -42,12 +40,15 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
     WaitGraph,
     call_id,
+    calls_of,
     goal_id,
+    parts_of,
 )
 from graphflow.times import to_ns
 from graphflow.wire import attachment
@@ -105,19 +106,6 @@ class Snapshot:
         self._since = {key: when for key, when in self._since.items() if key in keep}
 
 
-def id_of(call: PendingCall) -> str:
-    """The id of a call in the wait-for graphs of all processes."""
-    return call_id(call.gid, call.sequence)
-
-
-def place_of(task: Any) -> str:
-    """The user's line in which a suspended task waits: `(drive.py:12 in on_start)`; empty if there is none."""
-    frame = innermost(frames_of(task))
-    if frame is None:
-        return ""
-    return f"({Place(PurePath(frame.f_code.co_filename).name, frame.f_lineno)} in {frame.f_code.co_name})"
-
-
 class _Look:
     """One wait-for graph in the making."""
 
@@ -162,6 +150,7 @@ class _Look:
         for node in self._nodes:
             for task in list(node.tasks):
                 self._add_task(node, task)
+            self._add_start(node)
         blocker = self._blocker()
         blocked = {} if blocker is None else {self._zid: blocker}
         self._memory.forget(self._seen)
@@ -224,6 +213,13 @@ class _Look:
         holds = self._slots(node, runner, run.group)
         self._add(self.run_id(run), runner.title, node, run, holds, serves, is_inner=runner.spec.is_inner)
 
+    def _add_start(self, node: Subject) -> None:
+        if (task := node.starting) is not None:
+            start = start_of(node, self._zid)
+            self._groups[start.id] = start
+            self._queues |= {queue.id: queue for queue in unopened(node, self._zid)}
+            self._add(self.task_id(task), "on_start", node, task, (start.id,), "")
+
     def _add_task(self, node: Subject, task: Any) -> None:
         name = task.get_name().removeprefix(f"{node.full_name}.")
         self._add(self.task_id(task), f"task {name}", node, task, (), "")
@@ -244,7 +240,7 @@ class _Look:
         frame = innermost(frames)
         wait = self._condition(task, _Way(node, task))
         self._seen.add((id_, wait))
-        age, left = self._times(id_, wait)
+        age, left = self._times(id_, wait, task)
         self._activities[id_] = ActivityView(
             id_,
             label,
@@ -262,23 +258,32 @@ class _Look:
             called_in(frames, node.instance),
         )
 
-    def _times(self, id_: str, wait: Condition) -> tuple[float, float | None]:
+    def _times(self, id_: str, wait: Condition, task: Any) -> tuple[float, float | None]:
         """Seconds that an activity has waited, and seconds left until it gives up; None for no limit."""
         began, deadline = self._bounds(wait)
         if wait is not FREE and self._limit_ns is not None:
             deadline = min(self._limit_ns, deadline or self._limit_ns)
         if began is None:
             age = 0.0 if wait is FREE else self._memory.age(id_, wait, self._now_ns)
+            if isinstance(wait, SetBy) and self._knows_begin(task):
+                age = max(age, self._process.loop.time() - task.suspended_at)
         else:
             age = (self._now_ns - began) / 1e9
         return age, None if deadline is None else (deadline - self._now_ns) / 1e9
 
+    def _knows_begin(self, task: Any) -> bool:
+        """Whether an activity has waited for the same since it was suspended, by the clock that counts here."""
+        is_real = isinstance(self._process.clock, WallClock)
+        return is_real and isinstance(task, Activity) and not aio.stands_for_others(waiter_of(task))
+
     def _bounds(self, wait: Condition) -> tuple[int | None, int | None]:
         """When the first of the awaited calls began, and when the first times out."""
-        wanted = set(_call_ids(wait))
-        found = [c for c in list(self._ledger.calls.values()) if id_of(c) in wanted]
+        wanted = {call.id for call in calls_of(wait)}
+        services = {part.service for part in parts_of(wait) if isinstance(part, Opening)}
+        found = [c for c in list(self._ledger.calls.values()) if c.id in wanted]
         deadlines = [c.deadline_ns for c in found if c.deadline_ns is not None]
         began = [c.began_ns for c in found]
+        began += [o.began_ns for o in list(self._ledger.openings.values()) if o.service in services]
         began += [g.began_ns for g in list(self._ledger.goals.values()) if goal_id(g.goal_id) in wanted]
         return min(began, default=None), min(deadlines, default=None)
 
@@ -308,7 +313,7 @@ class _Look:
         return self._of_future(waiter, way)
 
     def _of_joint_wait(self, wait: aio.JointWait, way: _Way) -> Condition:
-        ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and _has_failed(f)))]
+        ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and aio.has_failed(f)))]
         if ends:
             return FREE  # the waiter's next step is due
         conditions = tuple(self._of_future(f, way) for f in wait.tasks if not f.done())
@@ -344,7 +349,10 @@ class _Look:
             return self._closed_world(way, None) if asking is None else self._condition(asking, way)
         if future in ledger.calls:
             call = ledger.calls[future]
-            return Call(id_of(call), call.service) if self._servers[call.service] < 2 else FREE  # another may answer
+            return Call(call.id, call.service) if self._servers[call.service] < 2 else FREE  # another may answer
+        if future in ledger.openings:
+            service = ledger.openings[future].service
+            return FREE if self._servers[service] else Opening(service)  # it is there, and will be reached
         if future in ledger.goals:
             goal = ledger.goals[future]
             if self._servers[f"{goal.action}/_action/send_goal"] > 1:
@@ -366,14 +374,14 @@ class _Look:
     def _known(self, task: Any) -> Condition | None:
         """An activity of the snapshot by its own name; any other task is looked into."""
         for node in self._nodes:
-            if task in node.tasks:
+            if task in node.tasks or task is node.starting:
                 return Join(self.task_id(task))
         return None
 
     def _closed_world(self, way: _Way, waiter: Any) -> Condition:
         """A wait for something that, as far as the source code shows, only handlers of the node bring about."""
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
-        if found is None or any(task.done() for task in found.tasks):
+        if found is None or found.is_shared(way.node, self._nodes) or any(task.done() for task in found.tasks):
             return FREE
         ends = [self._of_future(task, way) for task in found.tasks]
         if found.handlers or not ends:
@@ -396,7 +404,10 @@ class _Look:
         # Runs under way count too, even those that have released their slot.
         others: list[Any] = [run for r in runners for run in list(r.active) if run is not way.root]
         others += [t for t in list(node.tasks) if t is not way.root and method_of(t) in found.handlers]
-        known = {handler_of(r) for r in runners} | {method_of(t) for t in list(node.tasks)}
+        if node.starting not in (None, way.root) and "on_start" in found.handlers:
+            others.append(node.starting)
+        waiting = [queue for queue in unopened(node, self._zid) if handler_in(queue.label) in found.handlers]
+        known = entries_of(node)
         if not found.handlers <= known:  # one of them does not exist and cannot be waited for
             return FREE
         is_held = False
@@ -406,7 +417,7 @@ class _Look:
             if not is_held and not found.handlers:  # something else is in it, and no explicit release is seen
                 return FREE
             others += inside
-        queues = sorted(self.queue_id(r) for r in runners)
+        queues = sorted([*(self.queue_id(r) for r in runners), *(queue.id for queue in waiting)])
         activities = sorted({self.task_id(other) for other in others})
         return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.deed, found.gives_up)
 
@@ -466,15 +477,6 @@ class _Look:
         return id_
 
 
-def _call_ids(condition: Condition) -> Iterator[str]:
-    match condition:
-        case Call(id=call):
-            yield call
-        case All(of=conditions) | AnyOf(of=conditions):
-            for inner in conditions:
-                yield from _call_ids(inner)
-
-
 @dataclass(frozen=True, slots=True)
 class _Way:
     """How a wait was reached: from a run of a handler, through the tasks that it waits for."""
@@ -493,7 +495,3 @@ class _Way:
 def _may_give_up(task: Any) -> bool:
     """Whether a task has entered something of the user's by `with`, in which there may be a timeout."""
     return any(is_users(file) for coroutine in aio.coroutines(task) for file in aio.files_entered(coroutine))
-
-
-def _has_failed(future: Any) -> bool:
-    return bool(future.cancelled() or future.exception() is not None)

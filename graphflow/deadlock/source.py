@@ -11,19 +11,17 @@ import ast
 import dataclasses
 import inspect
 import sys
-import tokenize
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from types import CodeType
 from typing import Any, Literal, NamedTuple
 
 from graphflow.deadlock.fresh import messages_of
+from graphflow.deadlock.syntax import FunctionNode, Syntax, first_line, is_nested, syntax_of, walk
 from graphflow.deadlock.user_code import is_users_module
 
-FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
-_NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 _LOOKS = (
     *(ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp, ast.If, ast.While, ast.Assert, ast.Await, ast.FormattedValue),
     *(ast.For, ast.AsyncFor, ast.comprehension, ast.Match, ast.Expr),
@@ -61,7 +59,7 @@ class Function(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """One mention of an attribute.
+    """One mention of an attribute, or of a name of the module.
 
     Attributes:
         kind: What is done: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
@@ -76,7 +74,7 @@ class Use:
     """
 
     method: str
-    syntax: ast.Attribute
+    syntax: ast.Attribute | ast.Name
     kind: Kind
     name: str = ""
     value: ast.expr | None = None
@@ -98,16 +96,14 @@ class ClassSource:
     """Functions of the files, by name."""
     _functions: dict[tuple[str, int], Function] = field(default_factory=dict)
     """Functions by file and first line."""
-    _modules: list[ast.Module] = field(default_factory=list)
+    _files: list[Syntax] = field(default_factory=list)
     _uses: dict[str, list[Use]] = field(default_factory=dict)
     _foreign: dict[str, list[Use]] = field(default_factory=dict)
     """Mentions on anything other than `self`, anywhere in the files."""
     _callers: dict[str, set[str]] = field(default_factory=dict)
     _properties: set[str] = field(default_factory=set)
-    _globals: dict[ast.Module, dict[str, Any]] = field(default_factory=dict)
+    _globals: dict[Syntax, dict[str, Any]] = field(default_factory=dict)
     """What the names of each file mean."""
-    _fresh: dict[ast.AST, set[str]] = field(default_factory=dict)
-    """By function: local names of messages that it has made or received."""
     _is_known: bool = True
 
     def function(self, code: CodeType) -> Function | None:
@@ -182,21 +178,20 @@ class ClassSource:
 
     # how it is read
 
-    def _add(self, cls: type, file: str, module: ast.Module, continued: set[str]) -> None:
+    def _add(self, cls: type, file: str, syntax: Syntax, continued: set[str]) -> None:
         """The methods of one class."""
-        if module not in self._modules:
-            self._modules.append(module)
-            self._globals[module] = vars(sys.modules.get(cls.__module__, object))
-            self._others |= {item.name: item for item in module.body if isinstance(item, FunctionNode)}
+        if syntax not in self._files:
+            self._files.append(syntax)
+            self._globals[syntax] = vars(sys.modules.get(cls.__module__, object))
+            self._others |= {item.name: item for item in syntax.module.body if isinstance(item, FunctionNode)}
         written = {function for function in map(_code_of, vars(cls).values()) if function is not None}
         if dataclasses.is_dataclass(cls):  # which makes methods that do what the fields say
             written = {code for code in written if code.co_filename != "<string>"}
         self._is_known &= not _INTERCEPTING & vars(cls).keys()
         self._is_known &= all(code.co_filename == file for code in written)  # none put there by other code
-        lines = {line for d in ast.walk(module) if isinstance(d, ast.ClassDef) for line in _function_lines(d)}
-        self._is_known &= all(code.co_firstlineno in lines for code in written)
-        for definition in ast.walk(module):
-            if not (isinstance(definition, ast.ClassDef) and definition.name == cls.__name__):
+        self._is_known &= all(code.co_firstlineno in syntax.method_lines for code in written)
+        for definition in syntax.classes:
+            if definition.name != cls.__name__:
                 continue
             for item in definition.body:
                 if not (isinstance(item, FunctionNode) and _is_of(cls, item)):
@@ -211,7 +206,7 @@ class ClassSource:
     def _link(self) -> None:
         """Find out what is done to which attribute, and which method calls which."""
         inside: set[ast.AST] = set()
-        defined = {d.name for m in self._modules for d in ast.walk(m) if isinstance(d, (ast.ClassDef, *_NESTED[:2]))}
+        defined = {name for syntax in self._files for name in syntax.defined}
         for name, functions in self.methods.items():
             for function in functions:
                 lambdas = {
@@ -235,9 +230,8 @@ class ClassSource:
                         self._is_known &= node.id not in _BY_NAME
                         if node.id == "self" and isinstance(parents[-1], (ast.Call, ast.keyword)):
                             self._is_known &= _knows(parents, defined)
-        for module in self._modules:
-            imported = {alias.asname or alias.name for alias in _imports(module)}
-            for node, parents in walk(module):
+        for syntax in self._files:
+            for node, parents in syntax.parts:
                 if isinstance(node, ast.Global):
                     self.rebound.update(node.names)
                 if isinstance(node, ast.Call) and _word(node.func) in ("setattr", "delattr") and node not in inside:
@@ -246,8 +240,8 @@ class ClassSource:
                     continue
                 if is_own(node) and any(isinstance(parent, ast.ClassDef) for parent in parents):
                     continue  # of another class; in a function of the module, `self` may be the node
-                if not (isinstance(node.value, ast.Name) and node.value.id in imported):
-                    self._note_foreign("", node, parents, module)
+                if not (isinstance(node.value, ast.Name) and node.value.id in syntax.imported):
+                    self._note_foreign("", node, parents, syntax)
 
     def _set_by_name(self, call: ast.Call) -> None:
         """`setattr(other, "ready", True)`."""
@@ -261,26 +255,26 @@ class ClassSource:
                 self._is_known = False
 
     def _note_foreign(
-        self, method: str, node: ast.Attribute, parents: Sequence[ast.AST], module: ast.Module | None
+        self, method: str, node: ast.Attribute, parents: Sequence[ast.AST], syntax: Syntax | None
     ) -> None:
         """What is done to an attribute of something other than the node; of a message it is none of the node's."""
         root: ast.expr = node
         while isinstance(root, (ast.Attribute, ast.Subscript)):
             root = root.value
         function = next((p for p in reversed(parents) if isinstance(p, FunctionNode)), None)
-        if module is not None and function is not None and isinstance(root, ast.Name):
-            if function not in self._fresh:
-                self._fresh[function] = messages_of(function, self._globals[module])
-            if root.id in self._fresh[function]:
+        if syntax is not None and function is not None and isinstance(root, ast.Name):
+            if function not in syntax.fresh:
+                syntax.fresh[function] = messages_of(function, self._globals[syntax])
+            if root.id in syntax.fresh[function]:
                 return
-        self._foreign.setdefault(node.attr, []).append(_use(method, node, parents))
+        self._foreign.setdefault(node.attr, []).append(use_of(method, node, parents))
 
     def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
         if not (is_own(node) or _is_super(node.value)):
-            module = next((m for m in self._modules if parents[0] in _parts_of(m)), None)
-            self._note_foreign(method, node, parents, module)
+            syntax = next((s for s in self._files if parents[0] in s.nodes), None)
+            self._note_foreign(method, node, parents, syntax)
             return
-        use = _use(method, node, parents)
+        use = use_of(method, node, parents)
         if node.attr == "__dict__":
             self._is_known = False
         if node.attr in self.methods:
@@ -293,24 +287,10 @@ class ClassSource:
             self._uses.setdefault(node.attr, []).append(use)
 
 
-@cache
-def _parts_of(module: ast.Module) -> frozenset[ast.AST]:
-    return frozenset(ast.walk(module))
-
-
 def _code_of(member: object) -> CodeType | None:
     """The code of a method as it was written, beneath its decorators."""
     member = member.fget if isinstance(member, property) else getattr(member, "__func__", member)
     return getattr(inspect.unwrap(member), "__code__", None) if callable(member) else None
-
-
-def _function_lines(definition: ast.ClassDef) -> Iterator[int]:
-    """Where the functions in a class begin."""
-    for node in ast.walk(definition):
-        if isinstance(node, FunctionNode):
-            yield first_line(node)
-        elif isinstance(node, ast.Lambda):
-            yield node.lineno
 
 
 def source_of(instance: object) -> ClassSource:
@@ -328,36 +308,22 @@ def _source_of(cls: Any) -> ClassSource:
             continue
         try:
             file = inspect.getsourcefile(parent) or ""
-            source._add(parent, file, module_of(file), continued)
+            source._add(parent, file, syntax_of(file), continued)
         except (OSError, SyntaxError, TypeError, ValueError):  # there is none: what its methods do is not known
             source._is_known = False
     source._link()
     return source
 
 
-def is_nested(parents: Sequence[ast.AST]) -> bool:
-    """Whether something is in a function inside what was walked."""
-    return any(isinstance(p, _NESTED) for p in parents[1:])
-
-
-def walk(top: ast.AST) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
-    """Every node below one, with what encloses it, the outermost first."""
-    todo: list[tuple[ast.AST, list[ast.AST]]] = [(top, [])]
-    while todo:
-        node, parents = todo.pop()
-        yield node, parents
-        todo += [(child, [*parents, node]) for child in ast.iter_child_nodes(node)]
-
-
-def _use(method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> Use:
+def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AST]) -> Use:
+    """What a method does to what an expression stands for, by what encloses it there, the outermost first."""
     above = parents[-1]
     nested = is_nested(parents)
     if isinstance(node.ctx, (ast.Store, ast.Del)):
         value = above.value if isinstance(above, (ast.Assign, ast.AnnAssign)) else None
-        names = {t.id for t in above.targets if isinstance(t, ast.Name)} if isinstance(above, ast.Assign) else set()
-        is_shared = isinstance(above, ast.Assign) and any(
-            isinstance(t, ast.Attribute) and t is not node for t in above.targets
-        )
+        targets = above.targets if isinstance(above, ast.Assign) else []
+        names = {t.id for t in targets if isinstance(t, ast.Name) and t is not node}
+        is_shared = any(isinstance(t, ast.Attribute) and t is not node for t in targets)
         if is_shared or not all(_only_looked_at(name, parents[0]) for name in names):
             return Use(method, node, "given", is_nested=nested)
         return Use(method, node, "assigned", value=value, is_nested=nested)
@@ -439,14 +405,9 @@ def _knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | defined
 
 
-def _imports(module: ast.Module) -> Iterator[ast.alias]:
-    for node in ast.walk(module):
-        if isinstance(node, ast.Import):
-            yield from node.names
-
-
-def _is_part_of(node: ast.Attribute, owner: str) -> bool:
-    return isinstance(node.value, ast.Attribute) and node.value.attr == owner and is_own(node.value)
+def _is_part_of(node: ast.expr, owner: str) -> bool:
+    part = node.value if isinstance(node, ast.Attribute) else None
+    return isinstance(part, ast.Attribute) and part.attr == owner and is_own(part)
 
 
 def is_own(node: ast.AST) -> bool:
@@ -468,15 +429,3 @@ def _is_of(cls: type, item: FunctionNode) -> bool:
     held = held.fget if isinstance(held, property) else getattr(held, "__func__", held)
     code = getattr(inspect.unwrap(held), "__code__", None)
     return code is not None and code.co_firstlineno == first_line(item)
-
-
-def first_line(item: FunctionNode) -> int:
-    """Where a function begins, its decorators included, as its code says too."""
-    return item.decorator_list[0].lineno if item.decorator_list else item.lineno
-
-
-@cache
-def module_of(file: str) -> ast.Module:
-    """The syntax of a file. Raises OSError, SyntaxError or ValueError if it cannot be read."""
-    with tokenize.open(file) as source:
-        return ast.parse(source.read())

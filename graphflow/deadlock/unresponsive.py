@@ -9,7 +9,7 @@ import logging
 
 from graphflow.deadlock.protocols import Surroundings
 from graphflow.machines.explain import title, where
-from graphflow.machines.wait_graph import ActivityView, Call, WaitGraph
+from graphflow.machines.wait_graph import ActivityView, WaitGraph, calls_of
 from graphflow.times import NANOSECONDS
 from graphflow.transport.base import Closable
 from graphflow.wire import process
@@ -93,10 +93,3 @@ class Unresponsive:
         if zid in self._told:
             self._told.discard(zid)
             logger.warning("%s (%s) %s", self._nodes(zid), self._processes[zid], how)
-
-
-def calls_of(wait: object) -> list[Call]:
-    """The calls in a condition."""
-    if isinstance(wait, Call):
-        return [wait]
-    return [call for inner in getattr(wait, "of", ()) for call in calls_of(inner)]

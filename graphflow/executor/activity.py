@@ -23,6 +23,9 @@ class Activity:
     Args:
         finished: Called once with (result, error) when the coroutine has ended, its `finally` blocks included.
         context: Its context variables, for itself alone; without one, a copy of the caller's.
+
+    Attributes:
+        suspended_at: When it began to wait for a future, by the loop's time; only while it does.
     """
 
     __slots__ = (
@@ -38,6 +41,7 @@ class Activity:
         "group",
         "name",
         "returning_to",
+        "suspended_at",
     )
 
     def __init__(
@@ -109,6 +113,7 @@ class Activity:
         elif blocking:
             awaited._asyncio_future_blocking = False
             awaited.add_done_callback(self._wakeup, context=self._context)
+            self.suspended_at = self._loop.time()
             self._fut_waiter = awaited
             if self._must_cancel and awaited.cancel(msg=self._cancel_message):
                 self._must_cancel = False

@@ -17,7 +17,9 @@ from abc import ABC, abstractmethod
 from asyncio import AbstractEventLoop, Future
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
+
+from graphflow.machines.wait_graph import call_id
 
 
 class PendingCall:
@@ -44,6 +46,11 @@ class PendingCall:
         self._ledger, self._future = ledger, future
         self.gid, self.sequence, self.service = gid, sequence, service
         self.began_ns, self.deadline_ns = began_ns, deadline_ns
+
+    @property
+    def id(self) -> str:
+        """The id of the call in the wait-for graphs of all processes."""
+        return call_id(self.gid, self.sequence)
 
     def __enter__(self) -> Self:
         self._ledger.calls[self._future] = self
@@ -75,6 +82,14 @@ class PendingGoal(ABC):
         """Whether the goal has ended."""
 
 
+class Opening(NamedTuple):
+    """A wait for somebody to offer a service."""
+
+    service: str
+    began_ns: int
+    """By the clock of the client's node."""
+
+
 def _nothing() -> None:
     """Does nothing: deadlocks are not looked for."""
 
@@ -87,7 +102,19 @@ class Ledger:
         at_work: The runner whose handler has been called and has not returned or suspended yet.
     """
 
-    __slots__ = ("alert", "asking", "at_work", "blocking", "calls", "goals", "loop", "served", "thread", "threads")
+    __slots__ = (
+        "alert",
+        "asking",
+        "at_work",
+        "blocking",
+        "calls",
+        "goals",
+        "loop",
+        "openings",
+        "served",
+        "thread",
+        "threads",
+    )
 
     def __init__(self, loop: AbstractEventLoop) -> None:
         self.loop = loop
@@ -101,6 +128,8 @@ class Ledger:
         """Goals that are waited for, by the future of their end or of news about them."""
         self.served: dict[Future[Any], bytes] = {}
         """Ids of goals of this process whose results are waited for."""
+        self.openings: dict[Future[Any], Opening] = {}
+        """Services that are waited for until somebody offers them."""
         self.threads: dict[Future[Any], threading.Thread] = {}
         """Threads that are waited for."""
         self.asking: dict[int, asyncio.Task[Any]] = {}
@@ -137,6 +166,16 @@ class Ledger:
             yield
         finally:
             del self.served[future]
+
+    @contextmanager
+    def opening(self, future: Future[Any], service: str, began_ns: int) -> Iterator[None]:
+        """A wait for somebody to offer a service."""
+        self.openings[future] = Opening(service, began_ns)
+        self.alert()
+        try:
+            yield
+        finally:
+            del self.openings[future]
 
     @contextmanager
     def thread_work(self, future: Future[Any], thread: threading.Thread) -> Iterator[None]:

@@ -70,6 +70,11 @@ class Run(Activity):
         runner._ended(self.group, item, result, error)
 
 
+def title_of(kind: RunnerKind, handler: str) -> str:
+    """Kind and handler, for people: `service add`."""
+    return handler if handler.startswith(f"{kind} ") else f"{kind} {handler}".strip()
+
+
 Finished = Callable[[Any, Any, BaseException | None], None]
 
 
@@ -162,8 +167,7 @@ class Runner:
     @property
     def title(self) -> str:
         """Kind and handler, for people: `service add`."""
-        kind, handler = self.spec.kind, self.spec.handler
-        return handler if handler.startswith(f"{kind} ") else f"{kind} {handler}".strip()
+        return title_of(self.spec.kind, self.spec.handler)
 
     @property
     def is_serial(self) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from graphflow.introspect.view import View
-from graphflow.machines.explain import group_of, title
+from graphflow.machines.explain import group_of, offer, title
 from graphflow.machines.reduction import deadlocked
 from graphflow.machines.rings import explained
 from graphflow.machines.wait_graph import (
@@ -18,6 +18,7 @@ from graphflow.machines.wait_graph import (
     Call,
     Condition,
     Join,
+    Opening,
     SetBy,
     Slot,
     WaitGraph,
@@ -132,6 +133,8 @@ def words(condition: Condition, graph: WaitGraph) -> str:
             return f"{what} (which {title(server)} is handling)" if server is not None else what
         case Slot(group=group):
             return f"a slot of group {graph.groups[group].name!r}" if group in graph.groups else "a slot"
+        case Opening(service=service):
+            return f"{offer(service)} to open"
         case Join(activity=activity):
             other: ActivityView | None = graph.activities.get(activity)
             return title(other) if other is not None else "another task"

@@ -79,8 +79,7 @@ class View:
         servers = self.cache.endpoints(Kind.SERVICE, name)
         if servers:
             return servers[0].type
-        offered = {e.name for e in self.cache.endpoints(Kind.SERVICE)}
-        raise ServiceUnavailable(f"no node offers the service {name}{did_you_mean(name, offered)}")
+        raise ServiceUnavailable(f"no node offers the service {name}{did_you_mean(name, *self.cache.offered())}")
 
     def wait_for_service(self, name: str, timeout: float) -> None:
         """Wait until a node offers the service.

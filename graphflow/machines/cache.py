@@ -13,6 +13,8 @@ from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 ACTION_FEEDBACK = "/_action/feedback"
 ACTION_FEEDBACK_TYPE = "_FeedbackMessage"
+_OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
+"""Types of the services that nodes have without anybody writing them."""
 TOKENS_BOUND = 100_000
 """Tokens of a domain that are remembered."""
 
@@ -102,6 +104,12 @@ class GraphCache:
     def services(self, *, hidden: bool = False) -> dict[str, list[str]]:
         """Types by service that a server offers or a client uses, both sorted."""
         return self._types(Kind.SERVICE, Kind.CLIENT, hidden=hidden)
+
+    def offered(self) -> tuple[set[str], set[str]]:
+        """The services that have a server: those that users have written, and those that every node or action has."""
+        servers = self.endpoints(Kind.SERVICE)
+        inner = {e.name for e in servers if e.type.startswith(_OF_EVERY_NODE) or "/_action/" in e.name}
+        return {e.name for e in servers} - inner, inner
 
     def actions(self) -> dict[str, list[str]]:
         """Types by action, taken from the feedback topics."""

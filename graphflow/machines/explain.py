@@ -15,6 +15,7 @@ from graphflow.machines.wait_graph import (
     Call,
     Free,
     GroupView,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -101,6 +102,8 @@ def wanted(edge: Edge) -> str:
     match edge.via:
         case Call(id=call, name=name):
             return f"the {'result of action' if call.startswith('goal:') else 'response of service'} {name}"
+        case Opening(service=service):
+            return offer(service)
         case Slot():
             return "its slot, to return to its group"
         case SetBy(what=what):
@@ -109,6 +112,12 @@ def wanted(edge: Edge) -> str:
             return "its event loop"
         case _:
             return "another task"
+
+
+def offer(service: str) -> str:
+    """What a service is to users: itself, or the action that it is a part of."""
+    name, is_action, _ = service.partition("/_action/")
+    return f"{'action' if is_action else 'service'} {name}"
 
 
 def where(activity: ActivityView) -> str:
@@ -135,7 +144,9 @@ def _headline(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     """The clauses of the headline."""
     count, more = len(deadlock.ring), len(deadlock.victims)
     word = "LIKELY DEADLOCK" if deadlock.is_likely else "DEADLOCK"
-    clauses = [f"{count} callbacks wait for each other in a ring"] if count > 1 else _alone(deadlock, graph)
+    are_starts = all(edge.group and graph.groups[edge.group].is_start for edge in deadlock.edges)
+    who = f"the on_starts of {count} nodes" if are_starts else f"{count} callbacks"
+    clauses = [f"{who} wait for each other in a ring"] if count > 1 else _alone(deadlock, graph)
     if is_in_vain(deadlock, graph):
         word = "WAITS IN VAIN"
         left = min(a.left for a in map(graph.activities.__getitem__, deadlock.ring) if a.left is not None)
@@ -153,6 +164,8 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     """How one activity keeps itself waiting."""
     [name], [edge] = deadlock.ring, deadlock.edges
     who = title(graph.activities[name])
+    if isinstance(edge.via, Opening):
+        return [f"{who} waits for {wanted(edge)}, which opens when on_start has returned"]
     if not isinstance(edge.via, SetBy):
         return [f"{who} waits for itself"]
     what = edge.via.what
@@ -165,6 +178,8 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
         return [f"{who} waits for {what},", f"which only another run of it {edge.via.deed}"]
     kept = " and ".join(queue.handler for queue in others)
     is_one = len(others) == 1
+    if edge.group and graph.groups[edge.group].is_start:
+        return [f"{who} waits for {what},", f"and {kept}, which {edge.via.deed} it, runs when on_start has returned"]
     deed = edge.via.deed if is_one else edge.via.deed.removesuffix("s")
     return [f"{who} waits for {what},", f"and {kept}, which {deed} it, {'is' if is_one else 'are'} kept out"]
 
@@ -206,6 +221,8 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
     # Of several runs of one handler, only the others could do it.
     queues = [q for q in queues if q.handler != activity.handler] or queues
     who = " and ".join(queue.label for queue in queues) + f" of {queues[0].node}" if queues else "that"
+    if group.is_start:
+        return [who, f"{'opens' if isinstance(edge.via, Opening) else 'runs'} when {title(other)} has returned"]
     if not isinstance(edge.via, SetBy):
         return [who, *_needs(group, [other], "waits for")]
     deed, needs = edge.via.deed, "needs"

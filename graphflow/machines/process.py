@@ -111,7 +111,7 @@ def step(state: State, event: Event) -> tuple[State, tuple[Do, ...]]:
 
 @dataclass(frozen=True)
 class Exit:
-    """How a process ended: its code, or the signal that ended it."""
+    """How a process ended: its code, or the signal that ended it; neither, if nobody knows."""
 
     code: int | None = None
     signal: int | None = None
@@ -130,8 +130,10 @@ class Exit:
             names = {1: "SIGHUP", 2: "SIGINT", 6: "SIGABRT", 9: "SIGKILL", 11: "SIGSEGV", 15: "SIGTERM"}
             hint = " (killed, perhaps for lack of memory)" if self.signal == 9 else ""
             return f"signal {names.get(self.signal, self.signal)}{hint}"
+        if self.code is None:
+            return "an end whose cause is not known"
         meaning = {64: " (wrong usage)", 70: " (an error in the node)", 78: " (wrong configuration)"}
-        return f"exit code {self.code}{meaning.get(self.code or 0, '')}"
+        return f"exit code {self.code}{meaning.get(self.code, '')}"
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from graphflow.machines.wait_graph import (
     Call,
     Condition,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -56,6 +57,11 @@ class Index:
                 self.serving[activity.serves] = activity.id
         self.queued = {call: queue for queue in graph.queues.values() for call in queue.calls}
         """Queues by the calls that wait in them."""
+        self.opening: dict[str, list[QueueView]] = {}
+        """Queues of handlers that may not run yet, by the service that there will be when they may."""
+        for queue in graph.queues.values():
+            for service in queue.opens:
+                self.opening.setdefault(service, []).append(queue)
         self._all_of = _one_of if may_fail else _each_of
         self._may_guess = may_guess
 
@@ -85,6 +91,8 @@ class Index:
                 return self.lacking_to_run(self.queued[call], dead) if call in self.queued else ()
             case Slot(group=group):
                 return (group,) if group in dead.groups else ()
+            case Opening(service=service):
+                return _one_of(self.lacking_to_run(queue, dead) for queue in self.opening.get(service, ()))
             case Join(activity=other):
                 return self._of(other, dead)
             case SetBy(queues=names, activities=activities) if self._may_guess:

@@ -64,6 +64,9 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield from _off_the_loop(edge, graph)
         return
     queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
+    if group is not None and group.is_start:
+        yield _text(f"let on_start return: move the wait in {_line(graph.activities[edge.to])} into a @task")
+        return
     if isinstance(edge.via, SetBy) and edge.via.is_held:
         place = _line(graph.activities[edge.to])
         yield _text(f"move the await in {place}", f"out of the `with {edge.via.what}` block around it")

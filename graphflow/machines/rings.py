@@ -17,6 +17,7 @@ from graphflow.machines.wait_graph import (
     Call,
     Condition,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -177,6 +178,9 @@ class _Waits:
                     yield from self._of_queue(index.queued[call], condition)
             case Slot(group=group):
                 yield Edge(group, condition, group=group)
+            case Opening(service=service):
+                for queue in index.opening[service]:
+                    yield from self._of_queue(queue, condition)
             case Join(activity=other):
                 yield Edge(other, condition)
             case SetBy(queues=queues, activities=activities):

@@ -7,7 +7,7 @@ only certain handlers set, or for all or any of several such things.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from graphflow.errors import Place
@@ -39,6 +39,13 @@ class Slot:
 
     group: str
     ticket: int
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """Wait for somebody to offer a service."""
+
+    service: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +92,21 @@ class Free:
 
 
 FREE = Free()
-Condition = Call | Slot | Join | SetBy | All | AnyOf | Free
+Condition = Call | Slot | Opening | Join | SetBy | All | AnyOf | Free
+
+
+def parts_of(condition: Condition) -> Iterator[Condition]:
+    """What a condition is made of; itself, if it is no combination."""
+    if isinstance(condition, (All, AnyOf)):
+        for inner in condition.of:
+            yield from parts_of(inner)
+    else:
+        yield condition
+
+
+def calls_of(condition: Condition) -> list[Call]:
+    """The calls in a condition."""
+    return [part for part in parts_of(condition) if isinstance(part, Call)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,16 +146,18 @@ class ActivityView:
 
 @dataclass(frozen=True, slots=True)
 class GroupView:
-    """A concurrency group of a node, or a handler's own queue, which acts as a group of its own."""
+    """A concurrency group of a node, or what acts as one: a handler's own queue, or `on_start`, which keeps all out."""
 
     id: str
     name: str
-    """Empty for a handler's own queue."""
+    """Empty for what only acts as a group."""
     node: str
     limit: int | None = 1
     is_declared: bool = True
     """Whether the class or a graph file names the group, not only code that makes handlers at run time."""
     is_threaded: bool = False
+    is_start: bool = False
+    """Whether this is `on_start`: handlers begin, and services open, when it has returned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +177,8 @@ class QueueView:
     process: str = ""
     is_declared: bool = True
     """Whether the handler is known before the node is made, so that a graph file can move it."""
+    opens: tuple[str, ...] = ()
+    """The services that there will be once the handler may run."""
 
     @property
     def handler(self) -> str:

@@ -18,6 +18,7 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -26,7 +27,7 @@ from graphflow.machines.wait_graph import (
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 4
+VERSION = 5
 DEEPEST = 50
 """How deep conditions may be nested: what comes from the network must not exhaust the stack."""
 
@@ -37,13 +38,15 @@ def to_json(graph: WaitGraph) -> dict[str, Json]:
         "v": VERSION,
         "activities": [_activity(a) for a in graph.activities.values()],
         "groups": [list(astuple(g)) for g in graph.groups.values()],
-        "queues": [
-            [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped, q.process, q.is_declared]
-            for q in graph.queues.values()
-        ],
+        "queues": [_queue(q) for q in graph.queues.values()],
         "blocked": dict(graph.blocked),
         "regroupings": {node: _regrouping(r) for node, r in graph.regroupings.items()},
     }
+
+
+def _queue(q: QueueView) -> Json:
+    head: list[Json] = [q.id, q.label, q.node, list(q.needs), list(q.calls), q.waiting, q.dropped]
+    return [*head, q.process, q.is_declared, list(q.opens)]
 
 
 def _activity(a: ActivityView) -> Json:
@@ -66,6 +69,8 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
             return ["call", call, name]
         case Slot(group=group, ticket=ticket):
             return ["slot", group, ticket]
+        case Opening(service=service):
+            return ["open", service]
         case Join(activity=activity):
             return ["join", activity]
         case SetBy(what=what, queues=queues, activities=activities, is_held=is_held, deed=deed, gives_up=ends):
@@ -99,14 +104,15 @@ def from_json(data: Mapping[str, object]) -> WaitGraph:
 
 
 def _read_group(row: list[object]) -> GroupView:
-    id_, name, node, limit, is_declared, is_threaded = row
-    return GroupView(_text(id_), _text(name), _text(node), _limit(limit), _bool(is_declared), _bool(is_threaded))
+    id_, name, node, limit, is_declared, is_threaded, is_start = row
+    head = _text(id_), _text(name), _text(node), _limit(limit)
+    return GroupView(*head, _bool(is_declared), _bool(is_threaded), _bool(is_start))
 
 
 def _read_queue(row: list[object]) -> QueueView:
-    id_, label, node, needs, calls, waiting, dropped, process, is_declared = row
+    id_, label, node, needs, calls, waiting, dropped, process, is_declared, opens = row
     head = _text(id_), _text(label), _text(node), _texts(needs), _texts(calls)
-    return QueueView(*head, _int(waiting), _int(dropped), _text(process), _bool(is_declared))
+    return QueueView(*head, _int(waiting), _int(dropped), _text(process), _bool(is_declared), _texts(opens))
 
 
 def _read_activity(row: list[object]) -> ActivityView:
@@ -162,6 +168,8 @@ def _read_condition(data: object, depth: int) -> Condition:
             return Call(_text(call), _text(name))
         case ["slot", group, ticket]:
             return Slot(_text(group), _int(ticket))
+        case ["open", service]:
+            return Opening(_text(service))
         case ["join", activity]:
             return Join(_text(activity))
         case ["set", what, queues, activities, is_held, deed, ends]:

@@ -37,7 +37,9 @@ class _InterfaceFinder:
             known = registry.names_in(package, rest[0])
             if rest[1] in known:
                 return None
-            hint = registry.misplaced(package, rest[1]) or did_you_mean(rest[1], known)
+            others = [kind for kind in registry.KINDS if rest[1] in registry.names_in(package, kind)]
+            elsewhere = f"; there is graphflow.msgs.{package}.{others[0]}.{rest[1]}" if others else ""
+            hint = elsewhere or registry.misplaced(package, rest[1]) or did_you_mean(rest[1], known)
             raise ImportError(f"package {package!r} has no {rest[0]} {rest[1]!r}{hint}", name=fullname)
         if rest and (len(rest) > 1 or rest[0] not in registry.KINDS):
             return None

@@ -106,11 +106,16 @@ def no_kinds(package: str) -> str:
 
 
 def misplaced(package: str, name: str) -> str:
-    """What has to become of a file that seems to be meant, but lies elsewhere or is called otherwise; else empty."""
+    """What has to become of a file that seems to be meant, but lies elsewhere or is called otherwise; else empty.
+
+    A file that is where and called as it must be is not meant to be renamed: then it is the name that is wrong.
+    """
     for root in roots():
         for file in sorted((root / package).rglob("*")):
             kind = file.suffix[1:]
             if kind in KINDS and file.stem.replace("_", "").lower() == name.replace("_", "").lower():
+                if file.parent == root / package / kind and file.stem != name and idl.is_type_name(file.stem):
+                    return f"; did you mean {file.stem!r}?"
                 right = root / package / kind / f"{name}.{kind}"
                 if file != right:
                     return f"; {file} must be {right}"

@@ -23,7 +23,7 @@ from typing import Any, Generic
 from graphflow.errors import Abort, EncodeError
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.machines.goal import CancelCode, Do, GoalBook, GoalEvent, GoalRecord, GoalRules, GoalStatus, Phase
 from graphflow.msgs import registry
 from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle
@@ -166,6 +166,10 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
     def _topic(self, part: str, type_name: str, qos: Qos) -> TopicPublisher[Any]:
         message: Any = registry.interface_class(type_name)
         return TopicPublisher(self.host, message, f"{self.name}/_action/{part}", qos)
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("action", self._label)
 
     @property
     def title(self) -> str:

@@ -9,22 +9,22 @@ from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping
 from contextlib import AsyncExitStack
-from functools import cache, partial
+from functools import cache
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.deadlock import races
-from graphflow.deadlock.snapshot import place_of
+from graphflow.deadlock.openings import place_of
+from graphflow.deadlock.protocols import Unopened
 from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import ClosedError, DeadlockError, DeclarationError, GraphflowError, ParameterError
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
-from graphflow.executor.sim_time import SimClock
 from graphflow.interface import OnError, may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs import registry
 from graphflow.names import Resolver, did_you_mean
-from graphflow.qos import CLOCK, PARAMETERS, SERVICES, Qos
+from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declared
 from graphflow.runtime.binding import Binding, Creator
 from graphflow.runtime.context import Context
@@ -33,13 +33,13 @@ from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.failures import ErrorBudget, Failures
 from graphflow.runtime.host import Part
 from graphflow.runtime.logger import node_logger
+from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
-from graphflow.runtime.topics import TopicSubscription
-from graphflow.times import NANOSECONDS, to_ns
+from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
 P = TypeVar("P", bound=Part)
@@ -82,6 +82,8 @@ class NodeCore:
         self.log = node_logger(self.full_name)
         self.parameters = Parameters(overrides)
         self.groups = Groups(declared.groups(cls), cls.default_group, concurrency)
+        self.starting: asyncio.Task[Any] | None = None
+        """The task in which `on_start` runs, until it returns."""
         self.tasks: set[asyncio.Task[Any]] = set()
         """Tasks that `spawn` has started and that have not ended."""
         self.runners: list[Runner] = []
@@ -104,7 +106,7 @@ class NodeCore:
         self._own_services: set[str] = set()
         self._rosout: Rosout | None = None
         self._parameter_events: ParameterEvents | None = None
-        self._sim_clock: tuple[SimClock, TopicSubscription[Any]] | None = None
+        self._clock = NodeClock(self, self.names.resolve, self.add)
 
     # who it is
 
@@ -132,7 +134,7 @@ class NodeCore:
 
     @property
     def clock(self) -> Clock:
-        return self.context.clock if self._sim_clock is None else self._sim_clock[0]
+        return self._clock.current
 
     # what it has
 
@@ -154,6 +156,12 @@ class NodeCore:
     def endpoints(self) -> list[Endpoint]:
         """Everything the node has on the network; for actions, the services and topics that they consist of."""
         return [endpoint for part in self._parts for endpoint in part.endpoints]
+
+    @property
+    def unopened(self) -> list[Unopened]:
+        found = [Unopened(part.handler_title, _services(part)) for part in self._late or ()]
+        tasks = [name for name, h in declared.handlers(type(self.instance)).items() if h.kind == "task"]
+        return [*found, *(Unopened(f"task {name}") for name in tasks)] if self._late is not None else []
 
     def serves(self, service: str) -> bool:
         return any(e.kind is Kind.SERVICE and e.name == service for e in self.endpoints)
@@ -295,23 +303,30 @@ class NodeCore:
             part.open()
         if self.parameters.get("use_sim_time"):
             self._follow_sim_time()
-        due_ns = context.clock.monotonic_ns() + to_ns(SLOW_START)
-        slow = context.clock.call_at(due_ns, partial(self._say_slow_start, asyncio.current_task()))
+        slow = context.clock.call_at(context.clock.monotonic_ns() + to_ns(SLOW_START), self._say_slow_start)
+        self.starting = asyncio.current_task()
+        context.search.arm()
         try:
             await self.instance.on_start()
+        except Exception as error:
+            self.warn_unused_remaps()  # which may be why
+            self.report_error("on_start", error)
+            self.failure = error
+            raise
         finally:
+            self.starting = None
             slow.cancel()
         self.groups.refuse_strays()
         late, self._late = self._late, None
         for part in sorted(late, key=lambda part: part.opens_last):
             part.open()
 
-    def _say_slow_start(self, task: Any) -> None:
+    def _say_slow_start(self) -> None:
         self.log.warning(
             "on_start has not returned for %.0f s %s; this node's handlers start when it has: what waits for them, or "
             "for nodes that wait for this one, belongs in a @task",
             SLOW_START,
-            place_of(task),
+            place_of(self.starting),
         )
 
     def warn_unused_remaps(self) -> None:
@@ -451,26 +466,16 @@ class NodeCore:
 
     def _follow_sim_time(self) -> None:
         """Follow /clock, or the context's clock, as the parameter `use_sim_time` says."""
-        former, wanted = self._sim_clock, self.parameters.get("use_sim_time")
-        if wanted and former is None:
-            from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
-
-            clock, topic = SimClock(self.context.loop), self.names.resolve("/clock")
-
-            def told(message: ClockMessage) -> None:
-                clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
-
-            heard = TopicSubscription(self, ClockMessage, topic, CLOCK, told)
-            self._sim_clock = (clock, self.add(heard))
-        elif not wanted and former is not None:
-            self._sim_clock = None
-            former[1].close()
-            former[0].retire(self.clock)
+        self._clock.follow(is_simulated=bool(self.parameters.get("use_sim_time")))
         for part in self._parts:
             part.clock_changed()
             for endpoint in part.endpoints:
                 if endpoint is not part:
                     endpoint.clock_changed()
+
+
+def _services(part: Part) -> tuple[str, ...]:
+    return tuple(endpoint.name for endpoint in part.endpoints if endpoint.kind is Kind.SERVICE)
 
 
 @cache

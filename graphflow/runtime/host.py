@@ -74,6 +74,11 @@ class Part(SpeaksRos, ABC):
         return ""
 
     @property
+    def handler_title(self) -> str:
+        """Kind and handler of what the part runs: `service add`; empty if it runs nothing."""
+        return ""
+
+    @property
     def endpoints(self) -> Sequence[Any]:
         """What the part has on the network, as `Endpoint`."""
         return ()

@@ -14,7 +14,8 @@ from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.source import FunctionNode, first_line, is_own, module_of
+from graphflow.deadlock.source import is_own
+from graphflow.deadlock.syntax import first_line, syntax_of
 from graphflow.deadlock.user_code import is_users_module
 from graphflow.errors import ParameterError, Place
 from graphflow.interface import EndpointInfo, EndpointKind, HandlerInfo, HandlerKind, Interface, Parameter, type_of
@@ -129,11 +130,11 @@ def _made(cls: type) -> _Made:
 def _syntax(function: FunctionType) -> ast.AST | None:
     code = function.__code__
     try:
-        module = module_of(code.co_filename)
+        syntax = syntax_of(code.co_filename)
     except (OSError, SyntaxError, ValueError):
         return None
-    for node in ast.walk(module):
-        if isinstance(node, FunctionNode) and first_line(node) == code.co_firstlineno and node.name == code.co_name:
+    for node in syntax.functions:
+        if first_line(node) == code.co_firstlineno and node.name == code.co_name:
             return node
     return None
 

@@ -42,6 +42,7 @@ from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceServer
 from graphflow.runtime.timer import Timer
 from graphflow.runtime.topics import TopicPublisher, TopicSubscription
+from graphflow.runtime.twice import check_names
 from graphflow.wire.attachment import MessageInfo
 
 M = TypeVar("M", bound=Message)
@@ -107,6 +108,7 @@ class Node(SpeaksRos):
     @classmethod
     def interface(cls) -> Interface:
         """Everything the class declares, and what its methods are seen to make, as data; known without a node."""
+        check_names(cls)  # type: ignore[arg-type]
         return with_made(cls, declared.interface_of(cls))
 
     def __init_subclass__(cls, **kwargs: Any) -> None:

@@ -7,11 +7,13 @@ import logging
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
+from typing import Any
 
-from graphflow.deadlock.user_code import users_part
+from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.context import Context
@@ -25,6 +27,8 @@ logger = logging.getLogger("graphflow")
 
 SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
+REMIND_AFTER = 1.0
+"""Seconds after a signal at which nodes that are still stopping say so."""
 
 
 @asynccontextmanager
@@ -78,10 +82,8 @@ async def serve(
         stack.callback(asked.cancel)
         for node in nodes:
             stack.push_async_callback(core_of(node).stop, withdraw=False)
-            if not await _start(node, context, asked):
-                return
-            if ready is not None:
-                ready(node)
+        if not await _start(nodes, context, asked, ready):
+            return
         left = {asked, *(asyncio.create_task(core_of(node).wait_ended()) for node in nodes)}
         for task in left:
             stack.callback(task.cancel)
@@ -91,18 +93,30 @@ async def serve(
                 task.result()
 
 
-async def _start(node: Node, context: Context, asked: asyncio.Task[bool]) -> bool:
-    """Start a node; returns False when it was asked to stop before it was ready."""
-    starting = asyncio.create_task(core_of(node).start(context))
+async def _start(
+    nodes: Sequence[Node], context: Context, asked: asyncio.Task[bool], ready: Callable[[Node], None] | None
+) -> bool:
+    """Start nodes beside each other: one may wait for another's. Returns False when asked to stop before all are ready.
+
+    Raises:
+        Exception: One could not start; the others are cancelled then.
+    """
+    starting = {asyncio.create_task(core_of(node).start(context)): node for node in nodes}
+    left: set[asyncio.Task[Any]] = {asked, *starting}
     try:
-        await asyncio.wait({starting, asked}, return_when=asyncio.FIRST_COMPLETED)
+        while asked in left and len(left) > 1:
+            done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
+            for task, node in starting.items():
+                if task in done and task.result() is None and ready is not None:
+                    ready(node)
     finally:
-        starting.cancel()  # has no effect on one that is done
-    await asyncio.wait({starting})
-    if starting.cancelled():
-        return False
-    starting.result()
-    return True
+        for task in starting:
+            task.cancel()  # has no effect on one that is done
+        await asyncio.gather(*starting, return_exceptions=True)
+    for task in starting:
+        if not task.cancelled():
+            task.result()
+    return asked in left
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
@@ -115,6 +129,8 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
     """
     loop = asyncio.get_running_loop()
     first = 0.0
+    reminder = threading.Timer(REMIND_AFTER, os.write, (2, b"still stopping; Ctrl-C again ends it without cleanup\n"))
+    reminder.daemon = True
 
     def caught(*_: object) -> None:
         nonlocal first
@@ -125,11 +141,14 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
             os._exit(1)
         if not loop.is_closed():
             loop.call_soon_threadsafe(stop.set)
+        if not reminder.is_alive() and not reminder.finished.is_set():
+            reminder.start()
 
     # Not the loop's own handlers, which would wait for a handler that does not return.
     former = {number: signal.signal(number, caught) for number in (signal.SIGINT, signal.SIGTERM)}
 
     def restore() -> None:
+        reminder.cancel()
         for number, handler in former.items():
             signal.signal(number, handler)
 
@@ -192,8 +211,9 @@ def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
 
 
 def print_error(error: GraphflowError) -> None:
-    """Tell the user at the terminal."""
-    sys.stderr.write(f"error: {error}\n")
+    """Tell the user at the terminal, with the line of the user's own in which it happened."""
+    place = place_in(error)
+    sys.stderr.write(f"error: {error}{f' ({place})' if place and place not in str(error) else ''}\n")
 
 
 def make(cls: type[Node], ros: RosArgs) -> Node:

@@ -118,9 +118,11 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             return True
         future: Future[None] = self.host.context.loop.create_future()
         self._waiting.add(future)
+        ledger, clock = self.host.context.ledger, self.host.clock
         try:
-            async with self.host.clock.timeout(timeout) if timeout is not None else nullcontext():
-                await future
+            async with clock.timeout(timeout) if timeout is not None else nullcontext():
+                with ledger.opening(future, self.name, clock.monotonic_ns()):
+                    await future
         except TimeoutError:
             return False
         finally:
@@ -155,8 +157,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
                 return f"service {self.name} is of type {offered[0]}, not {self.type_name}"
         if self.host.serves(self.name):
             return f"service {self.name} is this node's own, and opens when on_start has returned; call it in a @task"
-        offers = {e.name for e in self.host.context.cache.endpoints(Kind.SERVICE)}
-        return f"no node offers the service {self.name} [{self.type_name}]{did_you_mean(self.name, offers)}"
+        near = did_you_mean(self.name, *self.host.context.cache.offered())
+        return f"no node offers the service {self.name} [{self.type_name}]{near}"
 
     async def call(self, request: Request, *, timeout: float | EllipsisType | None = ...) -> Response:
         """Send a request and wait for the response.

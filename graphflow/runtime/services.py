@@ -14,7 +14,7 @@ from graphflow.errors import (
     ServerBusy,
 )
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
 from graphflow.qos import DEFAULT, Qos
@@ -75,6 +75,10 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         self._inbox: Inbox | None = None
         self._lines: ServerLines | None = None
         self._service_events = ServiceEvents(host, type_, name)
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("service", self._label)
 
     def configure_introspection(self, level: Introspection, qos: Qos | int = DEFAULT) -> None:
         """Publish what passes on `<service>/_service_event`: nothing, its metadata, or its contents as well."""

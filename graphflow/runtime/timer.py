@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from graphflow.executor.clock import period_ns
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.runner import Runner, RunnerSpec
+from graphflow.executor.runner import Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.runtime.host import Host, Part
 
@@ -57,6 +57,10 @@ class Timer(Part):
 
     def __repr__(self) -> str:
         return f"<Timer {self._label} {self._period_ns / 1e9:g} s>"
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("timer", self._label)
 
     @property
     def title(self) -> str:

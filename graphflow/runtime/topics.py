@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError, EncodeError
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.runner import BURST, Runner, RunnerSpec
+from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
@@ -210,6 +210,10 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._gaps = 0
         self._has_told_loss = False
         self._deadline: SilenceTimer | None = None
+
+    @property
+    def handler_title(self) -> str:
+        return title_of("subscription", self._label)
 
     def _open(self, key: str) -> None:
         context = self.host.context

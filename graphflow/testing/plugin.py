@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import inspect
 import sys
+import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
 LIMIT = 60.0
 """Seconds of real time that an asynchronous test may take."""
+IDLE_LIMIT = 5.0
+"""Seconds of real time in which a test with a manual clock may do nothing at all."""
+IDLE = 0.02
+"""Seconds of processor time in one of real time that count as nothing."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -55,25 +60,44 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     wanted = pyfuncitem._fixtureinfo.argnames
     arguments: dict[str, Any] = {name: pyfuncitem.funcargs[name] for name in wanted}
 
+    began = time.monotonic()
+
     async def limited() -> None:
-        async with asyncio.timeout(LIMIT):
-            await pyfuncitem.obj(**arguments)
+        async with asyncio.timeout(LIMIT) as limit:
+            watching = asyncio.create_task(_end_when_idle(limit)) if "graph" in pyfuncitem.fixturenames else None
+            try:
+                await pyfuncitem.obj(**arguments)
+            finally:
+                if watching is not None:
+                    watching.cancel()
 
     try:
         runner.run(limited())
     except TimeoutError as error:
-        if isinstance(error.__cause__, asyncio.CancelledError):
-            error.add_note(_too_long(error.__cause__))
+        ended = error.__cause__ or error.__context__  # the first since Python 3.11.3
+        if isinstance(ended, asyncio.CancelledError):
+            error.add_note(_too_long(ended, time.monotonic() - began))
         raise
     return True
 
 
-def _too_long(ended: BaseException) -> str:
+async def _end_when_idle(limit: asyncio.Timeout) -> None:
+    """End a test that stands still: what it waits for would come with time, and its clock does not move."""
+    idle = 0.0
+    while idle < IDLE_LIMIT:
+        used, step = time.process_time(), min(1.0, IDLE_LIMIT)
+        await asyncio.sleep(step)
+        idle = idle + step if time.process_time() - used < IDLE * step else 0.0
+    limit.reschedule(asyncio.get_running_loop().time())
+
+
+def _too_long(ended: BaseException, seconds: float) -> str:
     """What to say of a test that has not come to its end; its clock stands still unless it is advanced."""
     from graphflow.deadlock.user_code import place_in
 
     where = place_in(ended)
     return (
-        f"the test was not done after {LIMIT:g} s{f', and waited in {where}' if where else ''}. If it waits for time, "
-        "advance the clock meanwhile: start it with asyncio.ensure_future, then await graph.clock.advance(1.0)"
+        f"the test was not done after {seconds:.0f} s{f', and waited in {where}' if where else ''}. If it waits for "
+        "time, or for a node that is not there, advance the clock meanwhile: "
+        "start it with asyncio.ensure_future, then await graph.clock.advance(1.0)"
     )

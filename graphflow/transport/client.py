@@ -16,7 +16,9 @@ from graphflow.transport.config import close_session, reaches_out
 from graphflow.transport.rendezvous import join
 
 TOKENS_LIMIT = 10.0
-"""Seconds that asking for tokens may take."""
+"""Seconds after which no more tokens are asked for."""
+MANY_TOKENS = 1000
+"""A number of tokens that takes a router noticeable time to take in."""
 
 
 class Client:
@@ -38,17 +40,24 @@ class Client:
         return str(self._session.info.zid())
 
     def tokens(self, key: str) -> list[str]:
-        """Every liveliness token that matches.
+        """Every liveliness token that matches. Of many the router may not know all yet: it is asked until it does.
 
         Raises:
             TransportError: They did not all come in time.
         """
-        began = time.monotonic()
+        began, before = time.monotonic(), MANY_TOKENS
+        while True:
+            found = self._known(key)
+            if time.monotonic() - began >= TOKENS_LIMIT:
+                raise TransportError(f"only {len(found)} tokens of the graph came within {TOKENS_LIMIT:g} s; try again")
+            if len(found) <= before:
+                return found
+            before = len(found)
+
+    def _known(self, key: str) -> list[str]:
+        """The tokens that the router knows now."""
         replies = self._session.liveliness().get(key, timeout=TOKENS_LIMIT)
-        found = [str(r.ok.key_expr) for r in replies if r.ok is not None]
-        if time.monotonic() - began >= TOKENS_LIMIT:
-            raise TransportError(f"only {len(found)} tokens of the graph came within {TOKENS_LIMIT:g} s; try again")
-        return found
+        return [str(r.ok.key_expr) for r in replies if r.ok is not None]
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
         """All replies on matching keys within `timeout` seconds."""

@@ -36,6 +36,11 @@ _STRING = re.compile(r"""(?P<q>["'])(?P<body>(?:\\.|(?!(?P=q))[^\\])*)(?P=q)\Z""
 _ALIASES = {"Header": "std_msgs/msg/Header"}
 
 
+def is_type_name(text: str) -> bool:
+    """Whether an interface may be called so."""
+    return _TYPE_NAME.match(text) is not None
+
+
 def check_interface_name(package: str, name: str) -> None:
     """Refuse a package or type name that ROS 2 would refuse.
 
@@ -44,7 +49,7 @@ def check_interface_name(package: str, name: str) -> None:
     """
     if not _PACKAGE_NAME.match(package):
         raise InterfaceError(f"package {package!r}: lower-case letters, digits and single _, beginning with a letter")
-    if not _TYPE_NAME.match(name):
+    if not is_type_name(name):
         raise InterfaceError(f"type name {name!r}: letters and digits only, beginning with a capital (CamelCase)")
 
 
@@ -187,7 +192,7 @@ def _type_name(text: str, package: str) -> str:
     if len(parts) == 1:
         if text in _ALIASES:
             return _ALIASES[text]
-        if not _TYPE_NAME.match(text):
+        if not is_type_name(text):
             raise InterfaceError(f"{text!r} is not a type{did_you_mean(text, PRIMITIVES)}")
         return f"{package}/msg/{text}"
     if len(parts) == 2 or (len(parts) == 3 and parts[1] == "msg"):

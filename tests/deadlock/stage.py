@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
+from graphflow.deadlock.protocols import Unopened
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerKind, RunnerSpec
@@ -26,6 +27,8 @@ class Actor:
     full_name: str = "/robot"
     instance: object = field(default_factory=SimpleNamespace)
     runners: list[Runner] = field(default_factory=list)
+    starting: asyncio.Task[Any] | None = None
+    unopened: list[Unopened] = field(default_factory=list)
     tasks: set[asyncio.Task[Any]] = field(default_factory=set)
     groups: Groups = field(default_factory=lambda: Groups({}, None, Regrouping()))
     handlers: set[str] = field(default_factory=set)

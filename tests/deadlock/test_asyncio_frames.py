@@ -404,6 +404,24 @@ async def test_shield(graphflow_runner: asyncio.Runner) -> None:
     assert aio.shielded(task) is None
 
 
+async def test_futures_that_stand_for_others(graphflow_runner: asyncio.Runner) -> None:
+    """Tasks, and what `gather` and `shield` make; not a future of its own."""
+    task = await suspended(pending())
+
+    assert all(map(aio.stands_for_others, [task, asyncio.gather(task), asyncio.shield(task)]))
+    assert not aio.stands_for_others(asyncio.get_running_loop().create_future())
+
+
+async def test_futures_that_have_failed(graphflow_runner: asyncio.Runner) -> None:
+    """With an error, or by cancellation."""
+    well, ill, canceled = (asyncio.get_running_loop().create_future() for _ in range(3))
+    well.set_result(None)
+    ill.set_exception(ValueError())
+    canceled.cancel()
+
+    assert [aio.has_failed(future) for future in (well, ill, canceled)] == [False, True, True]
+
+
 # Deadlines
 
 

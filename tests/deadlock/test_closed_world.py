@@ -240,7 +240,7 @@ async def test_a_lock_that_is_entered(
         await thing.acquire()
     found = await scene.found()
 
-    assert found == (f"self.{lock}", frozenset(), thing, places, (), "releases", False)
+    assert found == (f"self.{lock}", frozenset(), thing, places, (), "releases", False, "")
 
 
 async def test_a_lock_that_is_released_by_hand(graphflow_runner: asyncio.Runner, written: Written) -> None:

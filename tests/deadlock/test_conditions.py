@@ -177,8 +177,6 @@ async def test_conditions_that_are_understood(
         "time.time() > 3",
         "random.random() > 0.5",
         "own_function(self.level)",
-        "self.level > moving",
-        "self.level in LIST",
         "self.thing",
         "self.odd",
         "self.objects.any()",

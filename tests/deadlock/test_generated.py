@@ -39,7 +39,7 @@ from graphflow.transport.memory import MemorySession, Network
 from tests.cases import cases, count, limit
 from tests.flat import flat
 
-CASES = count(few=25, full=300)
+CASES = count(few=15, full=300)
 """Systems that are tried."""
 REPORTED_WITHIN = 1.5
 """Seconds from the last step of anybody in a ring to its report: a quarter of one, and two questions to others.

@@ -787,3 +787,56 @@ async def test_goals_that_were_rejected_are_not_kept(graph: Graph) -> None:
         await asker.order.send_goal(Fibonacci.Goal())
 
     assert not asker.context.ledger.goals
+
+
+class Asker(Node):
+    """Asks somebody who first wants something of it, and then something else."""
+
+    node_name = "asker"
+    own = Group(1)
+    plan = Client(Empty, "/planner/plan")
+
+    @subscription(String, "/go", group=own)
+    async def go(self, _: String) -> None:
+        await self.plan.call(Empty.Request(), timeout=None)
+
+    @service(Empty, "~/first", group=own)
+    async def first(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+    @service(Empty, "~/second", group=own)
+    async def second(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+
+class Planner(Node):
+    """Wants both."""
+
+    node_name = "planner"
+    first = Client(Empty, "/asker/first")
+    second = Client(Empty, "/asker/second")
+
+    @service(Empty, "~/plan")
+    async def make(self, request: Empty.Request) -> Empty.Response:
+        await self.first.call(Empty.Request(), timeout=None)
+        await self.second.call(Empty.Request(), timeout=None)
+        return Empty.Response()
+
+
+async def test_a_ring_of_the_same_members_that_wait_for_something_else(graph: Graph, caplog: Caplog) -> None:
+    """A remedy that helps with the first of two calls: the ring through the second is told, too."""
+    graph.deadlock = "report"
+    node = Asker()
+    await graph.start(node, Planner())
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+    assert "waits for the response of service /asker/first" in flat(the_report(caplog))
+
+    groups = core_of(node).groups
+    for handler in ("first", "second"):
+        [runner] = [r for r in core_of(node).runners if r.spec.handler == handler]
+        runner.move(groups.named(f"{handler}_group"))
+        await graph.clock.advance(4.0)
+        assert len(reports(caplog)) == 2
+    assert "waits for the response of service /asker/second" in flat(reports(caplog)[-1])
+    assert cleared(caplog)

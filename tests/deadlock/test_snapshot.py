@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from graphflow.deadlock.snapshot import Snapshot, id_of, place_of
+from graphflow.deadlock.snapshot import Snapshot
 from graphflow.deadlock.watchdog import Watchdog
-from graphflow.executor.activity import Activity
+from graphflow.executor.clock import WallClock
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
@@ -219,9 +219,30 @@ class Waiter:
     def on_arrive(self, _: object) -> None:
         self.arrived.set()
 
+    async def on_ask(self, _: object) -> None:
+        await asyncio.create_task(self.arrived.wait())
+
     async def enter(self, _: object) -> None:
         async with self.lock:
             await asyncio.sleep(60)
+
+
+@pytest.mark.parametrize(("name", "age"), [("on_go", 7), ("on_ask", 0)])
+async def test_the_age_of_what_only_the_source_tells(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, name: str, age: int
+) -> None:
+    """It counts from when the run began to wait; through a task, which may wait for something else by now, from now."""
+    scene = Scene(Waiter())
+    monkeypatch.setattr(scene.stage, "clock", WallClock())
+    scene.own("on_arrive")
+    runner = scene.own(name)
+    await begin(runner, "message")
+    [run] = runner.active
+    run.suspended_at -= 7.0
+
+    [view] = scene.snapshot.take().activities.values()
+    assert isinstance(view.wait, SetBy)
+    assert age <= view.age < age + 5
 
 
 async def test_what_only_the_source_tells(graphflow_runner: asyncio.Runner) -> None:
@@ -439,29 +460,3 @@ async def test_a_loop_that_is_blocked(graphflow_runner: asyncio.Runner, monkeypa
     assert graph.blocked == {scene.zid: view.id}
     assert (view.label, view.wait, view.age, view.is_async) == ("subscription on_go", ADD, 3.0, False)
     assert (view.place.file, view.function) == (__file__, "blocks")
-
-
-# Names
-
-
-async def test_the_id_of_a_call(graphflow_runner: asyncio.Runner) -> None:
-    """It is the same in the process that asks and in the one that answers."""
-    stage = Stage()
-
-    assert id_of(stage.ledger.call(stage.loop.create_future(), GID, 7, "/add", 0, None)) == ADD.id
-
-
-async def test_the_place_of_a_task(graphflow_runner: asyncio.Runner) -> None:
-    """The innermost line of the user's own in which it waits; none if it has ended."""
-
-    async def body() -> None:
-        await asyncio.Event().wait()
-
-    run = Activity(asyncio.get_running_loop(), body(), "run", lambda _, __: None)
-    asyncio.get_running_loop().call_soon(run.start)
-    await settle()
-    task = asyncio.create_task(ended())
-    await task
-
-    assert place_of(run) == f"(test_snapshot.py:{body.__code__.co_firstlineno + 1} in body)"
-    assert place_of(task) == ""

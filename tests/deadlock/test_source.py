@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.deadlock.source import ClassSource, Unknown, Use, source_of, walk
+from graphflow.deadlock.source import ClassSource, Unknown, Use, source_of
 from tests.deadlock.conftest import Written
 
 HEAD = """
@@ -475,13 +475,3 @@ def test_a_class_is_read_once(written: Written) -> None:
     module = made(written, "class N: ...")
 
     assert source_of(module.N()) is source_of(module.N())
-
-
-def test_walking_a_tree() -> None:
-    """Every node comes once, with all that is around it, the outermost first."""
-    tree = ast.parse("a.b")
-
-    found = [(type(node).__name__, [type(p).__name__ for p in parents]) for node, parents in walk(tree)]
-    assert ("Attribute", ["Module", "Expr"]) in found
-    assert ("Name", ["Module", "Expr", "Attribute"]) in found
-    assert len(found) == len(list(ast.walk(tree)))

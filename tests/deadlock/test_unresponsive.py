@@ -8,8 +8,8 @@ import os
 import pytest
 
 from graphflow import Client, Node, service, subscription
-from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive, calls_of
-from graphflow.machines.wait_graph import FREE, ActivityView, All, AnyOf, Call, Condition, Join, WaitGraph
+from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive
+from graphflow.machines.wait_graph import FREE, ActivityView, Call, Condition, WaitGraph
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
@@ -79,20 +79,6 @@ class Scene:
 
 
 LAND = Call("c", "/land")
-
-
-@pytest.mark.parametrize(
-    ("wait", "calls"),
-    [
-        (LAND, ["c"]),
-        (All((LAND, AnyOf((FREE, Call("d", "/start"))))), ["c", "d"]),
-        (Join("b"), []),
-        (FREE, []),
-    ],
-)
-def test_the_calls_in_a_wait(wait: Condition, calls: list[str]) -> None:
-    """They are found however deep they stand."""
-    assert [call.id for call in calls_of(wait)] == calls
 
 
 async def test_who_answers_is_not_silent(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from graphflow.executor.ledger import Ledger, PendingGoal
+from graphflow.machines.wait_graph import call_id
 
 GID = bytes(range(16))
 
@@ -57,13 +58,18 @@ def asked_from(ledger: Ledger) -> Case:
     return ledger.asked_from(5, task), lambda: ledger.asking.get(5), task
 
 
+def opening(ledger: Ledger) -> Case:
+    key = future()
+    return ledger.opening(key, "/add", 5), lambda: ledger.openings.get(key), ("/add", 5)
+
+
 def blocked_by(ledger: Ledger) -> Case:
     key = future()
     return ledger.blocked_by(key), lambda: ledger.blocking, key
 
 
 @pytest.mark.parametrize("fails", [False, True])
-@pytest.mark.parametrize("kind", [call, goal, serving, thread_work, asked_from, blocked_by])
+@pytest.mark.parametrize("kind", [call, goal, serving, thread_work, asked_from, opening, blocked_by])
 async def test_an_entry_while_it_is_entered(
     graphflow_runner: asyncio.Runner, kind: Callable[[Ledger], Case], fails: bool
 ) -> None:
@@ -73,7 +79,7 @@ async def test_an_entry_while_it_is_entered(
     assert entry() is None
     try:
         with wait:
-            assert entry() is expected
+            assert entry() == expected
             if fails:
                 raise ValueError
     except ValueError:
@@ -121,3 +127,8 @@ async def test_the_thread_of_the_loop(graphflow_runner: asyncio.Runner) -> None:
 
     assert (ledger.loop, ledger.thread) == (asyncio.get_running_loop(), threading.get_ident())
     assert ledger.at_work is ledger.blocking is None
+
+
+async def test_the_id_of_a_call(graphflow_runner: asyncio.Runner) -> None:
+    """It is the same in the process that asks and in the one that answers."""
+    assert Ledger(asyncio.get_running_loop()).call(future(), GID, 7, "/add", 0, None).id == call_id(GID, 7)

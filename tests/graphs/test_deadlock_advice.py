@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import PROGRAMS, Program
 from tests.graphs.lab import Lab, end_at_once, line_of, reports, wait_for_all
 
@@ -139,7 +139,7 @@ WRITTEN = {
 }
 
 
-@pytest.mark.parametrize("name", some(WRITTEN, "an event", "a sleep on the loop", "an action and a pose"))
+@pytest.mark.parametrize("name", some(WRITTEN, "an event", "an action and a pose"))
 def test_advice_that_is_followed(lab: Lab, name: str) -> None:
     """The report names the line, and with what it says to write the graph goes on."""
     case = WRITTEN[name]
@@ -176,6 +176,7 @@ def move(lab: Lab, case: Written) -> None:
     assert f"  {case.fix}\n" in lab.machine.look("groups", "move", node, handler, group)
 
 
+@slow
 def test_a_loop_that_goes_on_is_in_no_deadlock(lab: Lab) -> None:
     """When its pose comes again, the driver that was stuck is on its way: nothing is wrong any more."""
     case = WRITTEN["an action and a pose"]
@@ -186,6 +187,7 @@ def test_a_loop_that_goes_on_is_in_no_deadlock(lab: Lab) -> None:
     assert "nothing wrong" in lab.machine.look("doctor")
 
 
+@slow
 def test_the_line_of_a_lock(lab: Lab) -> None:
     """A lock that is held across a call to another process, which needs it: no group helps, and none is named."""
     lab.add("advice/lock.py", "student.py")

@@ -11,7 +11,7 @@ from graphflow.graph.resolve import load
 from graphflow.supervisor.classes import add_root
 from graphflow.supervisor.worker import make_node
 from graphflow.testing import Graph
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import PROJECT, Machine
 from tests.flat import flat
 from tests.graphs.lab import end_at_once
@@ -159,7 +159,7 @@ async def test_a_fixed_graph_works(graph: Graph, caplog: pytest.LogCaptureFixtur
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("name", some(REAL, "crossing", "goal_in_threads"))
+@pytest.mark.parametrize("name", some(REAL, "goal_in_threads"))
 def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: str) -> None:
     """The same, by processes that have found it together."""
     pair = PAIRS[name]
@@ -171,7 +171,7 @@ def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: s
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("name", some(REAL, "crossing", "goal_in_threads"))
+@pytest.mark.parametrize("name", some(REAL, "crossing"))
 def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> None:
     """And nothing is reported there either."""
     up = machine.start("up", str(FOLDER / f"{name}_fixed.yaml"))
@@ -180,6 +180,7 @@ def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> N
     assert up.end() == 0
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("name", "note"),
@@ -206,6 +207,7 @@ def test_every_pair_is_here() -> None:
         assert f"include: {name}_broken.yaml" in fixed
 
 
+@slow
 @pytest.mark.real
 def test_a_deadlock_is_shown_moved_out_of_and_cleared(machine: Machine) -> None:
     """`waits` and `doctor` show it; `groups move` ends it in the running graph and prints the lines for good."""

@@ -29,6 +29,7 @@ from tests.graphs.lab import (
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_member_that_is_cancelled(lab: Lab) -> None:
     """The others go on, the report clears, and nothing waits any more (row 18)."""
     up = lab.up(ring_of("ab", "Canceller"))

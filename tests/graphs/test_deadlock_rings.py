@@ -80,6 +80,7 @@ def test_a_ring_that_is_closed_late(lab: Lab) -> None:
     assert seconds_to_report(up.text) < 1.0
 
 
+@slow
 def test_a_chain_that_comes_back_to_its_caller(lab: Lab) -> None:
     """The innermost call fails at once, and its error travels back through the other process (row 5)."""
     up = lab.up({"/a": member("b"), "/b": echo_of("a")}, policy="raise")
@@ -92,6 +93,7 @@ def test_a_chain_that_comes_back_to_its_caller(lab: Lab) -> None:
     assert reports(up.text) == []
 
 
+@slow
 def test_a_chain_that_comes_back_to_its_caller_is_reported(lab: Lab) -> None:
     """Where nothing is raised, the lines of both processes are told (row 5)."""
     up = lab.up({"/a": member("b"), "/b": echo_of("a")})
@@ -104,6 +106,7 @@ def test_a_chain_that_comes_back_to_its_caller_is_reported(lab: Lab) -> None:
     assert len(reports(up.text)) == 1
 
 
+@slow
 def test_what_takes_long_lives(lab: Lab) -> None:
     """Two who queue for a server that is busy are looked at, and not reported (row 9)."""
     up = lab.up({"/a": member("slow"), "/b": member("slow"), "/slow": "class: nodes.ring:Slow"})
@@ -121,6 +124,7 @@ def test_what_takes_long_lives(lab: Lab) -> None:
     assert reports(up.text) == []
 
 
+@slow
 def test_a_call_that_blocks_the_loop_it_needs(lab: Lab) -> None:
     """It is told, shown and found by the blocked process itself; a thread of its own ends it (row 17)."""
     up = lab.up({"/a": member("b", "Blocker"), "/b": echo_of("a")})
@@ -170,6 +174,7 @@ def test_two_supervisors_are_one_report(lab: Lab) -> None:
     close_and_open(lab, [lab.machine.start("up", file, cwd=lab.root) for file in files])
 
 
+@slow
 def test_no_supervisor_is_needed(lab: Lab) -> None:
     """So is one of nodes that were started by hand (row 29)."""
     words = ["run", "nodes.ring:Member", "--ros-args"]

@@ -42,6 +42,7 @@ def test_talker_listener(machine: Machine) -> None:
     assert up.end() == 0
 
 
+@slow
 def test_draw_circle(machine: Machine) -> None:
     """The turtle keeps to a circle of radius v / w through its starting point."""
     machine.run("up", "-d", "graphs/draw_circle.yaml", "linear:=3.0", "angular:=2.0")
@@ -79,6 +80,7 @@ def test_turtlesim(machine: Machine) -> None:
     machine.look("down")
 
 
+@slow
 def test_the_unquoted_command_of_the_slides(machine: Machine) -> None:
     """What the shell splits into many words is put together again: the turtle draws its circle."""
     machine.start("run", "nodes.turtlesim:TurtleSim").wait_for("Spawning turtle [turtle1]")
@@ -104,6 +106,7 @@ def test_via_points(machine: Machine) -> None:
     assert up.end() == 0
 
 
+@slow
 def test_ten_turtles(machine: Machine) -> None:
     """As many as the argument says."""
     machine.run("up", "-d", "graphs/ten_turtles.yaml", "count:=3")

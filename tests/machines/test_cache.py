@@ -146,6 +146,15 @@ def test_endpoints_can_be_asked_for() -> None:
     assert cache.endpoints(Kind.SERVICE, node="/robot/listener") == [SERVER]
 
 
+def test_offered_services() -> None:
+    """Those that users have written, and apart from them those of every node and of actions; clients offer none."""
+    asked = endpoint(TALKER, 2, Kind.CLIENT, "/reset", ADD)
+    inner = endpoint(TALKER, 3, Kind.SERVICE, "/talker/list_parameters", "rcl_interfaces/srv/ListParameters")
+    goal = endpoint(LISTENER, 4, Kind.SERVICE, "/turn/_action/send_goal", "turtlesim/action/Turn_SendGoal")
+
+    assert cache_of(*GRAPH, asked, inner, goal).offered() == ({"/add"}, {inner.name, goal.name})
+
+
 def test_actions_are_told_by_their_feedback() -> None:
     """An action shows its own name and type, not those of the entities it is made of."""
     feedback = endpoint(

@@ -20,6 +20,7 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -128,6 +129,8 @@ def test_headlines(deadlock: Deadlock, words: str) -> None:
     [
         (Call("c", "/add"), "the response of service /add"),
         (Call("goal:01", "/turn"), "the result of action /turn"),
+        (Opening("/arm/add"), "service /arm/add"),
+        (Opening("/arm/turn/_action/send_goal"), "action /arm/turn"),
         (Slot("g", 3), "its slot, to return to its group"),
         (SetBy("self.arrived", ()), "self.arrived"),
         (FREE, "its event loop"),

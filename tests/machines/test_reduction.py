@@ -20,13 +20,14 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
     WaitGraph,
     joined,
 )
-from tests.cases import cases, count, limit
+from tests.cases import cases, count, limit, slow
 from tests.machines.pictures import BACKGROUND, DEAD, LIVE, call, circle, group, picture, queue, run, waits_for_itself
 from tests.machines.tiny_graph import (
     Ask,
@@ -44,7 +45,7 @@ from tests.machines.tiny_graph import (
     stuck_for_ever,
 )
 
-CASES = count(few=100, full=1000)
+CASES = count(few=60, full=1000)
 """Tiny graphs that are tried."""
 
 
@@ -154,6 +155,18 @@ def test_the_way_back_to_a_group() -> None:
     assert deadlocked(picture(comes_back, group("g"), run("b", call("c"), holds="g"))) == {"a", "b"}
     assert deadlocked(picture(comes_back, group("g"), run("b", holds="g"))) == set()
     assert deadlocked(picture(comes_back, group("g"))) == set()
+
+
+def test_a_service_that_is_not_there_yet() -> None:
+    """It opens when nothing keeps out the handler of one of those who will offer it."""
+    start, waits = group("start"), run("on_start", Opening("/add"), holds="start")
+    here, there = (replace(queue(name, f"{name}_start"), opens=("/add",)) for name in ("here", "there"))
+    mine = replace(queue("mine", "start"), opens=("/add",))
+
+    assert deadlocked(picture(waits, start, mine)) == {"on_start"}
+    assert deadlocked(picture(waits, start, mine, there)) == set()
+    assert deadlocked(picture(waits, start)) == set()
+    assert deadlocked(picture(waits, start, here, run("b", holds="here_start"), group("here_start"))) == set()
 
 
 # Other waits
@@ -504,7 +517,7 @@ def part(seen: WaitGraph, process: int) -> WaitGraph:
 # A large graph
 
 
-@pytest.mark.parametrize("each", [20, 1000])
+@pytest.mark.parametrize("each", [20, pytest.param(1000, marks=slow)])
 def test_a_ring_hidden_in_traffic(each: int) -> None:
     """A ring of 5 is all that is dead among 50 nodes of 20 runs, and of 1,000 runs, which wait for each other."""
     seen = traffic(50, each, Random(27))

@@ -15,6 +15,7 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -58,6 +59,15 @@ def test_the_way_back_to_a_group() -> None:
     holder = run("holder", call("c"), holds="h"), group("h"), queue("s", "g", "c")
 
     assert why(Slot("h", 3), *holder) == Edge("holder", Slot("h", 3), "", "h")
+
+
+def test_a_service_that_is_not_there_yet() -> None:
+    """The edge leads to the `on_start` that keeps it from opening."""
+    opening = replace(queue("s", "start"), opens=("/add",))
+
+    assert why(
+        Opening("/add"), run("on_start", call("c"), holds="start"), group("start"), opening, queue("r", "g", "c")
+    ) == Edge("on_start", Opening("/add"), "s", "start")
 
 
 def test_the_end_of_a_task() -> None:

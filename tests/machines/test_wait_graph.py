@@ -4,7 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from graphflow.machines.wait_graph import FREE, ActivityView, Free, WaitGraph, call_id, goal_id, joined
+import pytest
+
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    All,
+    AnyOf,
+    Call,
+    Condition,
+    Free,
+    Join,
+    Opening,
+    WaitGraph,
+    call_id,
+    calls_of,
+    goal_id,
+    joined,
+    parts_of,
+)
 from tests.machines.pictures import group, picture, queue, run
 
 
@@ -38,3 +56,26 @@ def test_pictures_as_one() -> None:
     whole = picture(run("a"), run("b"), group("g"), group("h"), queue("s", "g"), queue("t", "h"))
     assert joined([here, there]) == replace(whole, blocked={"p": "a", "q": "b"})
     assert joined([]) == WaitGraph()
+
+
+LAND = Call("c", "/land")
+
+
+@pytest.mark.parametrize(
+    ("wait", "calls"),
+    [
+        (LAND, ["c"]),
+        (All((LAND, AnyOf((FREE, Call("d", "/start"))))), ["c", "d"]),
+        (Join("b"), []),
+        (FREE, []),
+    ],
+)
+def test_the_calls_in_a_wait(wait: Condition, calls: list[str]) -> None:
+    """They are found however deep they stand."""
+    assert [call.id for call in calls_of(wait)] == calls
+
+
+def test_the_parts_of_a_wait() -> None:
+    """A combination is its parts, whatever they are; anything else is its own only part."""
+    assert list(parts_of(AnyOf((All((LAND, FREE)), Opening("/land"))))) == [LAND, FREE, Opening("/land")]
+    assert list(parts_of(LAND)) == [LAND]

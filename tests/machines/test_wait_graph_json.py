@@ -21,6 +21,7 @@ from graphflow.machines.wait_graph import (
     Condition,
     GroupView,
     Join,
+    Opening,
     QueueView,
     SetBy,
     Slot,
@@ -44,6 +45,7 @@ CONDITIONS: st.SearchStrategy[Condition] = st.recursive(
     st.just(FREE)
     | st.builds(Call, TEXT, TEXT)
     | st.builds(Slot, TEXT, WHOLE)
+    | st.builds(Opening, TEXT)
     | st.builds(Join, TEXT)
     | st.builds(SetBy, TEXT, TEXTS, TEXTS, st.booleans(), TEXT, st.booleans()),
     joint,
@@ -86,7 +88,12 @@ PICTURES = st.builds(
     ),
 )
 JUNK: st.SearchStrategy[Any] = st.recursive(
-    st.none() | st.booleans() | WHOLE | st.floats() | TEXT | st.sampled_from(["call", "slot", "join", "set", "all"]),
+    st.none()
+    | st.booleans()
+    | WHOLE
+    | st.floats()
+    | TEXT
+    | st.sampled_from(["call", "slot", "open", "join", "set", "all"]),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner, max_size=3),
     max_leaves=8,
 )
@@ -147,11 +154,11 @@ def test_what_is_no_picture(data: Any) -> None:
         ("v", VERSION + 1, ValueError),
         ("activities", None, TypeError),
         ("activities", [["a"]], ValueError),
-        ("groups", [["g", "g", "/n", "1", True, False]], TypeError),
+        ("groups", [["g", "g", "/n", "1", True, False, False]], TypeError),
         ("groups", [["g", "g", "/n"]], ValueError),
-        ("groups", [["g", "g", "/n", 0, True, False]], ValueError),
-        ("groups", [["g", "g", "/n", True, True, False]], TypeError),
-        ("queues", [["q", "service q", "/n", ["g"], ["c", 1], 0, 0, "p", True]], TypeError),
+        ("groups", [["g", "g", "/n", 0, True, False, True]], ValueError),
+        ("groups", [["g", "g", "/n", True, True, False, False]], TypeError),
+        ("queues", [["q", "service q", "/n", ["g"], ["c", 1], 0, 0, "p", True, []]], TypeError),
         ("blocked", ["p"], TypeError),
         ("blocked", {"p": 1}, TypeError),
     ],
@@ -168,7 +175,17 @@ def test_parts_that_are_wrong(key: str, value: object, error: type[Exception]) -
 
 @pytest.mark.parametrize(
     "wait",
-    [["later"], ["set", "it", [], [], 1], [], "call", [["call"]], ["call", "c", 1], ["slot", "g", "1"], ["all", [1]]],
+    [
+        ["later"],
+        ["set", "it", [], [], 1],
+        [],
+        "call",
+        [["call"]],
+        ["call", "c", 1],
+        ["slot", "g", "1"],
+        ["open", 1],
+        ["all", [1]],
+    ],
 )
 def test_conditions_that_are_wrong(wait: object) -> None:
     """Only conditions of known kinds are read, and only with parts of the right types."""

@@ -19,7 +19,7 @@ from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from tests.cases import count
+from tests.cases import count, slow
 from tests.runtime.cast import Log, pair
 
 PREEMPTIONS = count(few=250, full=1000)
@@ -179,6 +179,7 @@ async def test_policies(
     assert server.most == most
 
 
+@slow
 async def test_many_preemptions_never_run_two_bodies(graph: Graph) -> None:
     """However quickly new goals come."""
     server, asker = await pair(graph, Recorder("preempt", group=Group(None)))

@@ -89,6 +89,7 @@ MISTAKES = {
         body("clock = Param(1.0)"),
         body("def offload(self): ..."),
         body('dynamic_names = ("output",)'),
+        body("enable = False\n@service(AddTwoInts, 'enable')\ndef enable(self, request): ...", "enable = False"),
     ],
     "when the node is made": [
         body("def __init__(self):\n    self.x = 1", "def __init__(self): self.x = 1"),
@@ -149,7 +150,9 @@ async def what_is_said(mistake: Mistake, file: Path, graph: Graph, caplog: pytes
     file.write_text(text)
     module = file.stem
     try:
-        node = make_within(import_class(f"{module}:Slide"), Surroundings(), "slide")
+        cls = import_class(f"{module}:Slide")
+        cls.interface()  # as every command does
+        node = make_within(cls, Surroundings(), "slide")
     except (GraphflowError, AttributeError) as error:
         return str(error)
     caplog.clear()

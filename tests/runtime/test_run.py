@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import signal
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +16,8 @@ from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.run import make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
+from tests.cases import slow
+from tests.conftest import Machine
 
 
 class Talker(Node):
@@ -244,6 +248,48 @@ async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None
 
     assert ready == [first]
     assert not first.is_running
+
+
+async def test_serve_nobody(graphflow_runner: asyncio.Runner) -> None:
+    """Without nodes there is nothing to wait for."""
+    await serve([], context_of(), asyncio.Event())
+
+
+async def test_serve_two_that_cannot_start(graphflow_runner: asyncio.Runner) -> None:
+    """The error of one comes out, and that of the other is not left for the garbage collector to complain of."""
+    with pytest.raises(GraphflowError, match="parameter 'rat"):
+        await serve([Talker("one", rat=1), Talker("two", rate="x")], context_of(), asyncio.Event())
+
+
+# signals
+
+LINGERING = """
+import asyncio, graphflow
+
+class Lingering(graphflow.Node):
+    async def on_start(self):
+        print("up", flush=True)
+
+    async def on_shutdown(self):
+        await asyncio.sleep(60)
+
+graphflow.run(Lingering)
+"""
+
+
+@slow
+@pytest.mark.real
+def test_a_node_that_takes_long_to_stop_says_so(machine: Machine, tmp_path: Path) -> None:
+    """After a second, and a second Ctrl-C ends it."""
+    file = tmp_path / "lingering.py"
+    file.write_text(LINGERING)
+    program = machine.start_python(str(file))
+    program.wait_for("up")
+    program.process.send_signal(signal.SIGINT)
+    program.wait_for("still stopping; Ctrl-C again ends it without cleanup")
+    program.process.send_signal(signal.SIGINT)
+    assert program.wait() == 1
+    assert "ended without cleanup" in program.text
 
 
 # make

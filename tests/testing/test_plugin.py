@@ -9,6 +9,7 @@ import sys
 import pytest
 
 import graphflow.testing.graph  # noqa: F401 - here and not by a project under test: numpy cannot be imported twice
+from tests.cases import slow
 
 pytest_plugins = ["pytester"]
 
@@ -33,6 +34,7 @@ NODE = """
 """
 
 
+@slow
 def test_a_foreign_project_has_the_fixture(pytester: pytest.Pytester) -> None:
     """With graphflow installed and nothing configured, an `async def` test that uses `graph` is run."""
     pytester.makepyfile(
@@ -126,6 +128,29 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
     result.stdout.fnmatch_lines(
         ["*asyncio.Event().wait()  # here*", "*TimeoutError*", "*waited in *test_it.py:4*advance the clock*"]
     )
+
+
+def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it waits for would come with time, and its clock does not move; one that is busy goes on."""
+    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.05)
+    result = run(
+        pytester,
+        """
+        import asyncio, time
+        from graphflow.msgs.std_srvs.srv import Empty
+
+        async def test_still(graph):
+            await graph.call(Empty, "/nobody", Empty.Request())  # here
+
+        async def test_busy(graph):
+            until = time.monotonic() + 0.3
+            while time.monotonic() < until:
+                await asyncio.sleep(0)
+        """,
+    )
+
+    result.assert_outcomes(failed=1, passed=1)
+    result.stdout.fnmatch_lines(["*TimeoutError*", "*waited in *test_it.py:5*a node that is not there*"])
 
 
 def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> None:

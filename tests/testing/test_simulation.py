@@ -26,6 +26,7 @@ from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.core import core_of
 from graphflow.testing.simulation import Standstill, World, simulate
+from tests.cases import count
 
 
 class Counter(Node):
@@ -125,7 +126,7 @@ class Worker(Node):
         return Trigger.Response(success=True)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 def test_a_group_never_has_more_runs_than_slots(seed: int) -> None:
     """Whatever arrives when, and whoever fails or lets go; and in the end every slot is back."""
 
@@ -171,7 +172,7 @@ class Farmer(Node):
     fibonacci = ActionClient(Fibonacci, "fibonacci")
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(count(few=10, full=30)))
 def test_every_goal_ends_once_and_nobody_waits_for_ever(seed: int) -> None:
     """With a server that fails, pre-empts, is killed and comes back, on a network that loses a tenth of everything."""
 
@@ -243,7 +244,7 @@ class Polite(Neighbour):
         return Trigger.Response(success=True)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 @pytest.mark.parametrize("cls", [Neighbour, Polite])
 def test_a_ring_is_reported_once_and_legal_calls_never(
     seed: int, cls: type[Neighbour], caplog: pytest.LogCaptureFixture

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 import zenoh
@@ -98,3 +99,22 @@ def test_a_list_that_is_cut_off_is_an_error(client: Client, monkeypatch: pytest.
     monkeypatch.setattr(client_module, "TOKENS_LIMIT", 1e-9)
     with pytest.raises(TransportError, match=r"only \d+ tokens of the graph came within"):
         client.tokens("test/*")
+
+
+def test_a_list_that_still_grows(
+    foreign_router: zenoh.Session, client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A router that is taking in many tokens is asked until it has them all; of few it is asked once."""
+    asked: list[Any] = []
+    known = client._known
+
+    def growing(key: str) -> list[str]:
+        found = known(key)
+        if len(asked) < 3:
+            asked.append(foreign_router.liveliness().declare_token(f"test/{len(asked)}"))
+        return found
+
+    monkeypatch.setattr(client, "_known", growing)
+    assert client.tokens("test/*") == []
+    monkeypatch.setattr(client_module, "MANY_TOKENS", 0)
+    assert sorted(client.tokens("test/*")) == ["test/0", "test/1", "test/2"]

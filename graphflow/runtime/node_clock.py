@@ -1,0 +1,54 @@
+"""The clock of a node: its context's, or the time on /clock for as long as `use_sim_time` is true."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from graphflow.executor.clock import Clock
+from graphflow.executor.sim_time import SimClock
+from graphflow.qos import CLOCK
+from graphflow.runtime.host import Host
+from graphflow.runtime.topics import TopicSubscription
+from graphflow.times import NANOSECONDS
+
+
+class NodeClock:
+    """The choice between the two clocks.
+
+    Args:
+        resolve: Makes a full name of one, for the topic.
+        add: Adds the subscription to the node's parts.
+    """
+
+    def __init__(
+        self,
+        host: Host,
+        resolve: Callable[[str], str],
+        add: Callable[[TopicSubscription[Any]], TopicSubscription[Any]],
+    ) -> None:
+        self._host, self._resolve, self._add = host, resolve, add
+        self._simulated: tuple[SimClock, TopicSubscription[Any]] | None = None
+
+    @property
+    def current(self) -> Clock:
+        """The clock to go by. Raises ClosedError when the node does not run and follows no /clock."""
+        return self._host.context.clock if self._simulated is None else self._simulated[0]
+
+    def follow(self, *, is_simulated: bool) -> None:
+        """Follow /clock, or the context's clock; what waits on the other one waits out the rest here."""
+        former = self._simulated
+        if is_simulated and former is None:
+            from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
+
+            clock = SimClock(self._host.context.loop)
+
+            def told(message: ClockMessage) -> None:
+                clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
+
+            heard = TopicSubscription(self._host, ClockMessage, self._resolve("/clock"), CLOCK, told)
+            self._simulated = (clock, self._add(heard))
+        elif not is_simulated and former is not None:
+            self._simulated = None
+            former[1].close()
+            former[0].retire(self.current)

@@ -1,0 +1,45 @@
+"""Which clock a node goes by: its context's, or that of /clock for as long as it is asked to."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow import Node
+from graphflow.errors import ClosedError
+from graphflow.executor.sim_time import SimClock
+from graphflow.msgs.rosgraph_msgs.msg import Clock
+from graphflow.qos import CLOCK
+from graphflow.runtime.core import core_of
+from graphflow.runtime.node_clock import NodeClock
+from graphflow.testing import Graph
+from graphflow.times import Time, to_ns
+
+
+async def test_one_clock_and_the_other(graph: Graph) -> None:
+    """The topic is listened to while its time counts, and asked for twice it is listened to once."""
+    node = Node("n")
+    await graph.start(node)
+    core = core_of(node)
+    clock = NodeClock(core, lambda name: f"/sim{name}", core.add)
+
+    assert clock.current is graph.clock
+    for _ in range(2):
+        clock.follow(is_simulated=True)
+        assert isinstance(clock.current, SimClock)
+    assert [e.name for e in core.endpoints if e.type_name == Clock.SCHEMA.name] == ["/sim/clock"]
+    graph.publisher(Clock, "/sim/clock", CLOCK).publish(Clock(clock=Time(to_ns(7.0))))
+    await graph.settle()
+    assert clock.current.time_ns() == to_ns(7.0)
+
+    for _ in range(2):
+        clock.follow(is_simulated=False)
+        assert clock.current is graph.clock
+    assert [e for e in core.endpoints if e.type_name == Clock.SCHEMA.name] == []
+
+
+def test_before_the_node_runs() -> None:
+    """There is no clock yet."""
+    core = core_of(Node("n"))
+
+    with pytest.raises(ClosedError, match="/n is not running"):
+        _ = NodeClock(core, str, core.add).current
