@@ -38,18 +38,18 @@ def host_name() -> str:
     return re.sub(r"[^\w.-]", "_", platform.node())
 
 
-def end_with_parent(pid: int) -> None:
-    """Have the system interrupt this process when its parent ends, however that happens; on Linux only.
+def end_with_parent(pid: int, number: int) -> None:
+    """Have the system send this process a signal when its parent ends, however that happens; on Linux only.
 
     Args:
         pid: The parent, which may have ended already.
+        number: The signal's.
     """
     if sys.platform != "linux":
         return
     import ctypes
-    import signal
 
     pr_set_pdeathsig = 1
-    ctypes.CDLL(None).prctl(pr_set_pdeathsig, int(signal.SIGINT))
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, int(number))
     if os.getppid() != pid:
-        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), number)

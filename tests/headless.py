@@ -83,9 +83,10 @@ async def browser(folder: Path) -> AsyncIterator[Any]:
     process = start(folder)
     try:
         async with asyncio.timeout(LIMIT), aiohttp.ClientSession() as session:
-            while not (folder / "DevToolsActivePort").exists():
+            said = folder / "DevToolsActivePort"
+            while not said.exists() or not said.read_text():  # it is made before it is written
                 await asyncio.sleep(0.05)
-            port = (folder / "DevToolsActivePort").read_text().split()[0]
+            port = said.read_text().split()[0]
 
             @asynccontextmanager
             async def tab(url: str) -> AsyncIterator[Tab]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -32,3 +35,34 @@ def test_a_host_name_fits_into_a_key(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever a machine is called, its name is one part of a key expression."""
     monkeypatch.setattr("platform.node", lambda: "Ann's robot #1/*")
     assert host_name() == "Ann_s_robot__1__"
+
+
+@pytest.mark.real
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of a parent's end")
+@pytest.mark.parametrize("is_alive", [True, False])
+def test_a_process_that_ends_with_its_parent(tmp_path: Path, is_alive: bool) -> None:
+    """Asked to by the system; if the parent has ended already, at once."""
+    code = f"""
+import os, signal, sys, time
+from graphflow.system import end_with_parent
+parent = os.getpid()
+read, write = os.pipe()
+pid = os.fork()
+if pid == 0:
+    def end(*_):
+        open({str(tmp_path / "asked")!r}, "w").close()
+        os._exit(0)
+    signal.signal(signal.SIGTERM, end)
+    end_with_parent(parent if {is_alive} else -1, signal.SIGTERM)
+    os.write(write, b"-")
+    time.sleep(600)
+if {is_alive}:
+    os.read(read, 1)
+    os._exit(0)
+os._exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
+"""
+    assert subprocess.run([sys.executable, "-c", code], timeout=20).returncode == 0
+    deadline = time.monotonic() + 10.0
+    while not (tmp_path / "asked").exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)

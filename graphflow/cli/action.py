@@ -121,7 +121,8 @@ def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedbac
     use_project()
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
-        there = view.cache.actions().get(full)
+        actions = view.cache.actions()
+        there = actions.get(full)
         if type_name is None:
             types = _types(view, full)
             raise UsageFault(
@@ -130,4 +131,6 @@ def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedbac
     wanted = registry.full_name(type_name)
     actual = agree(wanted, there[0], full) if there else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values))
+    if not there:
+        output.talk(f"there is no action {full} yet{did_you_mean(full, actions)}")
     return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout)

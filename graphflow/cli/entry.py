@@ -19,7 +19,7 @@ def main() -> None:
     if os.environ.get("GRAPHFLOW_ENDS_WITH"):
         from graphflow.system import end_with_parent
 
-        end_with_parent(int(os.environ.pop("GRAPHFLOW_ENDS_WITH")))
+        end_with_parent(int(os.environ.pop("GRAPHFLOW_ENDS_WITH")), signal.SIGINT)
     from graphflow.cli.main import main
 
     if _IS_HEARD:

@@ -71,15 +71,19 @@ def up(
     from graphflow.supervisor.launch import launch
 
     uses_console = not detach and not no_console and output.is_terminal()
-    report = launch(path, list(args), domain, attached=not detach and not uses_console)
+    report, launched = launch(path, list(args), domain)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])
     if uses_console:
+        launched.let_go()
         return _open_console(report["run"])
     from graphflow.cli.streaming import stream
 
-    return stream(report["run"], report["classes"], detach=detach)
+    code = stream(report["run"], report["classes"], detach=detach)
+    if detach:
+        launched.let_go()
+    return code
 
 
 def _open_console(run: dict[str, Any]) -> int:

@@ -8,12 +8,15 @@ import signal
 import sys
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.family import state_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
 
 _POLL = 0.1
@@ -22,6 +25,8 @@ _GONE_LIMIT = 5.0
 """Seconds that a supervisor may take to end once its graph has."""
 _DOWN_LIMIT = 60.0
 """Seconds between two ends of processes when a graph goes down."""
+_SILENCE_LIMIT = 2.0
+"""Seconds that a supervisor may take to answer a request."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -72,14 +77,14 @@ def _rest(path: Path, offset: int) -> bytes:
 
 
 def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:
-    """Follow a graph from its start; returns the exit code of `up`."""
+    """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`."""
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
     # This comes first: a graph that fails at once waits for a follower, tells it everything, and is gone.
     nodes = _list_nodes(run["socket"])
     with ControlClient(run["socket"]) as client:
-        client.send(do="follow", lifeline=not detach)
+        client.send(do="follow")
         code = _Stream(run, classes, nodes, client, detach, interrupts).run()
     if not detach:
         GraphRun(**run).wait_gone(_GONE_LIMIT)
@@ -108,6 +113,9 @@ class _Stream:
         self._interrupts = interrupts
         """Signals that asked to stop, in order of arrival."""
         self._stop_sent = 0
+        self._unanswered_since: float | None = None
+        """When the oldest request to stop was sent that nothing has answered; None without one."""
+        self._has_told_silence = False
         self._nodes = nodes
         self._logs: LogReader | None = None
         self._began = time.monotonic()
@@ -122,6 +130,7 @@ class _Stream:
             if events is None:
                 return self._lost()
             for event in events:
+                self._unanswered_since = None
                 code = self._show(event)
                 if code is not None:
                     return code
@@ -131,11 +140,28 @@ class _Stream:
                 self._stop_sent = len(self._interrupts)
                 reason = "Ctrl-C" if self._interrupts[-1] == signal.SIGINT else "SIGTERM"
                 self._client.send(do="down", now=self._stop_sent > 1, reason=reason)
+                self._unanswered_since = self._unanswered_since or time.monotonic()
+            self._break_silence()
+
+    def _break_silence(self) -> None:
+        """If the supervisor does not answer: say so, and once asked twice end the graph without it."""
+        since = self._unanswered_since
+        if since is None or time.monotonic() - since < _SILENCE_LIMIT:
+            return
+        run = GraphRun(**self._run)
+        if self._stop_sent > 1:
+            self._unanswered_since = None
+            end_silent(run)
+        elif not self._has_told_silence:
+            self._has_told_silence = True
+            output.talk(f"{silent(run)}; Ctrl-C again ends the graph without it")
 
     def _lost(self) -> int:
         assert self._logs is not None
         self._logs.show()
-        output.error(f"the supervisor died; its log is {self._run['logs']}/{SUPERVISOR_LOG}")
+        GraphRun(**self._run).wait_gone(_GONE_LIMIT)
+        log = Path(self._run["logs"]) / SUPERVISOR_LOG
+        output.error(f"{last_words(log)}\n  its log: {log}")
         return exits.FAILED
 
     def _show(self, event: dict[str, Any]) -> int | None:
@@ -203,6 +229,15 @@ class _Stream:
         output.talk("")
 
 
+def last_words(log: Path) -> str:
+    """What the guardian has written of a supervisor's death."""
+    try:
+        last = log.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2]
+    except OSError:
+        last = ""
+    return last if last.startswith("the supervisor, process ") else "the supervisor died"
+
+
 def _shown(place: str) -> str:
     from graphflow.graph.project import shown
 
@@ -213,15 +248,47 @@ def _shown(place: str) -> str:
 def take_down(run: GraphRun, *, now: bool) -> int:
     """Stop a graph and say what ends; returns the exit code."""
     output.talk(f"stopping graph {run.graph} in domain {run.domain}")
-    with ControlClient(run.socket) as client:
-        client.send(do="down", now=now)
-        for event in client.receive(timeout=_DOWN_LIMIT):
-            if event["event"] == "exited":
-                output.talk(f"  {', '.join(event['nodes'])} ended")
-            elif event["event"] == "end":
-                break
+    if not _answers(run):
+        end_silent(run)
+    else:
+        with ControlClient(run.socket) as client:
+            client.send(do="down", now=now)
+            for event in client.receive(timeout=_DOWN_LIMIT):
+                if event["event"] == "exited":
+                    output.talk(f"  {', '.join(event['nodes'])} ended")
+                elif event["event"] == "end":
+                    break
     if not run.wait_gone(2 * _GONE_LIMIT):
         output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
         return exits.TIMEOUT
     output.data(f"graph {run.graph} is down")
     return exits.OK
+
+
+def _answers(run: GraphRun) -> bool:
+    """Whether the supervisor answers requests."""
+    try:
+        with ControlClient(run.socket) as client:
+            client.send(do="hello")
+            return next(client.receive(_SILENCE_LIMIT), None) is not None
+    except SupervisorError:
+        return False
+
+
+def silent(run: GraphRun) -> str:
+    """What is the matter with a supervisor that does not answer."""
+    how = "is stopped" if state_of(run.pid) == "T" else "does not answer"
+    return f"the supervisor, process {run.pid}, {how}"
+
+
+def end_silent(run: GraphRun) -> None:
+    """End a graph whose supervisor does not answer: it is killed, and its guardian ends the rest."""
+    import psutil
+
+    if not run.is_alive:  # it has just gone
+        return
+    output.talk(f"{silent(run)}; it is killed, and its nodes are ended")
+    with suppress(psutil.Error):
+        psutil.Process(run.pid).kill()
+        if run.guardian:
+            psutil.Process(run.guardian).resume()

@@ -8,6 +8,7 @@ import logging
 import os
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 logger = logging.getLogger("graphflow.supervisor")
@@ -29,9 +30,10 @@ class Lines:
     ) -> None:
         self._channel = channel
         self._heard, self._lost = heard, lost
-        self._buffer = b""
+        self._buffer = self._unsent = b""
+        self._is_closed = False
         self._fd = channel if isinstance(channel, int) else channel.fileno()
-        os.set_blocking(self._fd, False)
+        os.set_blocking(channel, False) if isinstance(channel, int) else channel.setblocking(False)
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(self._fd, self.read)
 
@@ -44,8 +46,7 @@ class Lines:
         except ConnectionError:
             data = b""
         if not data:
-            self.close()
-            self._lost()
+            self._lose()
             return
         *lines, self._buffer = (self._buffer + data).split(b"\n")
         for line in lines:
@@ -57,16 +58,30 @@ class Lines:
             self._heard(event)
 
     def send(self, **request: Any) -> None:
-        """Send a request; the other end is a process of our own that reads at once."""
+        """Send a request, at once or as soon as the other end, which may be stopped, reads on."""
+        self._unsent += json.dumps(request).encode() + b"\n"
+        self._write()
+
+    def _write(self) -> None:
         assert isinstance(self._channel, socket.socket)
-        self._channel.setblocking(True)
-        try:
-            self._channel.sendall(json.dumps(request).encode() + b"\n")
-        except ConnectionError:
-            self._loop.call_soon(self._lost)
-        finally:
-            self._channel.setblocking(False)
+        with suppress(BlockingIOError):
+            try:
+                self._unsent = self._unsent[self._channel.send(self._unsent) :]
+            except ConnectionError:
+                self._unsent = b""
+                self._loop.call_soon(self._lose)
+        if self._unsent:
+            self._loop.add_writer(self._fd, self._write)
+        else:
+            self._loop.remove_writer(self._fd)
+
+    def _lose(self) -> None:
+        if not self._is_closed:
+            self.close()
+            self._lost()
 
     def close(self) -> None:
-        """Stop reading."""
+        """Stop reading and writing."""
+        self._is_closed = True
         self._loop.remove_reader(self._fd)
+        self._loop.remove_writer(self._fd)

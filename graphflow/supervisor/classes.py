@@ -29,9 +29,10 @@ def add_root(root: str) -> None:
     """
     _roots.append(root)
     add_interfaces(Path(root))
-    if root not in sys.path:
-        installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
-        sys.path.insert(next(installed, len(sys.path)), root)
+    installed = (i for i, entry in enumerate(sys.path) if entry.endswith(("site-packages", "dist-packages")))
+    at = next(installed, len(sys.path))
+    if root not in sys.path[:at]:  # it may be behind, after another project that is installed to be edited
+        sys.path.insert(at, root)
 
 
 def import_class(class_path: str) -> type[Node]:
@@ -84,7 +85,7 @@ def node_classes(module: ModuleType, *, imported: bool = False) -> dict[str, typ
     Args:
         imported: Those that it has from elsewhere too.
     """
-    found = {k: v for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node)}
+    found = {k: v for k, v in vars(module).items() if isinstance(v, type) and issubclass(v, Node) and v is not Node}
     return {k: v for k, v in found.items() if imported or v.__module__ == module.__name__}
 
 

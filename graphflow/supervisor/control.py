@@ -10,10 +10,10 @@ A door sends one request and reads lines until the supervisor closes the connect
     {"do": "plan"}                      -> {"event": "plan", "plan": ...}: what the graph file says, as `Plan.to_json`
     {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
     {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}; likewise "stop"
-    {"do": "follow", "lifeline": true}  -> {"event": "hello", ...}, what has happened so far, then events as they come
+    {"do": "follow"}                    -> {"event": "hello", ...}, what has happened so far, then events as they come
 
-A `follow` with a lifeline ties the graph's life to the connection: when it breaks, the graph goes down. One with
-`"console": name` counts as a console. Whoever follows may send more requests: these, `announce` and `keep_layout`.
+A `follow` with `"console": name` counts as a console. Whoever follows may send more requests: these, `announce` and
+`keep_layout`.
 A door that does not read what it is sent is cut off, so that nothing piles up here.
 """
 
@@ -37,7 +37,7 @@ from graphflow.system import is_portable, user_id
 
 CONNECT_LIMIT = 5.0
 CLOSE_LIMIT = 1.0
-LIFELINE_LIMIT = 5.0
+FOLLOW_LIMIT = 5.0
 UNREAD_LIMIT = 1 << 20
 """Bytes that may wait for a door that does not read."""
 _TCP = "tcp/"
@@ -70,16 +70,8 @@ class ControlServer:
         self._commands = commands
         self._server: asyncio.Server | None = None
         self._token = ""
-        self._expectation: asyncio.TimerHandle | None = None
         self._followed = asyncio.Event()
         self._connections: dict[asyncio.Task[None], asyncio.StreamWriter] = {}
-
-    def expect_lifeline(self) -> None:
-        """Stop the graph if no door with a lifeline comes soon: the one that started it is already dead."""
-        loop = asyncio.get_running_loop()
-        self._expectation = loop.call_later(
-            LIFELINE_LIMIT, lambda: self._commands.begin_stop(now=False, reason="its terminal never connected")
-        )
 
     async def open(self, path: Path) -> str:
         """Listen, for this user only; returns the address.
@@ -104,7 +96,7 @@ class ControlServer:
     async def wait_followed(self) -> None:
         """Wait until a door follows the graph, but not for long: a graph that fails at once can then still say why."""
         try:
-            async with asyncio.timeout(LIFELINE_LIMIT):
+            async with asyncio.timeout(FOLLOW_LIMIT):
                 await self._followed.wait()
         except TimeoutError:
             return
@@ -194,9 +186,6 @@ class ControlServer:
     async def _follow(
         self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: dict[str, Any]
     ) -> None:
-        lifeline = bool(request.get("lifeline"))
-        if lifeline and self._expectation is not None:
-            self._expectation.cancel()
         doors = self._commands.doors
         _write(writer, self._commands.hello())
         stop = doors.subscribe(lambda event: _write(writer, event), replay=True)
@@ -210,8 +199,6 @@ class ControlServer:
             stop()
             if leave is not None:
                 leave()
-            if lifeline:
-                self._commands.begin_stop(now=False, reason="its terminal went away")
 
 
 def _write(writer: asyncio.StreamWriter, event: dict[str, Any]) -> None:

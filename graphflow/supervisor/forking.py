@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from graphflow.errors import SupervisorError
-from graphflow.supervisor import preload
+from graphflow.machines.process import Exit
+from graphflow.supervisor import family, preload
 from graphflow.supervisor.channel import Lines
+from graphflow.supervisor.guardian import GRACE
 from graphflow.supervisor.starter import Heard
+
+REAP_LIMIT = 1.0
+"""Seconds that the preload process has to say how a worker ended."""
+END_LIMIT = 2.0
+"""Seconds that it has to end itself."""
 
 
 class ForkingStarter:
@@ -21,6 +30,12 @@ class ForkingStarter:
     def __init__(self, keep: tuple[int, ...]) -> None:
         self._channel, self._status, self._pid = preload.start(keep)
         self._lines: list[Lines] = []
+        self._workers: dict[int, tuple[str, int]] = {}
+        """Living workers by process id: the name of each, and the descriptor that tells its end."""
+        self._heard: Heard
+        self._lost: Callable[[str], None]
+        self._has_ended = False
+        self._ending: asyncio.Task[None] | None = None
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
         self._channel.sendall(json.dumps({"do": "probe", "classes": list(classes), "root": root}).encode() + b"\n")
@@ -35,40 +50,102 @@ class ForkingStarter:
         result: dict[str, Any] = json.loads(data)["interfaces"]
         return result
 
-    async def open(self, log: Path, heard: Heard, lost: Callable[[], None]) -> None:
-        status = Lines(self._status, heard, lambda: None)
-
-        def heard_of_end(event: dict[str, Any]) -> None:
-            if event["event"] == "exited":  # what the worker said before it ended is in the pipe, and comes first
-                status.read()
-            heard(event)
-
-        self._lines = [Lines(self._channel, heard_of_end, lost), status]
+    async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
+        self._heard, self._lost = heard, lost
+        self._lines = [Lines(self._channel, self._told, self._lose), Lines(self._status, heard, _nothing)]
         self._lines[0].send(do="log", path=str(log))
+
+    def _told(self, event: dict[str, Any]) -> None:
+        """What the preload process says."""
+        if event["event"] == "spawned":
+            self._watch(event["process"], event["pid"])
+        elif event["event"] == "exited":
+            if event["pid"] in self._workers:
+                self._ended(event["pid"], event["status"])
+            if event["pid"] is not None:
+                return  # an end that was given up on before
+        self._heard(event)
+
+    def _watch(self, process: str, pid: int) -> None:
+        """Learn of a worker's end from the system: the preload process may be stopped."""
+        try:
+            end = os.pidfd_open(pid)
+        except OSError:  # it has ended, and was waited for: what is said of it is on its way
+            self._workers[pid] = (process, -1)
+            return
+        self._workers[pid] = worker = (process, end)
+        asyncio.get_running_loop().add_reader(end, self._saw_end, pid, worker)
+
+    def _saw_end(self, pid: int, worker: tuple[str, int]) -> None:
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(worker[1])
+        loop.call_later(REAP_LIMIT, self._give_up, pid, worker)
+
+    def _give_up(self, pid: int, worker: tuple[str, int]) -> None:
+        """Report an end without its cause, unless that is known by now; another worker may have the number then."""
+        if self._workers.get(pid) is worker and not self._has_ended:
+            self._ended(pid, None)
+
+    def _ended(self, pid: int, status: int | None) -> None:
+        process, end = self._workers.pop(pid)
+        if end >= 0:
+            asyncio.get_running_loop().remove_reader(end)
+            os.close(end)
+        self._lines[1].read()  # what the worker said before it ended is in the pipe, and comes first
+        self._heard({"event": "exited", "process": process, "status": status})
+
+    def trouble(self) -> str:
+        if family.state_of(self._pid) != "T":
+            return ""
+        return f"process {self._pid}, which starts the nodes, is stopped; to let it go on: kill -CONT {self._pid}"
+
+    def _lose(self) -> None:
+        """The preload process has ended. The system has asked its workers to do the same; this is their parent now."""
+        _, status = os.waitpid(self._pid, 0)
+        self._has_ended = True
+        how = Exit.of_status(os.waitstatus_to_exitcode(status))
+        self._lost(f"process {self._pid}, which starts the nodes, was ended by {how}")
+        self._ending = asyncio.create_task(self._end_workers())
+
+    async def _end_workers(self) -> None:
+        deadline = time.monotonic() + GRACE
+        while self._workers and time.monotonic() < deadline:
+            self._reap()
+            await asyncio.sleep(0.01)
+        family.end_descendants(os.getpid(), self._reap)
+        for pid in list(self._workers):
+            self._ended(pid, None)
+
+    def _reap(self) -> None:
+        for pid, status in family.reaped():
+            if pid in self._workers:
+                self._ended(pid, status)
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
 
     def terminate(self, process: str, pid: int) -> None:
-        _signal(pid, signal.SIGTERM)
+        family.kill_group(pid, signal.SIGTERM)
 
     def kill(self, process: str, pid: int) -> None:
-        _signal(pid, signal.SIGKILL)
+        family.kill_group(pid, signal.SIGKILL)
 
     async def close(self) -> None:
+        if self._ending is not None:
+            await self._ending
         for lines in self._lines:
             lines.close()
 
     def end(self) -> None:
         self._channel.close()
-        os.waitpid(self._pid, 0)
+        deadline = time.monotonic() + END_LIMIT
+        while not self._has_ended:
+            self._has_ended = bool(os.waitpid(self._pid, os.WNOHANG)[0])
+            if time.monotonic() > deadline:  # it is stopped
+                family.kill(self._pid, signal.SIGKILL)
+            time.sleep(0 if self._has_ended else 0.002)
+        family.end_descendants(os.getpid(), family.reap_children)
 
 
-def _signal(pid: int, number: signal.Signals) -> None:
-    try:
-        os.killpg(pid, number)
-    except ProcessLookupError:  # it has ended, or has not made its process session yet
-        try:
-            os.kill(pid, number)
-        except ProcessLookupError:
-            return
+def _nothing() -> None:
+    """The workers' pipe ends with the preload process, whose end is told elsewhere."""

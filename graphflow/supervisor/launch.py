@@ -1,8 +1,11 @@
 """From a graph file to a running supervisor: what happens between `graphflow up` and the first node.
 
-The command forks the supervisor before anything heavy is imported, and the supervisor forks the preload process at
-once, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong before the
+The command forks the guardian before anything heavy is imported, that the supervisor, and that at once the preload
+process, so that imports there, reading the file here and waiting in the command overlap. Whatever goes wrong before the
 graph runs goes back over a report pipe, as the exit code and text the command ends with.
+
+From the first moment the command holds one end of a *lifeline*: when it ends without having let go, however it ends,
+the graph goes down, or never comes up.
 """
 
 from __future__ import annotations
@@ -11,11 +14,15 @@ import json
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
+from graphflow.supervisor import family
+from graphflow.supervisor.guardian import guard, leave_note
 from graphflow.system import detached, is_portable
 
 if TYPE_CHECKING:
@@ -29,81 +36,143 @@ if TYPE_CHECKING:
 
 Report = dict[str, Any]
 
+LET_GO = b"-"
+"""What the command sends over the lifeline to let the graph go on without it."""
+GONE = "its terminal went away"
+
 REACHABLE_EVERY = 2.0
-"""Seconds between two looks whether the run directory is still there."""
+"""Seconds between two looks whether the run directory and the guardian are still there."""
 
 
-def launch(file: Path, given: list[str], domain: int | None, *, attached: bool) -> Report:
+class Launched(NamedTuple):
+    """A supervisor that has begun, as the command sees it."""
+
+    report: int
+    """The descriptor its report comes from."""
+    lifeline: int
+    """The command's end of the lifeline."""
+    wait: Callable[[], object]
+    """Waits until it has ended, with all that belonged to it."""
+
+    def let_go(self) -> None:
+        """Let the graph go on without this command."""
+        with suppress(OSError):  # it may have ended
+            os.write(self.lifeline, LET_GO)
+        os.close(self.lifeline)
+
+
+def launch(file: Path, given: list[str], domain: int | None) -> tuple[Report, Launched]:
     """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
 
     Args:
         file: The graph file.
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
-        attached: Whether the graph must go down when the command that follows it has gone.
 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
     begin = _begin_portable if is_portable() else _begin_forked
-    pid, read, reap = begin({"file": str(file), "given": given, "domain": domain, "attached": attached})
+    begun = begin({"file": str(file), "given": given, "domain": domain})
     data = b""
     try:
-        while not data.endswith(b"\n") and (chunk := os.read(read, 65536)):
+        while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
             data += chunk
-    except KeyboardInterrupt:
-        os.kill(pid, signal.SIGTERM)
-        raise
     finally:
-        os.close(read)
+        os.close(begun.report)
     if not data:
-        return {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}
+        begun.wait()
+        return {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}, begun
     report: Report = json.loads(data)
     if not report["ok"]:
-        reap()
-    return report
+        begun.wait()
+    return report, begun
 
 
-_Begun = tuple[int, int, Callable[[], object]]
-"""The supervisor's process id, the descriptor its report comes from, and a function that waits for its end."""
-
-
-def _begin_forked(job: dict[str, Any]) -> _Begun:
-    read, write = os.pipe()
+def _begin_forked(job: dict[str, Any]) -> Launched:
+    report, write = os.pipe()
+    watched, lifeline = os.pipe()
+    noted, note = os.pipe()
     sys.stdout.flush()
     sys.stderr.flush()
     pid = os.fork()
     if pid == 0:
-        code = 1
         try:
-            os.close(read)
+            os.close(report)
+            os.close(lifeline)
             os.setsid()
-            code = _Launch(job, write).supervise()
+            guard(_Launch(job, write, watched, note).supervise, noted, (write, watched, note))
         finally:
-            os._exit(code)
-    os.close(write)
-    return pid, read, lambda: os.waitpid(pid, 0)
+            os._exit(1)
+    for fd in (write, watched, noted, note):
+        os.close(fd)
+    return Launched(report, lifeline, lambda: os.waitpid(pid, 0))
 
 
-def _begin_portable(job: dict[str, Any]) -> _Begun:
+def _begin_portable(job: dict[str, Any]) -> Launched:
     import subprocess
 
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch"]
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **detached())
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, **detached())
     assert process.stdin is not None
     assert process.stdout is not None
-    process.stdin.write(json.dumps(job).encode())
-    process.stdin.close()
-    return process.pid, os.dup(process.stdout.fileno()), process.wait
+    process.stdin.write(json.dumps(job).encode() + b"\n")
+    return Launched(os.dup(process.stdout.fileno()), _kept(process.stdin), process.wait)
+
+
+def _kept(stream: IO[bytes]) -> int:
+    """A descriptor that outlives the object which has it."""
+    with stream:
+        return os.dup(stream.fileno())
+
+
+class _Lifeline:
+    """The supervisor's end of the lifeline. Until `on_cut` is called, the end of the command ends this process.
+
+    Args:
+        pipe: Where the command's end shows.
+    """
+
+    def __init__(self, pipe: int) -> None:
+        self._pipe = pipe
+        self._told: Callable[[], object] = _end_at_once
+
+    def watch(self) -> None:
+        """Begin to watch it, on a thread of its own; which must not be before the preload process is forked."""
+        threading.Thread(target=self._wait, name="graphflow-lifeline", daemon=True).start()
+
+    def _wait(self) -> None:
+        with suppress(OSError):
+            if os.read(self._pipe, 1) == LET_GO:
+                return
+        self._told()
+
+    def on_cut(self, told: Callable[[], object]) -> None:
+        """Call a function, on any thread, when the command ends from now on."""
+        self._told = told
+
+
+def _end_at_once(directory: RunDirectory | None = None) -> None:
+    """End this process, whatever it is doing, before it has started anything."""
+    try:
+        if directory is not None:
+            directory.release()
+    finally:
+        os._exit(1)
 
 
 class _Launch:
-    """The supervisor's process, from the fork to the end of the graph."""
+    """The supervisor's process, from the fork to the end of the graph.
 
-    def __init__(self, job: dict[str, Any], report: int) -> None:
+    Args:
+        report: The pipe to the command.
+        lifeline: The supervisor's end of the lifeline.
+        note: The pipe to the guardian; -1 for none.
+    """
+
+    def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1) -> None:
         self._file, self._given, self._domain = Path(job["file"]), job["given"], job["domain"]
-        self._attached = job["attached"]
-        self._report_pipe = report
+        self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._starter: Starter
 
     def supervise(self) -> int:
@@ -113,9 +182,13 @@ class _Launch:
         for name in ("SIGINT", "SIGHUP"):
             if hasattr(signal, name):
                 signal.signal(getattr(signal, name), signal.SIG_IGN)
+        family.name_process("gf-supervisor")
+        family.adopt_orphans()  # the nodes, should the preload process end
         starter = None
         try:
-            starter = self._starter = _make_starter(keep=(self._report_pipe,))
+            keep = (self._report_pipe, *(fd for fd in (self._note,) if fd >= 0))
+            starter = self._starter = _make_starter(keep)
+            self._lifeline.watch()
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
@@ -177,13 +250,16 @@ class _Launch:
 
         directory = rundir.RunDirectory(domain, plan.name)
         directory.claim()
+        self._lifeline.on_cut(partial(_end_at_once, directory))
         try:
             names = [n.name for n in plan.nodes]
             refuse_taken_names(names, domain)
             directory.claim_names(names)  # another graph may be starting at this very moment
             run_id = rundir.new_run_id()
             logs = rundir.open_logs(plan.name, run_id)
-            _log_to(logs / rundir.SUPERVISOR_LOG)
+            self._log_to(logs / rundir.SUPERVISOR_LOG)
+            if self._note >= 0:
+                leave_note(self._note, domain, plan.name, logs / rundir.SUPERVISOR_LOG)
             context = await Context.open(domain, link=False)
             try:
                 context.open_link()
@@ -218,8 +294,8 @@ class _Launch:
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
-        if self._attached:
-            control.expect_lifeline()
+        cut = partial(supervisor.begin_stop, now=False, reason=GONE)
+        self._lifeline.on_cut(lambda: context.loop.call_soon_threadsafe(cut))
         classes = {path: str(interface.place) for path, interface in interfaces.items()}
         self._report(ok=True, run=run.__dict__, classes=classes)
         os.close(self._report_pipe)
@@ -238,17 +314,35 @@ class _Launch:
             await control.close()
             await self._starter.close()
 
+    def _log_to(self, path: Path) -> None:
+        """From here on the supervisor writes only to its log; the terminal belongs to the command."""
+        import logging
+
+        null = os.open(os.devnull, os.O_RDWR)
+        out = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        # The lifeline may be the standard input.
+        for source, fd in ((null, 1), (out, 2)) if self._note < 0 else ((null, 0), (null, 1), (out, 2)):
+            os.dup2(source, fd)
+        logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
+
 
 async def _keep_reachable(
     supervisor: Supervisor, control: ControlServer, directory: RunDirectory, run: GraphRun
 ) -> None:
-    """Make the run directory again when it is taken away, as at a logout; else stop, for no verb could do it."""
+    """Make the run directory again when it is taken away, as at a logout; else stop, for no verb could do it.
+
+    Also says so when the guardian has ended, which only its children can see.
+    """
     import asyncio
 
     from graphflow.errors import SupervisorError
 
+    guardian = run.guardian
     while True:
         await asyncio.sleep(REACHABLE_EVERY)
+        if guardian and os.getppid() != guardian:
+            supervisor.note(f"the guardian, process {guardian}, was ended; the graph goes on without it")
+            guardian = 0
         if directory.is_there(run):
             continue
         try:
@@ -293,19 +387,9 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
         socket="",
         logs=str(logs),
         endpoint=rendezvous_endpoint(),
+        guardian=0 if is_portable() else os.getppid(),
         plan_hash=hashlib.sha256(json.dumps(plan.to_json(), sort_keys=True).encode()).hexdigest(),
     )
-
-
-def _log_to(path: Path) -> None:
-    """From here on the supervisor writes only to its log; the terminal belongs to the command."""
-    import logging
-
-    null = os.open(os.devnull, os.O_RDWR)
-    out = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-    for source, fd in ((null, 0), (null, 1), (out, 2)):
-        os.dup2(source, fd)
-    logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
 
 
 def _tell_notes(note: Callable[[str], None]) -> None:
@@ -335,6 +419,14 @@ def _make_starter(keep: tuple[int, ...]) -> Starter:
     return ForkingStarter(keep)
 
 
+def _read_line(fd: int) -> bytes:
+    """The first line that comes, and no byte of the next."""
+    line = b""
+    while not line.endswith(b"\n") and (byte := os.read(fd, 1)):
+        line += byte
+    return line
+
+
 if __name__ == "__main__":
     report = os.dup(1)
-    sys.exit(_Launch(json.load(sys.stdin), report).supervise())
+    sys.exit(_Launch(json.loads(_read_line(0)), report, 0).supervise())

@@ -23,8 +23,13 @@ import socket
 import subprocess
 import sys
 import time
-from typing import Any
+from typing import Any, NamedTuple, NoReturn
 
+from graphflow.supervisor import family
+from graphflow.supervisor.guardian import GRACE
+
+PROCESS_VARIABLE = "GRAPHFLOW_PROCESS"
+"""What the programs that a worker starts inherit: the name of its process."""
 PROBE_LIMIT = 20.0
 """Seconds that importing all classes of a project may take."""
 _FRESH = ("PYTHON", "LD_", "MALLOC_")
@@ -48,7 +53,6 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
     Returns:
         The socket to it, the reading end of the workers' status pipe, and its process id.
     """
-    parent = os.getpid()
     mine, its = socket.socketpair()
     status_read, status_write = os.pipe()
     pid = os.fork()
@@ -58,7 +62,7 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
             os.close(status_read)
             for fd in keep:
                 os.close(fd)
-            _Preload(its, status_write, parent).run()
+            _Preload(its, status_write).run()
         except BaseException:  # a forked child must not unwind into its parent's code
             import traceback
 
@@ -70,17 +74,24 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
     return mine, status_read, pid
 
 
+class _Worker(NamedTuple):
+    process: str
+    log: str
+    """The file to which its output goes, and that of what it starts."""
+
+
 class _Preload:
-    def __init__(self, channel: socket.socket, status: int, parent: int) -> None:
-        self._channel, self._status, self._parent = channel, status, parent
-        self._workers: dict[int, str] = {}
+    def __init__(self, channel: socket.socket, status: int) -> None:
+        self._channel, self._status = channel, status
+        self._workers: dict[int, _Worker] = {}
         self._buffer = b""
 
     def run(self) -> None:
         """Serve requests until the supervisor closes its end."""
-        from graphflow.supervisor.worker import STOP_SIGNALS, die_with_parent
+        from graphflow.supervisor.worker import STOP_SIGNALS
 
-        die_with_parent(self._parent)
+        family.name_process("gf-preload")
+        family.adopt_orphans()
         # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
         self._speak_to(os.devnull)
         self._warm_up()
@@ -99,7 +110,7 @@ class _Preload:
                 if key.fileobj is self._channel:
                     data = self._channel.recv(65536)
                     if not data:
-                        os._exit(0)
+                        self._end()
                     self._buffer += data
                 else:
                     os.read(wake_read, 4096)
@@ -180,6 +191,7 @@ class _Preload:
             os.kill(pid, signal.SIGKILL)
         os.waitpid(pid, 0)
         sweep(pid)  # what the import has started
+        self._end_orphans()
         result = probe_result(data, done, request["classes"])
         if any(found.get("needs_numpy") for found in result.values()):
             import numpy  # noqa: F401 - once, for all workers
@@ -192,7 +204,7 @@ class _Preload:
             pid = self._spawn_fresh(request) if fresh else os.fork()
         except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
             self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
-            self._answer({"event": "exited", "process": request["process"], "status": 1})
+            self._answer({"event": "exited", "process": request["process"], "pid": None, "status": 1})
             return
         if pid == 0:
             try:
@@ -204,13 +216,13 @@ class _Preload:
                 traceback.print_exc()
             finally:
                 os._exit(70)
-        self._workers[pid] = request["process"]
+        self._workers[pid] = _Worker(request["process"], request["log"])
         self._answer({"event": "spawned", "process": request["process"], "pid": pid})
 
     def _be_worker(self, request: dict[str, Any], parent: int) -> None:
         from graphflow.supervisor import worker
 
-        worker.become(request["log"], request["env"], parent)
+        worker.become(request["log"], {**request["env"], PROCESS_VARIABLE: request["process"]}, parent)
         _reseed()
         worker.main(request["job"], worker.PipeReporter(self._status))
 
@@ -223,7 +235,7 @@ class _Preload:
                 stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
-                env={**os.environ, **request["env"]},
+                env={**os.environ, **request["env"], PROCESS_VARIABLE: request["process"]},
                 pass_fds=[self._status],
                 start_new_session=True,
             )
@@ -235,18 +247,34 @@ class _Preload:
         return child.pid
 
     def _reap(self) -> None:
-        while self._workers:
-            try:
-                pid, status = os.waitpid(-1, os.WNOHANG)
-            except ChildProcessError:
-                return
-            if pid == 0:
-                return
-            process = self._workers.pop(pid, None)
-            if process is not None:
-                sweep(pid)
-                code = os.waitstatus_to_exitcode(status)
-                self._answer({"event": "exited", "process": process, "status": code})
+        ended = [(pid, self._workers.pop(pid), code) for pid, code in family.reaped() if pid in self._workers]
+        for pid, _, _ in ended:
+            sweep(pid)
+        if ended:
+            self._end_orphans()
+        for pid, worker, code in ended:
+            self._answer({"event": "exited", "process": worker.process, "pid": pid, "status": code})
+
+    def _end_orphans(self) -> None:
+        """End what workers have left behind in sessions of their own; what a living one has put there stays."""
+        living = {f"{PROCESS_VARIABLE}={worker.process}".encode() for worker in self._workers.values()}
+        logs = {worker.log for worker in self._workers.values()}
+        for pid in family.children(os.getpid()):
+            if pid not in self._workers and not (living & family.environment(pid) or logs & family.files(pid)):
+                family.kill(pid, signal.SIGKILL)
+                family.end_descendants(pid, _nothing)
+
+    def _end(self) -> NoReturn:
+        """The supervisor has gone: end what is left as it would have done, and exit."""
+        for pid in self._workers:
+            family.kill_group(pid, signal.SIGTERM)
+        deadline = time.monotonic() + GRACE
+        while self._workers and time.monotonic() < deadline:
+            for pid, _ in family.reaped():
+                self._workers.pop(pid, None)
+            time.sleep(0.01)
+        family.end_descendants(os.getpid(), family.reap_children)
+        os._exit(0)
 
 
 def answer_probe(request: dict[str, Any], write: int) -> None:
@@ -273,11 +301,15 @@ def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
     return result
 
 
+def _nothing() -> None:
+    """There are no children to wait for."""
+
+
 def sweep(group: int) -> None:
     """End what a worker has left behind in its process group."""
     try:
         os.killpg(group, signal.SIGKILL)
-    except ProcessLookupError:
+    except (ProcessLookupError, PermissionError):  # nobody is in it, or nobody of this user's
         return
 
 

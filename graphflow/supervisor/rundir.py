@@ -150,6 +150,8 @@ class GraphRun:
     logs: str
     endpoint: str
     plan_hash: str
+    guardian: int = 0
+    """The process that ends what is left when the supervisor has ended; 0 for none."""
 
     @property
     def is_here(self) -> bool:
@@ -161,13 +163,19 @@ class GraphRun:
         return start_time(self.pid) == self.started
 
     def wait_gone(self, timeout: float) -> bool:
-        """Wait until the supervisor has ended, so that the graph can be started again; False when it does not."""
+        """Wait until nothing of the graph is left, so that it can be started again; False when something is."""
         deadline = time.monotonic() + timeout
-        while self.is_alive:
+        while self.is_alive or self._is_guarded:
             if time.monotonic() > deadline:
                 return False
             time.sleep(0.01)
         return True
+
+    @property
+    def _is_guarded(self) -> bool:
+        """Whether the guardian, which was there before the supervisor, is there still."""
+        began = start_time(self.guardian) if self.guardian else None
+        return began is not None and began <= self.started
 
 
 class RunDirectory:

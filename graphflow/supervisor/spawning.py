@@ -55,7 +55,7 @@ class SpawningStarter:
         assert self._probing is not None
         return probe.finish(self._probing, self._wanted)
 
-    async def open(self, log: Path, heard: Heard, lost: Callable[[], None]) -> None:
+    async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
         self._heard = heard
         self._server = await asyncio.start_server(self._accept, "127.0.0.1", 0)
 
@@ -76,6 +76,9 @@ class SpawningStarter:
             if process:
                 del self._voices[process]
                 self._silent[process].set()
+
+    def trouble(self) -> str:
+        return ""
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         self._silent[process] = asyncio.Event()

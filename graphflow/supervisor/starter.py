@@ -13,7 +13,7 @@ Heard = Callable[[dict[str, Any]], None]
     {"event": "ready", "process": ..., "node": ...}
     {"event": "failed", "process": ..., "error": ...}
     {"event": "log_lost", "process": ..., "why": ...}
-    {"event": "exited", "process": ..., "status": ...}     as subprocess gives it: negative for a signal
+    {"event": "exited", "process": ..., "status": ...}     as subprocess gives it: negative for a signal; None: unknown
 """
 
 
@@ -30,12 +30,16 @@ class Starter(Protocol):
             SupervisorError: The process that should import them died.
         """
 
-    async def open(self, log: Path, heard: Heard, lost: Callable[[], None]) -> None:
+    async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
         """Report on workers from now on, and on the starter's own end if that comes first.
 
         Args:
             log: The file for the starter's own errors.
+            lost: Called with what has happened to the starter; the ends of all workers follow.
         """
+
+    def trouble(self) -> str:
+        """Why what is asked of it takes no effect now; empty if it does."""
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         """Start a worker.

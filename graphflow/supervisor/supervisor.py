@@ -226,20 +226,23 @@ class Supervisor:
             process.log_error = str(event["why"])
             self._tell(event="note", text=f"{process.name}: its log is not written whole: {process.log_error}")
         elif what == "exited":
-            process.exit = Exit.of_status(event["status"])
+            process.exit = Exit() if event["status"] is None else Exit.of_status(event["status"])
+            if event["status"] is None and (trouble := self._starter.trouble()):
+                self.note(trouble)
             self._happen(process, Event.EXIT)
 
-    def starter_lost(self) -> None:
-        """The starter has died, and all workers with it."""
-        if not self.ended.is_set():
-            logger.error("the process that starts nodes died; all nodes went with it")
-            self.exit_code = 1
-            self._tell(event="error", message="the process that starts nodes died, and the nodes with it")
-            for process in self._processes.values():
-                if process.state is not State.ENDED:
-                    process.exit = process.exit or Exit(signal=SIGKILL)
-                    process.state = State.ENDED
-            self.ended.set()
+    def starter_lost(self, how: str) -> None:
+        """The starter has died, and all workers end with it."""
+        if self.ended.is_set():
+            return
+        self.exit_code = 1
+        self._tell(event="error", message=f"{how}, and the nodes with it")
+        self._stopping, self._layers = True, []
+        for process in self._processes.values():
+            process.stop_asked = True
+            if process.pid is None:
+                self._happen(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
+        self._end_if_all_have()
 
     # decisions carried out
 
@@ -305,7 +308,8 @@ class Supervisor:
         elif action is Do.GIVE_UP:
             missing = ", ".join(sorted(process.waiting_for))
             process.error = f"not ready within {ALARMS[State.STARTING]:.0f} s: {missing}"
-            self._tell(event="error", message=f"{process.error}\n  its log: {process.log}")
+            hint = f"\n  {trouble}" if (trouble := self._starter.trouble()) else ""
+            self._tell(event="error", message=f"{process.error}\n  its log: {process.log}{hint}")
             process.failed = True
             if not self.up.is_set():
                 self._fail(f"{process.name} did not become ready")
@@ -342,12 +346,24 @@ class Supervisor:
         self._tell_exit(process, unexpected=failed and not asked)
         if failed and not asked:
             process.failed = True
+            if process.pid is not None:
+                self._write_down(process)
             self.exit_code = 1
             if was is State.STARTING and not self.up.is_set():
                 self.begin_stop(now=False, reason=f"{process.name} did not start")
         if self._stopping:
             self._stop_next_layer()
         self._end_if_all_have()
+
+    def _write_down(self, process: Process) -> None:
+        """Say in a process's log how it ended, which it could not do itself."""
+        why = f": {process.error}" if process.error else ""
+        line = f"[supervisor] process {process.pid} has ended: {process.exit}{why}\n"
+        try:
+            with open(process.log, "a", encoding="utf-8") as file:
+                file.write(line)
+        except OSError as error:  # a full disk
+            logger.error("%s: %s", process.log, error)
 
     def _tell_exit(self, process: Process, *, unexpected: bool) -> None:
         if process.exit is not None:
@@ -389,7 +405,5 @@ class Supervisor:
         self.doors.tell(**event)
 
 
-SIGKILL = 9
-"""SIGKILL's number on every system; Windows has no name for it."""
 MESH_LIMIT = 24
 """Up to this many processes each is a peer of every other; beyond, they are clients of the rendezvous."""

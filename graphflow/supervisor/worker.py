@@ -14,6 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Protocol
 
+from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import GraphflowError
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
@@ -23,8 +24,9 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import setup_console
 from graphflow.runtime.run import catch_signals, serve
 from graphflow.runtime.surroundings import Surroundings, make_within
-from graphflow.supervisor import logfile
+from graphflow.supervisor import family, logfile
 from graphflow.supervisor.classes import add_root, import_class
+from graphflow.system import end_with_parent
 from graphflow.transport import loop
 
 STOP_SIGNALS = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
@@ -120,7 +122,17 @@ class SocketReporter:
             for _ in lines:
                 self._asked.set()
                 self._stop()
+        _end_children()
         os._exit(EXIT_ERROR)
+
+
+def _end_children() -> None:
+    """End what this process has started."""
+    import psutil
+
+    for child in psutil.Process().children(recursive=True):
+        with suppress(psutil.NoSuchProcess):
+            child.kill()
 
 
 def main(job: dict[str, Any], report: Reporter) -> None:
@@ -133,6 +145,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable(2)
+    family.name_process(job["process"].rpartition("/")[2])
     if "log" in job:
         logfile.write_to(job["log"], lambda why: report.tell(event="log_lost", process=job["process"], why=why))
     if hasattr(signal, "SIGUSR2"):
@@ -172,7 +185,7 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         await serve(nodes, context, stop, is_ready)
     except Exception as error:
         at_start = len(ready) < len(nodes)
-        if at_start:
+        if at_start and not any(core_of(node).failure is error for node in nodes):  # which has logged it
             _log_failure(error)
         report.tell(event="failed", process=job["process"], error=_one_line(error))
         return EXIT_CONFIGURATION if at_start and isinstance(error, GraphflowError) else EXIT_ERROR
@@ -186,17 +199,20 @@ def _log_failure(error: Exception) -> None:
     import logging
 
     expected = isinstance(error, GraphflowError)
-    logging.getLogger("graphflow").error("%s", error, exc_info=None if expected else error)
+    trace = None if expected else (type(error), error, users_part(error))
+    logging.getLogger("graphflow").error("%s", _one_line(error), exc_info=trace)
 
 
 def _one_line(error: Exception) -> str:
-    return str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
+    place = place_in(error)
+    text = str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
+    return text if not place or place in text else f"{text} ({place})"
 
 
 def become(log: str, env: dict[str, str], parent: int) -> None:
     """Turn a new child into a worker's process: session, signals, stdin, log file, environment."""
     os.setsid()
-    die_with_parent(parent)
+    end_with_parent(parent, signal.SIGTERM)
     for number in (*STOP_SIGNALS, signal.SIGCHLD):
         signal.signal(number, signal.SIG_DFL)
     signal.set_wakeup_fd(-1)
@@ -216,27 +232,11 @@ def _line_buffered() -> None:
         stream.reconfigure(line_buffering=True)  # type: ignore[union-attr]
 
 
-def die_with_parent(parent: int) -> None:
-    """Let the kernel kill this process when its parent dies (Linux).
-
-    Args:
-        parent: The parent's process id from before the fork: it may be dead already.
-    """
-    import ctypes
-
-    if sys.platform != "linux":
-        return
-    pr_set_pdeathsig = 1
-    ctypes.CDLL(None, use_errno=True).prctl(pr_set_pdeathsig, signal.SIGKILL)
-    if os.getppid() != parent:
-        os._exit(EXIT_ERROR)
-
-
 def _start() -> None:
     """In an interpreter of its own: `PIPE PARENT` for the child of a preload process, else `PORT`; the job on stdin."""
     _line_buffered()
     if len(sys.argv) == 3:
-        die_with_parent(int(sys.argv[2]))
+        end_with_parent(int(sys.argv[2]), signal.SIGTERM)
         main(json.load(sys.stdin), PipeReporter(int(sys.argv[1])))
     given = json.load(sys.stdin)
     main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))

@@ -46,7 +46,8 @@ class Ask(ModalScreen[str | None]):
 
     def on_mount(self) -> None:
         """Enter, pressed by mistake, goes back."""
-        list(self.query(Button))[-1].focus()
+        for button in list(self.query(Button))[-1:]:  # none, if the console is being left at this moment
+            button.focus()
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
         self.dismiss(event.button.name or None)

@@ -79,3 +79,11 @@ def test_a_goal_that_succeeds(standing: Machine) -> None:
 def test_a_goal_that_is_rejected(standing: Machine) -> None:
     """The exit code is 1."""
     assert "rejected" in standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: -1}", code=1)
+
+
+def test_a_goal_to_nobody(standing: Machine) -> None:
+    """The nearest action is named at once, in case there is none to wait for; then the time is up, exit code 4."""
+    words = ("send_goal", "/fibonaci", TYPE, "{order: 1}", "--timeout", "0.3")
+    text = standing.look("action", *words, code=4)
+    assert "there is no action /fibonaci yet; did you mean '/fibonacci'?\nWaiting for an action server" in text
+    assert "error: no node offers the action /fibonaci" in text

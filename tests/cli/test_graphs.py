@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.cli.graphs import _table
+from tests.cases import slow
 from tests.conftest import Machine, Program
 from tests.supervisor.running import GOOD, make_project, nothing_is_left, rows, supervisor_of, write
 
@@ -33,6 +34,7 @@ def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Pat
     assert "no graph is running" in machine.run("ps", code=3)
 
 
+@slow
 @pytest.mark.real
 def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
     """`logs` shows the latest run; a misspelt node is told which one was meant."""
@@ -44,6 +46,7 @@ def test_logs_of_a_graph_that_has_ended_can_be_read(machine: Machine) -> None:
     assert "did you mean 'talker'" in machine.look("logs", "talkr", code=2)
 
 
+@slow
 @pytest.mark.real
 def test_logs_follow(machine: Machine) -> None:
     """`logs -f` goes on as more is written and ends with the graph."""
@@ -54,6 +57,7 @@ def test_logs_follow(machine: Machine) -> None:
     assert follow.wait() == 0
 
 
+@slow
 @pytest.mark.real
 def test_private_keeps_a_graph_to_itself(machine: Machine) -> None:
     """`--private` takes a port and a domain of its own, and says how other terminals get there."""

@@ -10,6 +10,7 @@ import pytest
 from graphflow.errors import UsageFault
 from graphflow.interface import TYPE_IDS
 from graphflow.introspect.parameters import read_value
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine, Program
 
 ROBOT = str(PROGRAMS / "verbs" / "robot.py")
@@ -94,6 +95,7 @@ def ready(program: Program) -> Program:
     return program
 
 
+@slow
 @pytest.mark.real
 def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> None:
     """Values and types come back, numbers in quotes included; what is read-only is no failure when it is the same."""

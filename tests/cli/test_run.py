@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.runtime.run import SAME_SIGNAL
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
@@ -25,6 +26,7 @@ def test_a_signal_ends_a_node_cleanly(machine: Machine, number: int) -> None:
     assert "Error" not in node.text
 
 
+@slow
 def test_a_script_that_runs_a_node_ends_as_cleanly(machine: Machine) -> None:
     """`graphflow.run(Talker)` in a file of one's own is the same."""
     node = machine.start_python("-m", "nodes.talker", "--ros-args", "-p", "rate:=20.0", "-r", "chatter:=/news")
@@ -45,6 +47,7 @@ def test_remaps_and_namespace_reach_the_graph(machine: Machine) -> None:
     assert node.end() == 0
 
 
+@slow
 def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
     """Two nodes of one name would answer each other's parameter calls."""
     node = machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
@@ -92,6 +95,7 @@ def test_bundled_nodes_run_from_anywhere(machine: Machine, tmp_path: Path) -> No
     assert node.end() == 0
 
 
+@slow
 def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) -> None:
     """As with `ros2 run`: in sys.argv, without what is for ROS."""
     (tmp_path / "adder.py").write_text(
@@ -102,6 +106,7 @@ def test_words_of_its_own_reach_the_program(machine: Machine, tmp_path: Path) ->
     assert "plus ['2', '--fast']" in text
 
 
+@slow
 @pytest.mark.parametrize("name", ["turtle_follower", "scheduler"])
 def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path, name: str) -> None:
     """A student's file of the same name as one of ours becomes no part of it; ours bring their interfaces along."""
@@ -115,12 +120,14 @@ def test_a_bundled_node_beside_a_projects_own(machine: Machine, tmp_path: Path, 
     assert "mine" not in node.text
 
 
+@slow
 def test_a_process_ends_though_its_session_was_never_closed(machine: Machine) -> None:
     """An uncaught exception ends a program that has subscribed: Zenoh's threads do not keep it alive."""
     program = machine.start_python(str(PROGRAMS / "run" / "careless.py"))
     assert program.wait() == 3
 
 
+@slow
 def test_ctrl_c_does_not_wait_for_a_blocked_thread(machine: Machine, tmp_path: Path) -> None:
     """A body that blocks in a thread cannot be cancelled; the process ends without it."""
     shutil.copy(PROGRAMS / "run" / "slow.py", tmp_path)
@@ -142,6 +149,7 @@ def test_a_second_ctrl_c_ends_a_node_whose_handler_never_returns(machine: Machin
     assert "asked twice" in node.text
 
 
+@slow
 def test_signals_that_come_together_are_one(machine: Machine) -> None:
     """As from `timeout`, which signals its child and then the whole group."""
     node = machine.start("run", "nodes.talker:Talker")

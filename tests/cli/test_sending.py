@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_ctrl_c_before_the_goal_is_accepted_withdraws_it(machine: Machine, tmp_path: Path) -> None:
     """It says so, and the goal is never begun."""
     shutil.copy(PROGRAMS / "verbs" / "hesitant.py", tmp_path)

@@ -54,6 +54,7 @@ from graphflow.graph.source import read
 from graphflow.msgs import registry
 from graphflow.supervisor.classes import interfaces, read_interfaces
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.conftest import LIMIT, PROJECT, Machine, Program
 
 PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
@@ -62,6 +63,7 @@ KINDS = {
     "yaml": {"file", "wrong", "fragment", "net"},
     "msg": {"file"},
     "srv": {"file"},
+    "action": {"file"},
     "console": {"up"},
     "sh": set[str](),
     "text": set[str](),
@@ -276,11 +278,15 @@ def test_yaml(page: Path, project: Path) -> None:
 def test_definitions(page: Path, project: Path) -> None:
     """Interface definitions parse."""
     write_files(page, project)
-    for block in blocks(page, "msg", "srv"):
+    for block in blocks(page, "msg", "srv", "action"):
         assert registry.interface(block.options["file"].removeprefix("interfaces/").rpartition(".")[0])
 
 
-@each_page
+LONG = {"README", "running", "groups", "actions", "parameters", "graphs", "testing", "names", "interfaces", "console"}
+"""Pages whose commands take seconds: they run with `--cases full`, as in CI."""
+
+
+@pytest.mark.parametrize("page", [pytest.param(p, id=p.stem, marks=slow if p.stem in LONG else ()) for p in PAGES])
 @pytest.mark.real
 def test_console(page: Path, project: Path, machine: Machine, tmp_path: Path) -> None:
     """Commands print what the page shows, one after another, on a machine of the page's own."""

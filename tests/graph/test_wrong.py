@@ -12,6 +12,7 @@ import pytest
 
 from graphflow.cli import exits
 from graphflow.cli.main import main
+from tests.cases import slow
 from tests.conftest import Machine
 
 WRONG = Path(__file__).parent / "wrong"
@@ -84,6 +85,7 @@ def test_check_says_what_is_wrong(
     assert not (project / "harm").exists()
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize("name", ["class_typo", "python_tag", "request_field"])
 def test_up_starts_nothing(name: str, project: Path, machine: Machine) -> None:

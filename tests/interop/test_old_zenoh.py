@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import PROGRAMS, Machine, Program
 
 pytestmark = pytest.mark.real
@@ -55,6 +55,7 @@ def latched(machine: Machine, folder: Path, name: str) -> Program:
     return machine.start_python(LATCHED, name, cwd=folder)
 
 
+@slow
 def test_an_old_router_is_joined(machine: Machine, version: Path) -> None:
     """Nodes find each other through it, are listed and have their parameters read; when it ends they go on."""
     router = old(machine, version, "router")
@@ -70,6 +71,7 @@ def test_an_old_router_is_joined(machine: Machine, version: Path) -> None:
     machine.until(lambda: "/talker" in machine.run("node", "list", code=None), "a node has taken over")
 
 
+@slow
 def test_an_old_peer_is_heard_and_hears(machine: Machine, version: Path) -> None:
     """Both ways, with the 33 bytes beside each message, and gone from the graph when it is killed."""
     machine.start("run", "nodes.talker:Talker", "-p", "rate:=20.0")
@@ -87,6 +89,7 @@ def test_an_old_peer_is_heard_and_hears(machine: Machine, version: Path) -> None
     machine.until(lambda: "/old" not in machine.run("node", "list"), "the old peers are gone")
 
 
+@slow
 @pytest.mark.parametrize("order", ["publisher first", "subscription first"])
 def test_an_old_publisher_keeps_messages_for_us(machine: Machine, version: Path, tmp_path: Path, order: str) -> None:
     """A transient-local subscription gets the last three of five, whoever was there first."""
@@ -105,6 +108,7 @@ def test_an_old_publisher_keeps_messages_for_us(machine: Machine, version: Path,
         assert "old 2\n" not in ear.text
 
 
+@slow
 @pytest.mark.parametrize("order", ["publisher first", "subscription first"])
 def test_we_keep_messages_for_an_old_subscription(machine: Machine, version: Path, tmp_path: Path, order: str) -> None:
     """The other way round."""

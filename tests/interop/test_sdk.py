@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine, Program
 
 pytest.importorskip("zenoh_ros2_sdk", reason="zenoh-ros2-sdk is not installed")
@@ -42,6 +43,7 @@ def test_it_hears_graphflow(machine: Machine, tmp_path: Path, type_: str, heard:
     sdk(machine, tmp_path, f"hear-{type_.lower()}").wait_for(heard)
 
 
+@slow
 @pytest.mark.parametrize(("type_", "heard"), MESSAGES.items())
 def test_graphflow_hears_it(machine: Machine, tmp_path: Path, type_: str, heard: str) -> None:
     """The other way round."""
@@ -51,6 +53,7 @@ def test_graphflow_hears_it(machine: Machine, tmp_path: Path, type_: str, heard:
     listener.wait_for(heard)
 
 
+@slow
 def test_it_calls_graphflow(machine: Machine, tmp_path: Path) -> None:
     """AddTwoInts, twice."""
     node(machine, tmp_path, "Adder")
@@ -59,6 +62,7 @@ def test_it_calls_graphflow(machine: Machine, tmp_path: Path) -> None:
     assert "HEARD 5\nHEARD 43\n" in client.text
 
 
+@slow
 def test_graphflow_calls_it(machine: Machine, tmp_path: Path) -> None:
     """A client that waits gets the very first answer, though that server announces itself before it can be reached."""
     caller = node(machine, tmp_path, "Caller")

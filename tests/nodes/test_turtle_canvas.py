@@ -7,6 +7,7 @@ from itertools import pairwise
 import pytest
 
 from nodes.turtle_canvas import MAX_POINTS, STROKE_POINTS, TOLERANCE, Canvas, Pen, Position, Stroke
+from tests.cases import slow
 
 RED = Pen((255, 0, 0), 3)
 
@@ -89,6 +90,7 @@ def test_another_pen_or_place_or_turtle_begins_a_stroke() -> None:
     ]
 
 
+@slow
 def test_points_are_bounded_and_the_newest_stay() -> None:
     """A zigzag for ever keeps its end, in strokes that hang together, and forgets its beginning."""
     canvas = Canvas()

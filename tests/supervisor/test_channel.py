@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 import os
 import socket
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -93,6 +95,22 @@ async def test_requests(pair: tuple[socket.socket, socket.socket]) -> None:
     other.sendall(b'{"n": 1}\n')
     assert await listener.hear(1) == [{"n": 1}]
     assert mine.getblocking() is False
+    lines.close()
+
+
+async def test_a_request_to_one_that_does_not_read(pair: tuple[socket.socket, socket.socket]) -> None:
+    """A stopped process holds nobody up: the rest goes out, in order, when it reads on."""
+    mine, other = pair
+    lines = Listener().listen(mine)
+    for number in range(200):
+        lines.send(number=number, job="x" * 10_000)
+    other.setblocking(False)
+    data = b""
+    while data.count(b"\n") < 200:
+        await asyncio.sleep(0)
+        with suppress(BlockingIOError):
+            data += other.recv(1 << 20)
+    assert [json.loads(line)["number"] for line in data.splitlines()] == list(range(200))
     lines.close()
 
 

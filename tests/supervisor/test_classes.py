@@ -51,6 +51,7 @@ def test_a_class_by_its_path(project: Path) -> None:
     ("class_path", "problem"),
     [
         ("machines.robot:Robto", "module machines.robot has no class 'Robto'; did you mean 'Robot'?"),
+        ("machines.robot:Submarine", "module machines.robot has no class 'Submarine'; there is Robot"),
         ("machines.robot:Wheel", "machines.robot:Wheel is not a node class: it does not derive from graphflow.Node"),
         (
             "machines.nowhere:Robot",
@@ -117,6 +118,13 @@ def test_where_a_project_is_looked_for(project: Path) -> None:
     installed = [i for i, entry in enumerate(sys.path) if entry.endswith("-packages")]
     standard = sys.path.index(str(Path(shutil.__file__).parent))
     assert standard < at < min(installed)
+
+
+def test_a_project_behind_another_that_is_installed(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As projects are that are installed to be edited: the one whose graph it is comes first."""
+    monkeypatch.setattr(sys, "path", [*(p for p in sys.path if p != str(project)), "/another", str(project)])
+    add_root(str(project))
+    assert sys.path.index(str(project)) < sys.path.index("/another")
 
 
 def test_classes_whose_nodes_cannot_be_made(project: Path) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import signal
 import socket
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,7 +12,7 @@ import pytest
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor import preload
-from graphflow.supervisor.forking import ForkingStarter, _signal
+from graphflow.supervisor.forking import ForkingStarter
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="nothing is forked there")
 
@@ -57,16 +55,6 @@ def test_a_preload_process_that_dies_meanwhile(monkeypatch: pytest.MonkeyPatch) 
         starter(Channel(b'{"event"'), monkeypatch).probed()
 
 
-@pytest.mark.real
-@pytest.mark.parametrize("is_leader", [True, False])
-def test_a_signal_reaches_a_worker(is_leader: bool) -> None:
-    """With its whole process group, or alone before it has made one; one that has ended needs none."""
-    sleeper = subprocess.Popen(["sleep", "600"], start_new_session=is_leader)
-    _signal(sleeper.pid, signal.SIGTERM)
-    assert sleeper.wait(10.0) == -signal.SIGTERM
-    _signal(sleeper.pid, signal.SIGKILL)
-
-
 @pytest.mark.usefixtures("graphflow_runner")
 async def test_what_a_worker_said_before_it_ended_is_heard_first(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
@@ -77,11 +65,13 @@ async def test_what_a_worker_said_before_it_ended_is_heard_first(
     monkeypatch.setattr(preload, "start", lambda keep: (mine, status_read, 0))
     heard: list[str] = []
     made = ForkingStarter(())
-    await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda: None)
-    os.write(status_write, b'{"event": "ready"}\n')
-    preloads.sendall(b'{"event": "exited"}\n')
+    await made.open(tmp_path / "log", lambda event: heard.append(event["event"]), lambda _: None)
+    preloads.sendall(b'{"event": "spawned", "process": "/a", "pid": 4194305}\n')
     made._lines[0].read()
-    assert heard == ["ready", "exited"]
+    os.write(status_write, b'{"event": "ready"}\n')
+    preloads.sendall(b'{"event": "exited", "process": "/a", "pid": 4194305, "status": 0}\n')
+    made._lines[0].read()
+    assert heard == ["spawned", "ready", "exited"]
     await made.close()
     for end in (mine, preloads):
         end.close()

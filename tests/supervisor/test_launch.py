@@ -14,12 +14,15 @@ import psutil
 import pytest
 
 from graphflow.supervisor import launch as module
-from graphflow.supervisor.launch import launch
+from graphflow.supervisor.launch import LET_GO, Launched, launch
+from graphflow.system import is_portable
 from graphflow.transport.rendezvous import address
+from tests.cases import slow, some
 from tests.conftest import PROGRAMS, Machine
 from tests.supervisor.running import GOOD, nothing_is_left, rows, write
 
 
+@slow
 @pytest.mark.real
 def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> None:
     """The second says since when it runs and how to stop it; the first is not touched."""
@@ -34,6 +37,7 @@ def test_the_same_graph_twice_is_an_error(machine: Machine, project: Path) -> No
     machine.look("down")
 
 
+@slow
 @pytest.mark.real
 def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Machine, project: Path) -> None:
     """The owner is named; two graphs with other names may run beside each other, and then `down` asks which."""
@@ -62,6 +66,7 @@ def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
     nothing_is_left(machine, [])
 
 
+@slow
 @pytest.mark.real
 def test_a_taken_port_is_an_error_before_anything_starts(machine: Machine, project: Path) -> None:
     """Whoever listens where the rendezvous should be is named, and no node is started."""
@@ -79,18 +84,38 @@ def test_ctrl_c_while_the_graph_comes_up_leaves_nothing(machine: Machine, projec
     """A start that takes long can be broken off."""
     shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
     up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
-    machine.until(lambda: bool(children(up.pid)), "the supervisor is there")
-    supervisor = children(up.pid)
-    machine.until(lambda: bool(children(supervisor[0])), "the preload process is there")
-    preload = children(supervisor[0])
+    machine.until(lambda: len(family_of(up.pid)) >= 2 + HAS_GUARDIAN, "the preload process is there")
+    family = family_of(up.pid)
 
     up.end(signal.SIGINT)
 
-    nothing_is_left(machine, [*supervisor, *preload])
+    nothing_is_left(machine, family)
 
 
-def children(pid: int) -> list[int]:
-    return [child.pid for child in psutil.Process(pid).children()]
+@pytest.mark.real
+@pytest.mark.parametrize("sent", some(["SIGKILL", "SIGTERM", "SIGHUP", "SIGINT"], "SIGKILL"))
+@pytest.mark.parametrize("way", some(["--no-console", "--detach"], "--detach"))
+def test_a_command_that_ends_before_its_graph_is_up_leaves_nothing(
+    machine: Machine, project: Path, sent: str, way: str
+) -> None:
+    """Whatever ends it, and also if it was going to leave the graph in the background."""
+    shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
+    up = machine.start("up", way, write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
+    machine.until(lambda: len(family_of(up.pid)) >= 2 + HAS_GUARDIAN, "the preload process is there")
+    family = family_of(up.pid)
+
+    up.process.send_signal(getattr(signal, sent))
+    up.process.wait(10.0)
+
+    nothing_is_left(machine, family)
+
+
+HAS_GUARDIAN = not is_portable()
+
+
+def family_of(pid: int) -> list[int]:
+    """What a command has started, and what that has."""
+    return [child.pid for child in psutil.Process(pid).children(recursive=True)]
 
 
 class Begun:
@@ -99,17 +124,19 @@ class Begun:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *chunks: bytes) -> None:
         self.job: dict[str, Any] = {}
         self.is_reaped = False
+        self.lifeline = -1
         self.chunks = chunks
         for way in ("_begin_forked", "_begin_portable"):
             monkeypatch.setattr(module, way, self.begin)
 
-    def begin(self, job: dict[str, Any]) -> tuple[int, int, Any]:
+    def begin(self, job: dict[str, Any]) -> Launched:
         self.job = job
+        self.lifeline, held = os.pipe()
         read, write = os.pipe()
         for chunk in self.chunks:
             os.write(write, chunk)
         os.close(write)
-        return -1, read, self.reap
+        return Launched(read, held, self.reap)
 
     def reap(self) -> None:
         self.is_reaped = True
@@ -120,23 +147,37 @@ def test_a_supervisor_that_reports(monkeypatch: pytest.MonkeyPatch) -> None:
     report = {"ok": True, "run": {"pid": 5}, "classes": {}}
     data = json.dumps(report).encode() + b"\n"
     begun = Begun(monkeypatch, data[:5], data[5:])
-    assert launch(Path("g.yaml"), ["a:=1"], 7, attached=True) == report
-    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "attached": True}
+    told, launched = launch(Path("g.yaml"), ["a:=1"], 7)
+    assert told == report
+    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7}
     assert not begun.is_reaped
+    launched.let_go()
+    assert os.read(begun.lifeline, 2) == LET_GO
+    assert os.read(begun.lifeline, 2) == b""
+    os.close(begun.lifeline)
+
+
+def test_a_supervisor_that_has_ended_is_let_go() -> None:
+    """Nobody is there to be told, and that is no error."""
+    read, write = os.pipe()
+    os.close(read)
+    Launched(-1, write, lambda: None).let_go()
+    with pytest.raises(OSError, match="Bad file"):
+        os.close(write)
 
 
 def test_a_supervisor_that_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its reason comes back, and it leaves no zombie."""
     report = {"ok": False, "exit_code": 2, "message": "g.yaml:1:1: no"}
     begun = Begun(monkeypatch, json.dumps(report).encode() + b"\n")
-    assert launch(Path("g.yaml"), [], None, attached=False) == report
+    assert launch(Path("g.yaml"), [], None)[0] == report
     assert begun.is_reaped
 
 
 def test_a_supervisor_that_dies(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is told as a failure."""
     Begun(monkeypatch)
-    report = launch(Path("g.yaml"), [], None, attached=False)
+    report, _ = launch(Path("g.yaml"), [], None)
     assert report == {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}
 
 

@@ -14,10 +14,12 @@ import pytest
 
 from graphflow.supervisor.preload import PROBE_LIMIT, _reseed, probe_result, sweep
 from graphflow.system import is_portable
+from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import GOOD, nothing_is_left, rows, write
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
 def test_the_preload_process_has_one_thread(machine: Machine, project: Path) -> None:
@@ -41,6 +43,7 @@ def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project
     nothing_is_left(machine, [pid])
 
 
+@slow
 @pytest.mark.real
 def test_an_impossible_environment_fails_its_node_only(machine: Machine, project: Path) -> None:
     """The process that starts nodes survives what cannot be started."""

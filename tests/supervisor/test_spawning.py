@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.real, pytest.mark.usefixtures("graphflow_runner")]
 async def opened(tmp_path: Path) -> tuple[SpawningStarter, list[dict[str, Any]], int]:
     """A starter, what it hears, and its port."""
     starter, heard = SpawningStarter(), list[dict[str, Any]]()
-    await starter.open(tmp_path / "supervisor.log", heard.append, lambda: None)
+    await starter.open(tmp_path / "supervisor.log", heard.append, lambda _: None)
     assert starter._server is not None
     return starter, heard, starter._server.sockets[0].getsockname()[1]
 

@@ -29,11 +29,13 @@ def test_both_kinds_tell_the_same(machine: Machine, project: Path, kind: str) ->
         "['nodes.lab:Good', 'nodes.lab:Missing'] {'problem': \"module nodes.lab has no class 'Miss"
     )
     assert end == "end"
+    lines = (project / "nodes" / "lab.py").read_text().splitlines()
+    camera = f"{project / 'nodes' / 'lab.py'}:{1 + next(i for i, line in enumerate(lines) if 'no camera' in line)}"
     assert [json.loads(line) for line in told] == [
-        {"event": "failed", "process": "wrong", "error": "ValueError: no camera"},
+        {"event": "failed", "process": "wrong", "error": f"ValueError: no camera ({camera})"},
         {"event": "exited", "process": "wrong", "status": 78},
         {"event": "exited", "process": "leaves", "status": 0},
-        {"event": "failed", "process": "fresh", "error": "ValueError: no camera"},
+        {"event": "failed", "process": "fresh", "error": f"ValueError: no camera ({camera})"},
         {"event": "exited", "process": "fresh", "status": 78},
         {"event": "failed", "process": "impossible", "error": "cannot be started: illegal environment variable name"},
         {"event": "exited", "process": "impossible", "status": 1},

@@ -16,10 +16,12 @@ from graphflow.graph.plan import PlannedStep
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.supervisor.steps import StepRunner
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.supervisor.running import nothing_is_left, write
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("call", "expected"),

@@ -7,6 +7,7 @@ import shutil
 import signal
 from pathlib import Path
 
+import psutil
 import pytest
 
 from tests.cases import slow, some
@@ -16,6 +17,7 @@ from tests.supervisor.running import GOOD, nothing_is_left, rows, supervisor_of,
 pytestmark = pytest.mark.real
 
 
+@slow
 @pytest.mark.parametrize("victim", some(["supervisor", "preload", "terminal"], "supervisor"))
 def test_kill_minus_9_leaves_nothing_behind(machine: Machine, project: Path, victim: str) -> None:
     """Whoever of them dies: no node is left running, and the graph can be started again."""
@@ -25,15 +27,18 @@ def test_kill_minus_9_leaves_nothing_behind(machine: Machine, project: Path, vic
     nodes = [row["pid"] for row in rows(machine).values()]
     supervisor = supervisor_of(machine)["pid"]
     preload = int(Path(f"/proc/{nodes[0]}/stat").read_text().rpartition(")")[2].split()[1])
+    guardian = psutil.Process(supervisor).ppid()
     target = {"supervisor": supervisor, "preload": preload, "terminal": up.pid}[victim]
 
     os.kill(target, signal.SIGKILL)
 
-    machine.until(lambda: not any(alive(pid) for pid in [*nodes, supervisor, preload]), "all processes are gone")
+    family = [*nodes, supervisor, preload, guardian]
+    machine.until(lambda: not any(alive(pid) for pid in family), "all processes are gone")
     code = up.wait()
     if victim != "terminal":
         assert code == 1
-        assert "died" in up.text
+        assert f"process {target}, " in up.text
+        assert "was ended by signal SIGKILL" in up.text
     machine.run("up", "-d", file, cwd=project)
     machine.look("down")
 
@@ -54,6 +59,7 @@ def test_a_node_that_is_killed_is_reported_and_the_others_go_on(machine: Machine
     assert up.end() == 1
 
 
+@slow
 def test_a_node_that_does_not_end_is_killed_and_a_second_ctrl_c_does_not_wait(machine: Machine, project: Path) -> None:
     """The ladder ends with SIGKILL; whoever is impatient presses again."""
     up = machine.start("up", write(project, "nodes:\n  /s: {class: nodes.lab:Stubborn}\n"), cwd=project)
@@ -86,6 +92,7 @@ def test_a_graph_whose_nodes_all_end_by_themselves_has_ended_well(machine: Machi
     assert "done" in up.text
 
 
+@slow
 def test_a_large_graph_talks_through_the_rendezvous_and_says_so(machine: Machine) -> None:
     """Beyond what a mesh carries nodes are clients; they hear each other all the same."""
     pair = (
@@ -101,6 +108,7 @@ def test_a_large_graph_talks_through_the_rendezvous_and_says_so(machine: Machine
     machine.look("down")
 
 
+@slow
 def test_a_stopped_terminal_that_is_killed_takes_its_graph_along(machine: Machine, project: Path) -> None:
     """Also when it had not read all that was told to it."""
     up = machine.start("up", write(project, GOOD), cwd=project)

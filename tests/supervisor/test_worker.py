@@ -19,6 +19,7 @@ from graphflow.supervisor import worker
 from graphflow.supervisor.worker import PIPE_BUF, PipeReporter, SocketReporter, _one_line, make_node
 from graphflow.testing import Graph
 from nodes.talker import Talker
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.supervisor.running import rows, write
 
@@ -54,6 +55,7 @@ def test_nodes_that_share_a_process_share_its_pid_and_its_end(machine: Machine, 
     machine.look("down")
 
 
+@slow
 @pytest.mark.real
 def test_a_node_that_leaves_before_it_is_ready_has_failed(machine: Machine, project: Path) -> None:
     """Exit code 0 or not: what waits for it would wait for ever."""
@@ -163,3 +165,12 @@ def test_an_error_in_one_line() -> None:
     """One of ours speaks for itself, others say of what kind they are."""
     assert _one_line(GraphflowError("no such class")) == "no such class"
     assert _one_line(ValueError("no camera")) == "ValueError: no camera"
+
+
+def test_an_error_that_was_raised_in_the_users_code() -> None:
+    """Its line is told, once."""
+    with pytest.raises(ValueError, match="camera") as caught:
+        raise ValueError("no camera")
+    line = f"{__file__}:{caught.tb.tb_lineno}"
+    assert _one_line(caught.value) == f"ValueError: no camera ({line})"
+    assert _one_line(GraphflowError(f"{line}: no").with_traceback(caught.tb)) == f"{line}: no"

@@ -8,13 +8,14 @@ from graphflow.testing import Graph
 from graphflow.tui.actions import CONSOLE, console_actions
 from graphflow.tui.dialogs import AskToStop, Note, Pick
 from graphflow.tui.panes import Content
+from tests.cases import slow, some
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
-@pytest.mark.parametrize("view", ["nodes", "prompt"])
+@pytest.mark.parametrize("view", some(["nodes", "prompt"], "prompt"))
 @pytest.mark.parametrize(
     ("key", "screen"),
     [
@@ -64,6 +65,7 @@ async def test_keys_that_say(graph: Graph) -> None:
         assert s.console.clipboard_text == "graphflow waits"
 
 
+@slow
 async def test_the_palette_does_everything() -> None:
     """What the focused view can, and what the console can; found by typing."""
     async with stage(Content("nodes")) as s:

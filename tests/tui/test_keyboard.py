@@ -17,7 +17,7 @@ async def type_ahead(s: Stage, *keys: str) -> None:
     for key in keys:
         s.console.post_message(events.Key(key, key if len(key) == 1 else None))
     await s.pilot.pause()
-    await s.until(lambda: s.console.keyboard.is_quiet)
+    await s.until(lambda: s.console.keyboard.is_quiet and bool(s.text.strip()))  # a new dialog is drawn a moment later
 
 
 async def test_into_a_dialog_and_out_of_it() -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from graphflow.graph.console import LAYOUTS
 from graphflow.tui.layout import Layout
 from graphflow.tui.panes import MIN_HEIGHT, MIN_WIDTH, Content, Pane, Rect, Split, Window, drag
-from tests.cases import cases, count
+from tests.cases import cases, count, slow
 
 SIZE = (120, 40)
 
@@ -46,6 +46,7 @@ OPERATIONS = st.lists(
 )
 
 
+@slow
 @cases(count(few=40, full=150))
 @given(OPERATIONS)
 def test_whatever_is_done_the_panes_fill_the_window(operations: list[tuple[str, int]]) -> None:

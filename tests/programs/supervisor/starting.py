@@ -30,7 +30,7 @@ def planned(class_path: str) -> dict[str, Any]:
 async def start(starter: Starter) -> None:
     """Start one worker after another, each of which ends by itself or is ended."""
     heard = asyncio.Queue[dict[str, Any]]()
-    await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda: print("lost"))
+    await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda how: print("lost", how))
 
     async def follow(name: str, class_path: str, env: dict[str, str], end: Callable[[str, int], None] | None) -> None:
         job = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": [planned(class_path)]}

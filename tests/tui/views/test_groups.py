@@ -12,6 +12,7 @@ from graphflow.graph.resolve import load
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.stage import Supervised, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -59,6 +60,7 @@ class Right(Node):
         return Empty.Response()
 
 
+@slow
 async def test_a_deadlock_is_seen_ended_and_written(graph: Graph, tmp_path: Path) -> None:
     """The ring with places; f moves a handler, the graph goes on, w writes the move with the diff shown first."""
     file = tmp_path / "lab.yaml"

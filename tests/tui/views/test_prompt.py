@@ -10,6 +10,7 @@ from textual.widgets import Input
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.prompt import Prompt
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
@@ -48,6 +49,7 @@ async def test_ctrl_c_ends_the_verb_and_then_asks() -> None:
         assert s.console.return_value is None
 
 
+@slow
 async def test_history_and_words_of_its_own() -> None:
     """↑ recalls; `clear` empties the pane; a console in a console is refused; quotes must close."""
     Prompt.past.clear()

@@ -11,6 +11,7 @@ from graphflow.graph.resolve import load
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.stage import Supervised, stage
 from tests.tui.views.test_groups import FILE, Left, Right
 
@@ -19,6 +20,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 OPTIONS = {"title": "Two nodes ask each other.", "step": "4/11 crossing", "seconds": 60.0}
 
 
+@slow
 async def test_from_the_ring_to_the_next_example(graph: Graph, tmp_path: Path) -> None:
     """It says to press f, then w and n; n leaves for what comes next."""
     file = tmp_path / "lab.yaml"

@@ -1,0 +1,160 @@
+"""A process and all that it has started, however deep: found by their parents, and ended (Linux).
+
+A process whose parent ends goes to the nearest ancestor that has asked for it by `adopt_orphans`. The guardian, the
+supervisor and the preload process all have: so whatever a node leaves behind, in its session or in one of its own,
+stays below each of them that lives, and none of it can outlive all three.
+
+Source: prctl(2), PR_SET_CHILD_SUBREAPER and PR_SET_NAME; proc_pid_stat(5).
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+
+_PR_SET_NAME = 15
+_PR_SET_CHILD_SUBREAPER = 36
+_LOOK_EVERY = 0.005
+"""Seconds between two looks whether anything is left."""
+END_LIMIT = 5.0
+"""Seconds that killed processes may take to disappear: one in the kernel's hands (a dead disk) may take for ever."""
+
+
+def adopt_orphans() -> None:
+    """Become the parent of every process below this one whose own parent ends."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+
+
+def name_process(name: str) -> None:
+    """Have `top`, `pstree` and `ps -o comm` call this process so, in 15 characters; what it forks is called so, too."""
+    _prctl(_PR_SET_NAME, name.encode()[:15])
+
+
+def _prctl(option: int, value: int | bytes) -> None:
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None, use_errno=True).prctl(option, value, 0, 0, 0)
+
+
+def state_of(pid: int) -> str:
+    """The state of a process as /proc has it: `T` is stopped, `Z` has ended; empty if there is none."""
+    found = _stat(pid)
+    return "" if found is None else found[0]
+
+
+def descendants(root: int) -> list[int]:
+    """The living processes below one, without itself."""
+    return _below(root, is_deep=True)
+
+
+def _below(root: int, *, is_deep: bool) -> list[int]:
+    children: dict[int, list[int]] = {}
+    dead: set[int] = set()
+    for name in os.listdir("/proc"):
+        found = _stat(int(name)) if name.isdecimal() else None
+        if found is not None:
+            state, parent = found
+            children.setdefault(parent, []).append(int(name))
+            if state in "ZX":
+                dead.add(int(name))
+    below: list[int] = []
+    todo = [root]
+    while todo:
+        mine = children.get(todo.pop(), [])
+        below += mine
+        todo += mine if is_deep else []
+    return [pid for pid in below if pid not in dead]
+
+
+def children(root: int) -> list[int]:
+    """The living processes that have one as their parent."""
+    return _below(root, is_deep=False)
+
+
+def environment(pid: int) -> frozenset[bytes]:
+    """The variables with which a program was started, each as `name=value`; of a fork, its parent's."""
+    try:
+        with open(f"/proc/{pid}/environ", "rb") as file:
+            return frozenset(file.read().split(b"\0"))
+    except OSError:
+        return frozenset()
+
+
+def files(pid: int) -> set[str]:
+    """The files that a process has open."""
+    found: set[str] = set()
+    with suppress(OSError):
+        for name in os.listdir(f"/proc/{pid}/fd"):
+            with suppress(OSError):
+                found.add(os.readlink(f"/proc/{pid}/fd/{name}"))
+    return found
+
+
+def _stat(pid: int) -> tuple[str, int] | None:
+    """State and parent of a process."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            state, parent, *_ = file.read().rpartition(b")")[2].split()  # the name before it may contain anything
+    except (OSError, ValueError):
+        return None
+    return state.decode(), int(parent)
+
+
+def end_descendants(root: int, reap: Callable[[], None]) -> bool:
+    """Kill all processes below one until there are none; False if some are still there after `END_LIMIT`.
+
+    Args:
+        reap: Called in between, to wait for this process's own children that have ended.
+    """
+    deadline = time.monotonic() + END_LIMIT
+    empty = 0
+    while empty < 2:  # a process that changes its parent during a look may be missed by it
+        left = descendants(root)
+        for pid in left:
+            kill(pid, signal.SIGKILL)
+        reap()
+        empty = 0 if left else empty + 1
+        if time.monotonic() > deadline:
+            return False
+        if left:
+            time.sleep(_LOOK_EVERY)
+    return True
+
+
+def kill(pid: int, number: signal.Signals) -> None:
+    """Send a signal to a process, if it is still there and, unlike what `sudo` starts, this user's."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)
+
+
+def kill_group(pid: int, number: signal.Signals) -> None:
+    """Send a signal to the process group that a process leads, or to it alone before it has made one."""
+    try:
+        os.killpg(pid, number)
+    except ProcessLookupError:
+        kill(pid, number)
+    except PermissionError:  # nobody in it is this user's any more
+        return
+
+
+def reaped() -> Iterator[tuple[int, int]]:
+    """Children that have ended and had not been waited for: process id, and exit code as `subprocess` gives it."""
+    while True:
+        try:
+            pid, status = os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return
+        if pid == 0:
+            return
+        yield pid, os.waitstatus_to_exitcode(status)
+
+
+def reap_children() -> None:
+    """Wait for children that have ended."""
+    for _ in reaped():
+        continue
