@@ -42,10 +42,8 @@ def pytest_configure(config: pytest.Config) -> None:
     """Tell the modules of tests, which are imported next, and keep what Python has compiled."""
     if config.getoption("--cases"):
         os.environ["GRAPHFLOW_CASES"] = config.getoption("--cases")
-    if sys.dont_write_bytecode:  # each of hundreds of interpreters would compile the whole package
+    if sys.dont_write_bytecode:  # each of hundreds of interpreters would compile the whole package anew
         sys.dont_write_bytecode = False
-        sys.pycache_prefix = str(config.rootpath / ".pytest_cache" / "pycache")
-        os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
         del os.environ["PYTHONDONTWRITEBYTECODE"]
 
 

@@ -22,6 +22,7 @@ async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
+    context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
     node = Node(name, start_parameter_services=False, enable_rosout=False)
     try:
         await core_of(node).start(context)
