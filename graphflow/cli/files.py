@@ -69,7 +69,7 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     try:
         resolved = load(path, args)
         add_interfaces(Path(resolved.root))
-        found = read_interfaces(probe([n.class_path for n in resolved.nodes], resolved.root))
+        found = read_interfaces(probe(resolved.classes(), resolved.root))
         problems = check_plan(resolved, found)
     except GraphFileError as error:
         problems = list(error.problems)

@@ -197,7 +197,14 @@ class _Stream:
             self._logs.show()
         names = ", ".join(event["nodes"])
         reason = f": {event['error']}" if event["error"] else ""
-        output.error(f"{names} died, process {event['pid']}, {event['how']}{reason}\n  its log: {event['log']}")
+        follows = ""
+        if event.get("again") is not None:
+            follows = f"; it is started again in {event['again']:.1f} s"
+        elif event.get("given_up"):
+            follows = f"; given up: {event['given_up']}"
+        output.error(
+            f"{names} died, process {event['pid']}, {event['how']}{reason}{follows}\n  its log: {event['log']}"
+        )
 
     def _greet(self, seconds: float) -> None:
         run = self._run

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
-from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.interface import COMMON_PARAMETERS, EndpointInfo, GroupInfo, Interface, may_make
+from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
+from graphflow.interface import COMMON_PARAMETERS, EndpointKind, GroupInfo, Interface, may_make
 from graphflow.msgs.base import Message
 from graphflow.names import Kind, Resolver, did_you_mean, split
 
@@ -19,12 +21,20 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     """Every problem of a plan, in the order of its file."""
     problems: list[Problem] = []
     for node in plan.nodes:
-        problems += _check_node(node, interfaces)
+        problems += _check_program(node) if node.command else _check_node(node, interfaces)
     problems += _check_optional(plan, interfaces)
+    problems += _check_shared_rules(plan, interfaces)
     problems += _check_types(plan, interfaces)
     for step in plan.steps:
         problems += _check_step(step, plan, interfaces)
     return problems
+
+
+def _check_program(node: PlannedNode) -> Iterator[Problem]:
+    program = node.command[0]
+    if shutil.which(program, path=node.env.get("PATH")) is None:
+        where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
+        yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
 
 
 def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
@@ -96,6 +106,27 @@ def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
             yield Problem(place, f"no node of this graph has a parameter {name!r}{did_you_mean(name, known)}")
 
 
+def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Remaps written for many nodes at once that fit no node of the graph."""
+    fits: dict[Place, bool] = {}
+    shared: dict[Place, tuple[str, list[str]]] = {}
+    for node in plan.nodes:
+        interface = None if node.command else interfaces[node.class_path]
+        if isinstance(interface, Problem):
+            return
+        for rule in node.remaps if interface is not None else ():
+            if rule.is_optional and interface is not None:
+                names = resolver(node)
+                full = {names.full(e.name): e.name for e in interface.endpoints}
+                match = names.full(rule.match)
+                fits[rule.place] = fits.get(rule.place, False) or match in full
+                fits[rule.place] |= may_make(interface.dynamic_names, match)
+                shared.setdefault(rule.place, (rule.match, []))[1].extend(full.values())
+    for place, (match, known) in shared.items():
+        if not fits[place]:
+            yield Problem(place, f"no node of this group has a topic or service {match!r}{did_you_mean(match, known)}")
+
+
 def _class(interface: Interface) -> str:
     return interface.class_path.rpartition(":")[2]
 
@@ -105,7 +136,7 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     full = {names.full(e.name): e.name for e in interface.endpoints}
     for rule in node.remaps:
         match = names.full(rule.match)
-        if match not in full and not may_make(interface.dynamic_names, match):
+        if not rule.is_optional and match not in full and not may_make(interface.dynamic_names, match):
             help_ = did_you_mean(rule.match, full.values())
             yield Problem(
                 rule.place,
@@ -133,8 +164,8 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     """One name, two types: such endpoints never hear each other, which is known here before anything runs."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for node in plan.nodes:
-        interface = interfaces[node.class_path]
-        if isinstance(interface, Problem):
+        interface = interfaces.get(node.class_path)
+        if not isinstance(interface, Interface):
             continue
         names = resolver(node)
         for endpoint in interface.endpoints:
@@ -151,51 +182,79 @@ def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
                 )
 
 
-def offered_services(plan: Plan, interfaces: Interfaces) -> dict[str, str]:
-    """Types by full name of every service that the plan's classes declare."""
+def offered(plan: Plan, interfaces: Interfaces, kind: EndpointKind) -> dict[str, str]:
+    """Types by full name of every endpoint of a kind that the plan's classes declare."""
     found = {}
     for node in plan.nodes:
-        interface = interfaces[node.class_path]
+        interface = interfaces.get(node.class_path)
         if isinstance(interface, Interface):
             names = resolver(node)
-            for endpoint in _services(interface):
-                found[names.resolve(endpoint.name, "service")] = endpoint.type
+            for endpoint in interface.endpoints:
+                if endpoint.kind == kind:
+                    found[names.resolve(endpoint.name, "service")] = endpoint.type
     return found
 
 
-def _services(interface: Interface) -> list[EndpointInfo]:
-    return [e for e in interface.endpoints if e.kind == "service"]
-
-
 def step_type(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> str | None:
-    """The service type a step calls, as far as the file or the classes say."""
-    return step.type or offered_services(plan, interfaces).get(step.call)
+    """The type of the service or action that a step needs, as far as the file or the classes say."""
+    kind = _SERVERS.get(step.do)
+    return None if kind is None else step.type or offered(plan, interfaces, kind).get(step.target)
+
+
+_SERVERS: dict[Deed, EndpointKind] = {"call": "service", "goal": "action"}
 
 
 def _check_step(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    if step.do == "set":
+        yield from _check_set(step, plan, interfaces)
+        return
+    kind = _SERVERS.get(step.do)
+    if kind is None:
+        return
     from graphflow.msgs import registry
 
+    what = "action" if step.do == "goal" else "service"
     type_ = step_type(step, plan, interfaces)
     if type_ is None:
-        imported = [i for i in interfaces.values() if isinstance(i, Interface)]
-        if len(imported) < len(interfaces) or any(may_make(i.dynamic_names, step.call) for i in imported):
+        if _may_have_more(plan, interfaces, step.target):
             return
-        offered = offered_services(plan, interfaces)
+        near = did_you_mean(step.target, offered(plan, interfaces, kind))
         yield Problem(
-            step.call_place,
-            f"no node of this graph offers the service {step.call}{did_you_mean(step.call, offered)}"
-            " (for one outside the graph add type: package/srv/Name)",
+            step.target_place,
+            f"no node of this graph offers the {what} {step.target}{near}"
+            f" (for one outside the graph add type: package/{'action' if step.do == 'goal' else 'srv'}/Name)",
         )
         return
     if not type_:  # it is offered, but the source does not show its type
         return
     try:
-        request = registry.service_schema(registry.full_name(type_)).request
-        message_class = registry.interface_class(request.name)
+        full = registry.full_name(type_)
+        sent = f"{full}_Goal" if step.do == "goal" else registry.service_schema(full).request.name
+        message_class = registry.interface_class(sent)
     except GraphflowError as error:
-        yield Problem(step.call_place, str(error))
+        yield Problem(step.target_place, str(error))
         return
     yield from _check_request(step, message_class)
+
+
+def _may_have_more(plan: Plan, interfaces: Interfaces, name: str) -> bool:
+    """Whether a graph may offer more than its classes declare: by programs, and by what they make at run time."""
+    imported = [i for i in interfaces.values() if isinstance(i, Interface)]
+    is_known = len(imported) == len(interfaces) and not any(node.command for node in plan.nodes)
+    return not is_known or any(may_make(i.dynamic_names, name) for i in imported)
+
+
+def _check_set(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    node = next((node for node in plan.nodes if node.name == step.target and not node.command), None)
+    if node is None:
+        if not any(node.command for node in plan.nodes):
+            near = did_you_mean(step.target, [n.name for n in plan.nodes])
+            yield Problem(step.target_place, f"there is no node {step.target}{near}")
+        return
+    interface = interfaces[node.class_path]
+    if isinstance(interface, Interface):
+        settings = {name: Setting(value, step.request_place) for name, value in step.request.items()}
+        yield from _check_params(replace(node, params=settings), interface)
 
 
 def _check_request(step: PlannedStep, message_class: type[Message]) -> Iterator[Problem]:

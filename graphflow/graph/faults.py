@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Collection, Sequence
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import source
-from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, StepSpec, keys_of
+from graphflow.graph.model import keys_of
 from graphflow.graph.source import Source
 from graphflow.names import did_you_mean, nearest
 
-_MODELS: dict[str, type[BaseModel]] = {"args": Arg, "nodes": NodeSpec, "steps": StepSpec}
+M = TypeVar("M", bound=BaseModel)
 
 
 class Problems(list[Problem]):
@@ -25,8 +25,9 @@ class Problems(list[Problem]):
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
-        if place not in self._unknown:
-            self.append(Problem(place, message))
+        problem = Problem(place, message)
+        if place not in self._unknown and problem not in self:  # each round of a loop has the same
+            self.append(problem)
 
     def add_unknown(self, place: Place, message: str) -> None:
         """Add a problem that leaves the value unknown: further reports about it would only confuse."""
@@ -39,10 +40,10 @@ class Problems(list[Problem]):
             raise GraphFileError(self)
 
 
-def validated(src: Source, problems: Problems) -> GraphFile | None:
-    """The model of a file; None, with problems added, where its keys or types are wrong."""
+def validated(model: type[M], src: Source, problems: Problems) -> M | None:
+    """The model of a file or block; None, with problems added, where its keys or types are wrong."""
     try:
-        return GraphFile.model_validate(src.data)
+        return model.model_validate(src.data)
     except ValidationError as error:
         faults = [(_written_path(src, fault), fault) for fault in error.errors()]
     wanted: dict[source.Path, list[str]] = {}
@@ -53,10 +54,10 @@ def validated(src: Source, problems: Problems) -> GraphFile | None:
             wanted.setdefault(path, []).append(_wanted(fault))
     for path, fault in faults:
         if fault["type"] == "missing":
-            if not _misspelt(str(path[-1]), path[:-1], faults):
+            if not _misspelt(model, str(path[-1]), path[:-1], faults):
                 problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing")
         elif fault["type"] == "extra_forbidden":
-            problems.add(src.key_place(path), _unknown_key(path))
+            problems.add(src.key_place(path), unknown_key(str(path[-1]), _known_keys(model, path)))
         elif fault["type"] == "value_error":
             problems.add(src.place(path), str(fault["ctx"]["error"]))
         elif path in wanted:
@@ -73,20 +74,32 @@ def _written_path(src: Source, fault: Any) -> source.Path:
     return (*path, fault["loc"][-1]) if fault["type"] == "missing" else path
 
 
-def _misspelt(key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
+def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
     """Whether a missing key is in fact there, with a typo that is reported anyway."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
-    return any(nearest(word, _known_keys((*above, word))) == key for word in unknown)
+    return any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
 
 
-def _known_keys(path: source.Path) -> list[str]:
-    if len(path) == 5 and path[2] == "concurrency":
-        return keys_of(GroupSpec)
-    return keys_of(_MODELS[str(path[0])]) if len(path) == 3 and path[0] in _MODELS else keys_of(GraphFile)
+def _known_keys(model: type[BaseModel], path: source.Path) -> list[str]:
+    """The keys of the model that a path leads to, without its last part."""
+    found: Any = model
+    for part in path[:-1]:
+        if _is_model(found):
+            fields = {field.alias or name: field.annotation for name, field in found.model_fields.items()}
+            found = fields.get(str(part))
+        else:  # a mapping or a list: what it holds
+            found = get_args(found)[-1] if get_args(found) else None
+        if get_origin(found) not in (dict, list):
+            found = next(filter(_is_model, get_args(found)), found)
+    return keys_of(found) if _is_model(found) else []
 
 
-def _unknown_key(path: source.Path) -> str:
-    key, known = str(path[-1]), _known_keys(path)
+def _is_model(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
+
+
+def unknown_key(key: str, known: Collection[str]) -> str:
+    """What to say of a key that is not known, and which was probably meant."""
     head = key.partition(":")[0]
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"
@@ -113,11 +126,10 @@ def _wanted(fault: Any) -> str:
 def _wrong_type(path: source.Path, wanted: list[str], value: Any) -> str:
     if "a number" in wanted:
         wanted = [w for w in wanted if w != "a whole number"]
-    where = ".".join(str(p) for p in path)
+    parts = path[2:] if path[0] in ("nodes", "steps") and len(path) > 2 else path[-1:] if path[0] == "nodes" else path
+    where = ".".join(str(p) for p in parts)
     text = " or ".join(dict.fromkeys(wanted))
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
-    if len(path) == 2 and ":" in str(path[1]):
-        return f"the name {path[1]!r} has a colon in it; write a space after the colon that ends a key"
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
 
 
@@ -134,6 +146,11 @@ _EXAMPLES: dict[source.Path, str] = {
     ("nodes", "", "after"): "after: /talker",
     ("nodes", "", "concurrency"): "concurrency: {motion: [control]}",
     ("nodes", "", "concurrency", ""): "motion: [control], or motion: {handlers: [control], limit: 2}",
+    ("nodes", "", "command"): "command: [rviz2, -d, robot.rviz]",
+    ("nodes", "", "restart"): "restart: on_failure, or restart: {policy: always, delay: 1.0}",
+    ("group",): "group: {namespace: robot1, nodes: {talker: {class: nodes.talker:Talker}}}",
+    ("for",): "for: {var: i, in: 1..3, nodes: {/talker$(var i): {class: nodes.talker:Talker}}}",
+    ("include",): "include: base.yaml, or include: {file: base.yaml, args: {rate: 2.0}}",
     ("steps",): "steps: {spawn: {call: /spawn}}",
     ("steps", ""): "{call: /spawn}",
     ("steps", "", "request"): "request: {x: 1.0}",

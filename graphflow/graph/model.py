@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, get_args
 
 from pydantic import (
@@ -18,19 +19,25 @@ from pydantic import (
 )
 
 from graphflow.interface import DeadlockPolicy, WhenFull
+from graphflow.machines.restarts import BACKOFF, POLICIES
 
+FROM_GROUPS = " of groups"
+"""Ends the keys under which a node has what its groups give it; no file can say them."""
+
+NO_CLASS = "-"
+"""Stands for the class of a foreign program, which has none."""
 _CLASS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*\Z")
 
 
 def _class_path(text: str) -> str:
-    if not _CLASS.match(text):
+    if text != NO_CLASS and not _CLASS.match(text):
         raise ValueError(f"{text!r} is not a class; write package.module:Class, for example nodes.talker:Talker")
     return text
 
 
-def _service_type(text: str) -> str:
-    if not re.match(r"[a-z]\w*(/srv)?/[A-Z]\w*\Z", text):
-        raise ValueError(f"{text!r} is not a service type; write package/srv/Name")
+def _interface_type(text: str) -> str:
+    if not re.match(r"[a-z]\w*(/(srv|action))?/[A-Z]\w*\Z", text):
+        raise ValueError(f"{text!r} is not a service type; write package/srv/Name, or package/action/Name for a goal")
     return text
 
 
@@ -65,9 +72,51 @@ def _call_timeout(value: Any) -> Any:
     return value
 
 
+def _arg_type(value: str) -> str:
+    if value not in ARG_TYPES:
+        raise ValueError(f"type: expected one of {', '.join(ARG_TYPES)}, got {value!r}")
+    return value
+
+
+def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
+    def checked(value: str) -> str:
+        if value not in words:
+            raise ValueError(f"{key}: expected one of {', '.join(words)}, got {value!r}")
+        return value
+
+    return checked
+
+
+def _after(value: Any) -> Any:
+    """As a mapping from names to what is waited for; a word alone waits for the usual."""
+    if isinstance(value, str):
+        return {value: ""}
+    if isinstance(value, list) and all(isinstance(name, str) for name in value):
+        return dict.fromkeys(value, "")
+    if not isinstance(value, dict) or not all(word in AFTER for word in value.values()):
+        raise ValueError(f"after: expected a name, a list of names, or NAME: {'|'.join(AFTER)}, got {value!r}")
+    return value
+
+
 Scalar = StrictBool | StrictInt | StrictFloat | StrictStr
-ParamValue = Scalar | list[Scalar]
 EnvValue = StrictStr | StrictInt | StrictFloat
+Condition = Any
+"""True, false, or a text that is one of them once substitutions are made."""
+
+ARG_TYPES: Mapping[str, tuple[tuple[type, ...], str]] = {
+    "bool": ((bool,), "true or false"),
+    "int": ((int,), "a whole number"),
+    "float": ((int, float), "a number"),
+    "str": ((str,), "text"),
+    "list": ((list,), "a list"),
+}
+"""What `type:` of an argument may say: Python's types, and words for them."""
+AFTER = ("ready", "exited", "done")
+"""What can be waited for: a node that is ready, one that has ended in any way, one that has ended well."""
+ON_EXIT = ("ignore", "restart", "shutdown")
+STRATEGIES = ("one_for_one", "rest_for_one", "one_for_all")
+LOG_LEVELS = ("debug", "info", "warn", "error", "fatal")
+After = Annotated[Any, AfterValidator(_after)]
 
 
 class _Model(BaseModel):
@@ -91,6 +140,7 @@ class Arg(_Model):
     default: Any = None
     doc: StrictStr = ""
     unit: StrictStr = ""
+    type: Annotated[StrictStr, AfterValidator(_arg_type)] | None = None
     choices: list[Scalar] = []
 
 
@@ -108,28 +158,117 @@ class GroupSpec(_Model):
         return {"handlers": data} if isinstance(data, (list, str)) else data
 
 
-class NodeSpec(_Model):
-    """One node of the graph. Its key is its name, absolute or relative to `namespace`."""
+class RestartSpec(_Model):
+    """When a node that has ended is started again; written as one word when nothing else needs saying."""
 
-    class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
+    policy: Annotated[StrictStr, AfterValidator(_one_of("restart", POLICIES))] = "on_failure"
+    delay: StrictFloat | StrictInt = Field(BACKOFF.delay, gt=0)
+    max_delay: StrictFloat | StrictInt = Field(BACKOFF.max_delay, gt=0)
+    max_restarts: StrictInt = Field(BACKOFF.max_restarts, ge=1)
+    within: StrictFloat | StrictInt = Field(BACKOFF.within, gt=0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_word(cls, data: Any) -> Any:
+        return {"policy": data} if isinstance(data, str) else data
+
+
+class _Settings(_Model):
+    """What a node, or a group for all its nodes, may say."""
+
     namespace: StrictStr = ""
     params: dict[str, Any] = {}
-    params_file: StrictStr | list[StrictStr] = []
     remap: dict[str, StrictStr] = {}
-    process: StrictStr = ""
     env: dict[str, EnvValue] = {}
-    after: StrictStr | list[StrictStr] = []
+    restart: RestartSpec | None = None
+    on_exit: Annotated[StrictStr, AfterValidator(_one_of("on_exit", ON_EXIT))] | None = None
+    critical: StrictBool | None = None
+    log_level: Annotated[StrictStr, AfterValidator(_one_of("log_level", LOG_LEVELS))] | None = None
+    if_: Condition = Field(None, alias="if")
+    unless: Condition = None
+
+
+OF_NODES = ("class", "params", "params_file", "remap", "concurrency", "process", "log_level")
+"""Keys that a foreign program cannot have."""
+_HELP = {
+    "class": "write class: or command:, not both",
+    "params": "pass it words: command: [PROGRAM, --ros-args, -p, NAME:=VALUE]",
+    "remap": "pass it words: command: [PROGRAM, --ros-args, -r, FROM:=TO]",
+}
+
+
+class NodeSpec(_Settings):
+    """One node of the graph, or a foreign program. Its key is its name, absolute or relative to `namespace`."""
+
+    class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
+    command: list[StrictStr | StrictInt | StrictFloat] = []
+    template: StrictStr = ""
+    params_file: StrictStr | list[StrictStr] = []
+    process: StrictStr = ""
+    after: After = {}
     concurrency: dict[str, GroupSpec] = {}
+    shared_params: dict[str, Any] = Field({}, alias="params of groups")
+    shared_remap: dict[str, StrictStr] = Field({}, alias="remap of groups")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _program(cls, data: Any) -> Any:
+        """A program has no class, and none of what only a node can be given."""
+        if not isinstance(data, dict) or data.get("command") is None:
+            return data
+        wrong = [key for key in OF_NODES if data.get(key) is not None]
+        if wrong:
+            raise ValueError(f"{wrong[0]}: is for nodes, and this is a program; {_HELP.get(wrong[0], 'remove it')}")
+        return {**{k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}, "class": NO_CLASS}
 
 
 class StepSpec(_Model):
-    """Something done once, after nodes and other steps: a service call."""
+    """Something done once, after nodes and other steps: a service call, parameters set, a goal, a wait."""
 
-    call: StrictStr
-    type: Annotated[StrictStr, AfterValidator(_service_type)] | None = None
+    call: StrictStr = ""
+    set_: StrictStr = Field("", alias="set")
+    goal: StrictStr = ""
+    wait: StrictStr = ""
+    type: Annotated[StrictStr, AfterValidator(_interface_type)] | None = None
     request: dict[str, Any] = {}
-    after: StrictStr | list[StrictStr] = []
+    params: dict[str, Any] = {}
+    after: After = {}
     timeout: StrictFloat | StrictInt = Field(10.0, gt=0)
+    if_: Condition = Field(None, alias="if")
+    unless: Condition = None
+
+
+class GroupBlock(_Settings):
+    """Nodes and steps that share a namespace and settings."""
+
+    nodes: dict[str, Any] = {}
+    steps: dict[str, Any] = {}
+    group: Any = None
+    for_: Any = Field(None, alias="for")
+    include: Any = None
+
+
+class ForBlock(GroupBlock):
+    """A group that is there once for each of several values."""
+
+    var: StrictStr
+    in_: Any = Field(alias="in")
+
+
+class IncludeBlock(_Model):
+    """Another graph file as a part of this one; written as its name when nothing else needs saying."""
+
+    file: StrictStr
+    args: dict[str, Any] = {}
+    override: dict[str, Any] = {}
+    namespace: StrictStr = ""
+    if_: Condition = Field(None, alias="if")
+    unless: Condition = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
 
 
 class GraphFile(_Model):
@@ -138,19 +277,26 @@ class GraphFile(_Model):
     name: Annotated[StrictStr, AfterValidator(_graph_name)] | None = None
     domain: StrictInt | None = Field(None, ge=0)
     args: dict[str, Arg] = {}
-    nodes: dict[str, NodeSpec]
+    nodes: dict[str, NodeSpec] = {}
     steps: dict[str, StepSpec] = {}
-    include: StrictStr | None = None
+    group: GroupBlock | list[GroupBlock] = []
+    for_: ForBlock | list[ForBlock] = Field([], alias="for")
+    templates: dict[str, Any] = {}
+    include: IncludeBlock | list[IncludeBlock] = []
     override: dict[str, Any] = {}
     deadlock: Annotated[StrictStr, AfterValidator(_policy)] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
+    strategy: Annotated[StrictStr, AfterValidator(_one_of("strategy", STRATEGIES))] = "one_for_one"
     console: Any = None
     """Read by `graph.console`."""
 
 
-TOP_KEYS = tuple(GraphFile.model_fields)
-
-
 def keys_of(model: type[BaseModel]) -> list[str]:
     """The keys a model knows, as written in a file."""
-    return [f.alias or name for name, f in model.model_fields.items()]
+    keys = [f.alias or name for name, f in model.model_fields.items()]
+    return [key for key in keys if not key.endswith(FROM_GROUPS)]
+
+
+TOP_KEYS = tuple(keys_of(GraphFile))
+BLOCKS = ("nodes", "steps", "group", "for", "include")
+"""Keys of a file, group or loop under which nodes and steps are."""

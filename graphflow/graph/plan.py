@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import shlex
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from graphflow.errors import Place
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
 from graphflow.machines.regrouping import Regrouping
+from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Remap
+
+Deed = Literal["call", "set", "goal", "wait"]
+"""What a step does: a service call, parameters set, an action's goal to its end, a wait for a name to be there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +34,8 @@ class Rule:
     match: str
     replacement: str
     place: Place
+    is_optional: bool = False
+    """Whether nodes without such a name ignore it, since it was written for many nodes at once."""
 
     def remap(self) -> Remap:
         return Remap(self.match, self.replacement, source=str(self.place))
@@ -68,10 +75,17 @@ class PlannedNode:
     process: str = ""
     """Nodes with the same word share a process; empty for a process of its own."""
     env: dict[str, str] = field(default_factory=dict)
-    after: tuple[str, ...] = ()
-    """Full names of nodes, or names of steps, that come first."""
+    after: dict[str, str] = field(default_factory=dict)
+    """Full names of nodes, or names of steps, that come first, and whether they must be `ready`, `exited` or `done`."""
     concurrency: dict[str, PlannedGroup] = field(default_factory=dict)
     """What differs from the groups the class declares, by group name."""
+    command: tuple[str, ...] = ()
+    """A foreign program with its words, in place of a class."""
+    restart: Backoff = BACKOFF
+    on_exit: str = "ignore"
+    critical: bool = False
+    """Whether the graph goes down with it when it fails."""
+    log_level: str = ""
 
     def regrouping(self, file: str) -> Regrouping:
         """What the graph file says of the node's groups, and where.
@@ -87,19 +101,20 @@ class PlannedNode:
 
 @dataclass(frozen=True, slots=True)
 class PlannedStep:
-    """A service call made once."""
+    """Something done once."""
 
     name: str
-    call: str
-    """Full name of the service."""
+    do: Deed
+    target: str
+    """Full name of the service, node or action, or of what is waited for."""
     place: Place
-    call_place: Place
+    target_place: Place
     request_place: Place
     request: dict[str, Any] = field(default_factory=dict)
     field_places: dict[str, Place] = field(default_factory=dict)
     """Where each field of the request was written."""
     type: str | None = None
-    after: tuple[str, ...] = ()
+    after: dict[str, str] = field(default_factory=dict)
     timeout: float = 10.0
 
 
@@ -118,8 +133,14 @@ class Plan:
     deadlock: DeadlockPolicy = "raise"
     call_timeout: float | None = CALL_TIMEOUT
     """Seconds that calls without a timeout of their own wait; None for ever."""
+    strategy: str = "one_for_one"
+    """What is started again with a process that has failed: it alone, `rest_for_one` or `one_for_all`."""
     console: dict[str, Any] | None = None
     """The windows and panes that a console opens with, as `graph.console` reads them."""
+
+    def classes(self) -> list[str]:
+        """The classes of the nodes, each once; foreign programs have none."""
+        return sorted({node.class_path for node in self.nodes if not node.command})
 
     def processes(self) -> dict[str, list[PlannedNode]]:
         """Nodes by the process they share, in the order of the file; a process of one node has the node's name."""
@@ -151,15 +172,24 @@ class Plan:
             yield f"deadlock {self.deadlock}"
         if self.call_timeout != CALL_TIMEOUT:
             yield f"call_timeout {'never' if self.call_timeout is None else self.call_timeout}"
+        if self.strategy != "one_for_one":
+            yield f"strategy {self.strategy}"
         for name, value in self.args.items():
             yield f"  {name}:={value}"
         for node in self.nodes:
             yield f"{node.name}"
-            yield f"  class    {node.class_path}"
+            yield f"  command  {shlex.join(node.command)}" if node.command else f"  class    {node.class_path}"
             if node.process:
                 yield f"  process  {node.process}"
-            if node.after:
-                yield f"  after    {', '.join(node.after)}"
+            yield from _after_line(node.after)
+            if node.restart != BACKOFF:
+                yield f"  restart  {node.restart}"
+            if node.on_exit != "ignore":
+                yield f"  on_exit  {node.on_exit}"
+            if node.critical:
+                yield "  critical"
+            if node.log_level:
+                yield f"  logs     from {node.log_level}"
             for name, setting in node.params.items():
                 yield f"  param    {name} = {setting.value!r}  # {setting.place}"
             for rule in node.remaps:
@@ -170,20 +200,27 @@ class Plan:
                 yield f"  env      {name}={value}"
         for step in self.steps:
             yield f"step {step.name}"
-            if step.after:
-                yield f"  after    {', '.join(step.after)}"
-            yield f"  call     {step.call} {step.request}"
+            yield from _after_line(step.after)
+            yield f"  {step.do:8} {step.target} {step.request if step.do != 'wait' else ''}".rstrip()
+
+
+def _after_line(after: Mapping[str, str]) -> Iterator[str]:
+    usual = {True: "ready", False: "done"}  # for nodes, whose names begin with a slash, and for steps
+    names = [n if word == usual[n.startswith("/")] else f"{n} ({word})" for n, word in after.items()]
+    if names:
+        yield f"  after    {', '.join(names)}"
 
 
 def node_from_json(data: dict[str, Any]) -> PlannedNode:
     """A node from its part of `Plan.to_json`."""
     return PlannedNode(
-        **{k: v for k, v in data.items() if k in ("name", "class_path", "process", "env")},
+        **{k: data[k] for k in ("name", "class_path", "process", "env", "after", "on_exit", "critical", "log_level")},
         place=Place(*data["place"]),
         class_place=Place(*data["class_place"]),
         params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
-        remaps=tuple(Rule(r["match"], r["replacement"], Place(*r["place"])) for r in data["remaps"]),
-        after=tuple(data["after"]),
+        remaps=tuple(Rule(**{**rule, "place": Place(*rule["place"])}) for rule in data["remaps"]),
+        command=tuple(data["command"]),
+        restart=Backoff(**data["restart"]),
         concurrency={name: _group(g) for name, g in data["concurrency"].items()},
     )
 
@@ -194,6 +231,6 @@ def _group(data: dict[str, Any]) -> PlannedGroup:
 
 
 def _step(data: dict[str, Any]) -> PlannedStep:
-    places = {k: Place(*data[k]) for k in ("place", "call_place", "request_place")}
+    places = {k: Place(*data[k]) for k in ("place", "target_place", "request_place")}
     fields = {name: Place(*place) for name, place in data["field_places"].items()}
-    return PlannedStep(**{**data, **places, "field_places": fields, "after": tuple(data["after"])})
+    return PlannedStep(**{**data, **places, "field_places": fields})

@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from graphflow.errors import GraphFileError, InvalidName, Place
 from graphflow.graph import params_file, source
 from graphflow.graph.console import console_section
+from graphflow.graph.expand import Expansion
 from graphflow.graph.faults import Problems, example, validated
-from graphflow.graph.include import merged
-from graphflow.graph.model import Arg, GraphFile, GroupSpec, NodeSpec, keys_of
+from graphflow.graph.model import BLOCKS, FROM_GROUPS, GraphFile, GroupSpec, NodeSpec, RestartSpec
+from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.source import Source
-from graphflow.graph.substitutions import SubstitutionError, Substitutions
+from graphflow.graph.tree import source_of, tree
 from graphflow.interface import CALL_TIMEOUT, GroupChange
-from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
+from graphflow.machines.restarts import BACKOFF, Backoff
+from graphflow.names import did_you_mean, expand, split
 
 
 def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
@@ -43,20 +44,22 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         what = "the file is empty; " if src.data is None else ""
         problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{example('nodes')}")
         problems.raise_any()
-    src, folders = merged(src, path, problems.add)
-    args = _arguments(src, given, problems)
-    substitutions = {file: Substitutions(args, str(folder), env) for file, folder in folders.items()}
-    src = _substituted(src, substitutions, problems)
-    model = validated(src, problems)
+    expansion = Expansion(given, env, problems)
+    top = tree(src)
+    expansion.file(top, path)
+    if not problems and not top.entries.keys() & {*BLOCKS}:
+        problems.add(top.place, "the key 'nodes' is missing")
+    src = source_of(expansion.whole(top))
+    model = validated(GraphFile, src, problems)
     if model is None:
         problems.raise_any()
     assert model is not None
-    files = _ParamsFiles(src, folders, problems)
+    files = _ParamsFiles(src, expansion.folders, problems)
     nodes = _nodes(src, model, files, problems)
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
-    ordered_nodes, ordered_steps = _order(src, model, nodes, steps, problems)
+    ordered_nodes, ordered_steps = ordered(src, nodes, steps, expansion, problems)
     console = console_section(src, problems.add)
     problems.raise_any()
     return Plan(
@@ -65,91 +68,13 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
         root=str(project_root(path)),
         nodes=tuple(ordered_nodes),
         steps=tuple(ordered_steps),
-        args=args,
+        args=expansion.arguments.values,
         domain=model.domain,
         deadlock=model.deadlock,  # type: ignore[arg-type]  # its validator has looked
         call_timeout={None: CALL_TIMEOUT, "never": None}.get(model.call_timeout, model.call_timeout),
+        strategy=model.strategy,
         console=console,
     )
-
-
-def _arguments(src: Source, given: Sequence[str], problems: Problems) -> dict[str, Any]:
-    declared = src.data.get("args") or {}
-    if not isinstance(declared, dict):
-        return {}
-    values: dict[str, Any] = {}
-    for word in given:
-        name, arrow, text = word.partition(":=")
-        if not arrow or not name:
-            problems.add(Place("command line"), f"{word!r}: an argument is written name:=value")
-        elif name not in declared:
-            help_ = did_you_mean(name, declared) or "; the file declares none under args:"
-            problems.add(Place("command line"), f"there is no argument {name!r}{help_}")
-        else:
-            values[name] = _given(text, declared[name])
-    for name, spec in declared.items():
-        place = src.key_place(("args", name))
-        has_default = isinstance(spec, dict) and "default" in spec
-        if name not in values and has_default:
-            values[name] = spec["default"]
-        elif name not in values:
-            values[name] = ""
-            # What is wrong with the declaration itself is reported when it is validated.
-            if spec is None or (isinstance(spec, dict) and spec.keys() <= set(keys_of(Arg))):
-                problems.add(place, f"argument {name!r} has no default: give it as {name}:=VALUE")
-        choices = spec.get("choices") if isinstance(spec, dict) else None
-        if isinstance(choices, list) and choices and values[name] not in choices:
-            problems.add(
-                place, f"argument {name!r} is {values[name]!r}, but must be one of {', '.join(map(str, choices))}"
-            )
-    return values
-
-
-def _given(text: str, spec: Any) -> Any:
-    """An argument's value from the command line: YAML, but text where the default is text."""
-    try:
-        value = source.read(text, "command line").data
-    except GraphFileError:
-        return text
-    wants_text = isinstance(spec, dict) and isinstance(spec.get("default"), str)
-    return text if wants_text and not isinstance(value, str) else value
-
-
-def _substituted(src: Source, substitutions: Mapping[str, Substitutions], problems: Problems) -> Source:
-    """The same source with every substitution made, in keys too; places move with the values."""
-    places, keys = {}, {}
-
-    def one(value: Any, place: Place) -> Any:
-        try:
-            return substitutions[place.file].apply(value)
-        except SubstitutionError as error:
-            problems.add_unknown(place, str(error))
-            return value
-
-    def walk(value: Any, old: source.Path, new: source.Path) -> Any:
-        places[new] = src.place(old)
-        if old in src.keys:
-            keys[new] = src.keys[old]
-        if isinstance(value, dict):
-            result: dict[str, Any] = {}
-            for key, item in value.items():
-                name = str(one(key, src.key_place((*old, key))))
-                if name in result:
-                    problems.add(src.key_place((*old, key)), f"the key {key!r} becomes {name!r}, which is already here")
-                result[name] = walk(item, (*old, key), (*new, name))
-            return result
-        if isinstance(value, list):
-            return [walk(item, (*old, i), (*new, i)) for i, item in enumerate(value)]
-        return one(value, src.place(old))
-
-    # Arguments are what substitutions are made from: their section stays as it is.
-    data = {k: (v if k == "args" else walk(v, (k,), (k,))) for k, v in src.data.items()}
-    places[()] = src.place(())
-    for path, place in src.places.items():
-        if path[:1] == ("args",):
-            places[path] = place
-    keys.update({path: place for path, place in src.keys.items() if path[:1] == ("args",) or len(path) == 1})
-    return Source(data, places, keys)
 
 
 class _ParamsFiles:
@@ -197,34 +122,47 @@ class _ParamsFiles:
 
 
 def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: Problems) -> dict[str, PlannedNode]:
-    """The nodes by their keys in the file."""
+    """The nodes by full name."""
     nodes: dict[str, PlannedNode] = {}
-    taken: dict[str, Place] = {}
-    for key, spec in model.nodes.items():
-        place = src.key_place(("nodes", key))
-        name = _node_name(src, key, spec, problems)
-        if name is None:
-            continue
-        if name in taken:
-            problems.add(place, f"there are two nodes {name}; the other is on line {taken[name].line}")
-        taken[name] = place
-        base: source.Path = ("nodes", key)
-        nodes[key] = PlannedNode(
+    for name, spec in model.nodes.items():
+        base: source.Path = ("nodes", name)
+        nodes[name] = PlannedNode(
             name=name,
-            class_path=spec.class_,
-            place=place,
-            class_place=src.place((*base, "class")),
-            params=files.params(spec, (*base, "params_file"), name)
-            | params_file.flatten(src, spec.params, (*base, "params"), problems),
-            remaps=_remaps(src, spec.remap, (*base, "remap"), name, problems),
+            class_path="" if spec.command else spec.class_,
+            command=tuple(str(word) for word in spec.command),
+            place=src.key_place(base),
+            class_place=src.place((*base, "command" if spec.command else "class")),
+            params=files.params(spec, (*base, "params_file"), name) | _params(src, spec, base, problems),
+            remaps=_remaps(src, spec, base, name, problems),
             process=spec.process,
             env={k: str(v) for k, v in spec.env.items()},
-            after=_names(spec.after),
+            after=spec.after,
             concurrency=_concurrency(src, spec.concurrency, (*base, "concurrency"), problems),
+            restart=_restart(src, spec, base, problems),
+            on_exit=spec.on_exit or "ignore",
+            critical=bool(spec.critical),
+            log_level=spec.log_level or "",
         )
-    if not model.nodes:
-        problems.add(src.place(("nodes",)), "there is no node")
+    if not model.nodes and not problems:
+        problems.add(src.place(("nodes",)), f"there is no node{example('nodes')}")
     return nodes
+
+
+def _params(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) -> dict[str, Setting]:
+    """Parameters of a node's groups, which it need not have, and its own."""
+    shared = params_file.flatten(src, spec.shared_params, (*base, f"params{FROM_GROUPS}"), problems)
+    own = params_file.flatten(src, spec.params, (*base, "params"), problems)
+    return {name: replace(setting, is_optional=True) for name, setting in shared.items()} | own
+
+
+def _restart(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) -> Backoff:
+    given = spec.restart
+    if spec.on_exit == "restart":
+        if given is not None and given.policy != "always":
+            text = f"on_exit: restart contradicts restart: {given.policy}; leave one of them out"
+            problems.add(src.place((*base, "on_exit")), text)
+        given = RestartSpec.model_validate({**(given.model_dump() if given else {}), "policy": "always"})
+    return BACKOFF if given is None else Backoff(**given.model_dump())
 
 
 def _concurrency(
@@ -247,26 +185,6 @@ def _concurrency(
     return found
 
 
-def _node_name(src: Source, key: str, spec: NodeSpec, problems: Problems) -> str | None:
-    """The full name of a node; None when it has no legal one."""
-    place = src.key_place(("nodes", key))
-    try:
-        namespace = check_namespace(spec.namespace)
-    except InvalidName as error:
-        problems.add(src.place(("nodes", key, "namespace")), str(error))
-        return None
-    if key.startswith("/") and spec.namespace:
-        problems.add(
-            src.place(("nodes", key, "namespace")),
-            f"{key} is a full name, so a namespace would have no effect; name the node {split(key)[1]}, or remove this",
-        )
-    try:
-        return check_full_name(join(namespace, key), "node name")
-    except InvalidName as error:
-        problems.add(place, str(error))
-        return None
-
-
 def _check_env(nodes: Iterable[PlannedNode], problems: Problems) -> None:
     """A process has one environment: nodes that share it must not contradict each other."""
     seen: dict[tuple[str, str], tuple[str, str]] = {}
@@ -278,122 +196,72 @@ def _check_env(nodes: Iterable[PlannedNode], problems: Problems) -> None:
                 problems.add(node.place, text)
 
 
-def _remaps(
-    src: Source, remap: Mapping[str, str], path: source.Path, node: str, problems: Problems
-) -> tuple[Rule, ...]:
-    rules = []
+def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems: Problems) -> tuple[Rule, ...]:
+    """A node's own rules, and after them those of its groups, which need not fit it."""
     namespace, name = split(node)
-    for match, replacement in remap.items():
-        place = src.key_place((*path, match))
-        try:
-            if match.startswith("__"):
-                raise InvalidName(
-                    f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
-                )
-            expand(match, namespace, name)
-            expand(replacement, namespace, name)
-        except InvalidName as error:
-            problems.add(place, str(error))
-            continue
-        rules.append(Rule(match, replacement, place))
+    rules: list[Rule] = []
+    for key, remap in (("remap", spec.remap), (f"remap{FROM_GROUPS}", spec.shared_remap)):
+        for match, replacement in remap.items():
+            place = src.key_place((*base, key, match))
+            try:
+                if match.startswith("__"):
+                    raise InvalidName(
+                        f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
+                    )
+                expand(match, namespace, name)
+                expand(replacement, namespace, name)
+            except InvalidName as error:
+                problems.add(place, str(error))
+                continue
+            rules.append(Rule(match, replacement, place, is_optional=key != "remap"))
     return tuple(rules)
+
+
+_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": ""}
+"""What a step does, and the key for what it sends."""
 
 
 def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedStep]:
     steps = []
     for name, spec in model.steps.items():
-        call_place = src.place(("steps", name, "call"))
-        try:
-            call = expand(spec.call, "/", "graph")
-        except InvalidName as error:
-            problems.add(call_place, str(error))
+        at: source.Path = ("steps", name)
+        written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait}
+        deeds = [deed for deed, target in written.items() if target]
+        if len(deeds) != 1:
+            what = " and ".join(deeds) or "none of them"
+            problems.add(src.key_place(at), f"a step has one of {', '.join(_STEPS)}; {name!r} has {what}")
             continue
+        [deed] = deeds
+        for key, value in (("request", spec.request), ("params", spec.params)):
+            if value and key != _STEPS[deed]:
+                problems.add(src.key_place((*at, key)), f"{key}: does not go with {deed}:{_goes_with(deed)}")
+        key = _STEPS[deed] or deed
+        sent = {n: s.value for n, s in params_file.flatten(src, spec.params, (*at, key), problems).items()}
+        if deed == "set" and not sent:
+            text = f"there is nothing to set; write params: {{NAME: VALUE}} beside set: {spec.set_}"
+            problems.add(src.key_place(at), text)
+        fields = (src.key_place((*at, key, field)) for field in spec.request)
         steps.append(
             PlannedStep(
                 name=name,
-                call=call,
-                place=src.key_place(("steps", name)),
-                call_place=call_place,
-                request=spec.request,
-                request_place=src.place(("steps", name, "request")),
-                field_places={field: src.key_place(("steps", name, "request", field)) for field in spec.request},
+                do=deed,  # type: ignore[arg-type]  # one of the keys above
+                target=written[deed],
+                place=src.key_place(at),
+                target_place=src.place((*at, deed)),
+                request=sent if deed == "set" else spec.request,
+                request_place=src.place((*at, key)),
+                field_places=dict(zip(spec.request, fields, strict=True)),
                 type=spec.type,
-                after=_names(spec.after),
+                after=spec.after,
                 timeout=float(spec.timeout),
             )
         )
     return steps
 
 
-def _names(after: str | list[str]) -> tuple[str, ...]:
-    return (after,) if isinstance(after, str) else tuple(after)
+def _goes_with(deed: str) -> str:
+    return f"; write {_STEPS[deed]}:" if _STEPS[deed] else ", which sends nothing"
 
 
-def _order(
-    src: Source,
-    model: GraphFile,
-    nodes: dict[str, PlannedNode],
-    steps: list[PlannedStep],
-    problems: Problems,
-) -> tuple[list[PlannedNode], list[PlannedStep]]:
-    """Replace keys by full names in every `after`; check that each names something and none waits for itself."""
-    known = {*(n.name for n in nodes.values()), *(s.name for s in steps)}
-    reported = (model.nodes.keys() | model.steps.keys()) - nodes.keys() - known
-
-    def resolved(after: tuple[str, ...], path: source.Path) -> tuple[str, ...]:
-        names = []
-        for i, written in enumerate(after):
-            name = nodes[written].name if written in nodes else written
-            if name in known:
-                names.append(name)
-            elif written not in reported:
-                help_ = did_you_mean(written, known | reported)
-                problems.add(src.place((*path, "after", i)), f"after: there is no node or step {written!r}{help_}")
-        return tuple(names)
-
-    for step in steps:
-        if step.name in nodes or step.name in (n.name for n in nodes.values()):
-            problems.add(step.place, f"a node is already called {step.name!r}; give the step another name")
-    ordered_nodes = [replace(n, after=resolved(n.after, ("nodes", key))) for key, n in nodes.items()]
-    ordered_steps = [replace(s, after=resolved(s.after, ("steps", s.name))) for s in steps]
-    items: list[PlannedNode | PlannedStep] = [*ordered_nodes, *ordered_steps]
-    places = {item.name: item.place for item in items}
-    cycle = find_cycle({item.name: item.after for item in items}) or _process_cycle(items, places)
-    if cycle:
-        ring = " after ".join([*cycle, cycle[0]])
-        problems.add(places[cycle[0]], f"waits for itself: {ring}; remove one of these after:")
-    return ordered_nodes, ordered_steps
-
-
-def _process_cycle(items: list[PlannedNode | PlannedStep], places: dict[str, Place]) -> list[str]:
-    """A cycle among processes: each is started as a whole, so all its nodes wait for what any of them waits for."""
-    whole = {i.name: f"process {i.process}" for i in items if isinstance(i, PlannedNode) and i.process}
-    edges: dict[str, set[str]] = {}
-    for item in items:
-        name = whole.get(item.name, item.name)
-        places.setdefault(name, item.place)
-        edges.setdefault(name, set()).update({whole.get(a, a) for a in item.after} - {name})
-    return find_cycle({name: sorted(after) for name, after in edges.items()})
-
-
-def find_cycle(edges: Mapping[str, Iterable[str]]) -> list[str]:
-    """Names that wait for one another in a cycle, each after the next; empty when there is no cycle."""
-    done: set[str] = set()
-    for start in edges:
-        path: list[str] = []
-        stack: list[tuple[str, list[str]]] = [(start, list(edges.get(start, ())))]
-        while stack:
-            name, rest = stack[-1]
-            if name not in path:
-                path.append(name)
-            if not rest:
-                done.add(name)
-                path.pop()
-                stack.pop()
-                continue
-            follower = rest.pop()
-            if follower in path:
-                return path[path.index(follower) :]
-            if follower not in done:
-                stack.append((follower, list(edges.get(follower, ()))))
-    return []
+def _names(names: str | list[str]) -> tuple[str, ...]:
+    return (names,) if isinstance(names, str) else tuple(names)

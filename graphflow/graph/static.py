@@ -90,7 +90,7 @@ def findings(plan: Plan, interfaces: Interfaces) -> list[Finding]:
     """What the source of a plan's classes shows; each way into a deadlock once."""
     world = _World(plan.file)
     for node in plan.nodes:
-        interface = interfaces[node.class_path]
+        interface = interfaces.get(node.class_path)
         if isinstance(interface, Interface):
             world.add(node, interface)
     chains = list(world.chains())

@@ -3,7 +3,9 @@ r"""The life of one supervised process, as a table.
     PENDING --go--> STARTING --ready--> READY --stop--> STOPPING --exit--> ENDED
                         \-----------------exit-----------------------------^
                     STARTING, READY --restart--> RESTARTING --exit--> STARTING
-                    ENDED ---------------------restart--------------> STARTING
+                    STARTING, READY --reset----> RESETTING --exit---> PENDING
+                    ENDED --again--> WAITING --late--> STARTING
+                    ENDED, WAITING -------------restart-------------> STARTING
 
 A process waits (PENDING) until what it comes `after` is there. It is READY when all its nodes have said so themselves.
 Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the last rung at once. Whatever happens,
@@ -11,15 +13,18 @@ Stopping is a ladder: SIGTERM, a time to clean up, SIGKILL; `kill` goes to the l
 judged by how it came: `failed` is true when the process ended by a signal or with a code other than 0.
 
 Starting again, when somebody asks for it, is stopping with another end: the process is STARTING again when it has gone.
+A process that ended by itself and is to be started again (`machines.restarts` decides) is WAITING for its time. One
+that is reset because another has failed waits, PENDING, for what it comes after, as at first.
 
 Source: docs/architecture.md, "The rules of processes"; systemd's and Erlang's stop sequences.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 START_LIMIT = 20.0
 """Seconds a process may take from its start until all its nodes are ready."""
@@ -34,6 +39,10 @@ class State(Enum):
     STOPPING = "stopping"
     RESTARTING = "restarting"
     """Stopping, to be started again."""
+    RESETTING = "resetting"
+    """Stopping, to be started again when what it comes after is there."""
+    WAITING = "waiting"
+    """It has ended, and is started again when its time has come."""
     ENDED = "ended"
 
 
@@ -46,6 +55,10 @@ class Event(Enum):
     KILL = "kill"
     RESTART = "restart"
     """Somebody asks for a new process in place of this one."""
+    AGAIN = "again"
+    """It has ended by itself, and is to be started again after a while."""
+    RESET = "reset"
+    """Another process has failed, with which it begins anew."""
     LATE = "late"
     """The alarm set on entering the state has rung."""
     EXIT = "exit"
@@ -72,6 +85,7 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
         Event.KILL: (State.STOPPING, (Do.KILL,)),
         Event.RESTART: (State.RESTARTING, (Do.TERMINATE,)),
+        Event.RESET: (State.RESETTING, (Do.TERMINATE,)),
         Event.LATE: (State.STOPPING, (Do.GIVE_UP, Do.TERMINATE)),
         Event.EXIT: (State.ENDED, ()),
     },
@@ -79,6 +93,7 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.STOP: (State.STOPPING, (Do.TERMINATE,)),
         Event.KILL: (State.STOPPING, (Do.KILL,)),
         Event.RESTART: (State.RESTARTING, (Do.TERMINATE,)),
+        Event.RESET: (State.RESETTING, (Do.TERMINATE,)),
         Event.EXIT: (State.ENDED, ()),
     },
     State.RESTARTING: {
@@ -87,12 +102,30 @@ TRANSITIONS: Mapping[State, Mapping[Event, tuple[State, tuple[Do, ...]]]] = {
         Event.LATE: (State.RESTARTING, (Do.KILL,)),
         Event.EXIT: (State.STARTING, (Do.SPAWN,)),
     },
+    State.RESETTING: {
+        Event.STOP: (State.STOPPING, ()),
+        Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.RESTART: (State.RESTARTING, ()),
+        Event.LATE: (State.RESETTING, (Do.KILL,)),
+        Event.EXIT: (State.PENDING, ()),
+    },
     State.STOPPING: {
         Event.KILL: (State.STOPPING, (Do.KILL,)),
+        Event.RESTART: (State.RESTARTING, ()),
         Event.LATE: (State.STOPPING, (Do.KILL,)),
         Event.EXIT: (State.ENDED, ()),
     },
-    State.ENDED: {Event.RESTART: (State.STARTING, (Do.SPAWN,))},
+    State.WAITING: {
+        Event.STOP: (State.ENDED, ()),
+        Event.KILL: (State.ENDED, ()),
+        Event.RESTART: (State.STARTING, (Do.SPAWN,)),
+        Event.RESET: (State.PENDING, ()),
+        Event.LATE: (State.STARTING, (Do.SPAWN,)),
+    },
+    State.ENDED: {
+        Event.RESTART: (State.STARTING, (Do.SPAWN,)),
+        Event.AGAIN: (State.WAITING, ()),
+    },
 }
 """Events that a state does not list change nothing."""
 
@@ -100,8 +133,9 @@ ALARMS: Mapping[State, float] = {
     State.STARTING: START_LIMIT,
     State.STOPPING: STOP_LIMIT,
     State.RESTARTING: STOP_LIMIT,
+    State.RESETTING: STOP_LIMIT,
 }
-"""Seconds after entering a state at which LATE happens."""
+"""Seconds after entering a state at which LATE happens; while WAITING it is as `machines.restarts` says."""
 
 
 def step(state: State, event: Event) -> tuple[State, tuple[Do, ...]]:
@@ -136,33 +170,53 @@ class Exit:
         return f"exit code {self.code}{meaning.get(self.code, '')}"
 
 
+class Need(NamedTuple):
+    """Something that comes before something else."""
+
+    name: str
+    """Of a process or step."""
+    what: str = "ready"
+    """What must have become of it: `ready`, `exited` in any way, or `done`, which is ended well."""
+
+
 @dataclass(frozen=True)
 class Order:
-    """What must be ready before what: processes and steps by name."""
+    """What comes before what: processes and steps by name."""
 
-    after: Mapping[str, frozenset[str]]
+    after: Mapping[str, frozenset[Need]]
 
-    def startable(self, done: Iterable[str]) -> list[str]:
-        """Names all of whose predecessors are done, in the order given."""
-        finished = set(done)
-        return [name for name, needs in self.after.items() if needs <= finished]
+    def startable(self, met: Iterable[Need]) -> list[str]:
+        """Names all of whose needs are met, in the order given."""
+        known = set(met)
+        return [name for name, needs in self.after.items() if needs <= known]
+
+    def later(self, processes: Container[str]) -> set[str]:
+        """Names that need the end of a process, perhaps of one that another one needs: they may never begin."""
+        found: set[str] = set()
+        for name in self.after:
+            around = {name, *self.all_before(name)}
+            needs = [need for other in around for need in self.after.get(other, ())]
+            if any(need.what != "ready" and need.name in processes for need in needs):
+                found.add(name)
+        return found
 
     def stop_layers(self, names: Iterable[str]) -> list[list[str]]:
         """Names in the order of stopping: last started first, those of one layer together."""
         left = list(names)
         layers = []
         while left:
-            needed = {n for name in left for n in self._all_before(name)}
+            needed = {n for name in left for n in self.all_before(name)}
             layer = [name for name in left if name not in needed] or left
             layers.append(layer)
             left = [name for name in left if name not in layer]
         return layers
 
-    def _all_before(self, name: str) -> set[str]:
+    def all_before(self, name: str) -> set[str]:
+        """What comes before something, directly or because of others."""
         found: set[str] = set()
         todo = [name]
         while todo:
-            for needed in self.after.get(todo.pop(), ()):
+            for needed, _ in self.after.get(todo.pop(), ()):
                 if needed not in found:
                     found.add(needed)
                     todo.append(needed)

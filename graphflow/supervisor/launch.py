@@ -231,7 +231,7 @@ class _Launch:
         plan = load(self._file, self._given)
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
-        self._starter.begin_probe(sorted({n.class_path for n in plan.nodes}), plan.root)
+        self._starter.begin_probe(plan.classes(), plan.root)
         import graphflow.supervisor.supervisor  # noqa: F401 - overlaps with the probe
 
         interfaces = read_interfaces(self._starter.probed())

@@ -201,7 +201,10 @@ class _Preload:
         fresh = any(name.startswith(_FRESH) for name in request["env"])
         parent = os.getpid()
         try:
-            pid = self._spawn_fresh(request) if fresh else os.fork()
+            if "command" in request["job"]:
+                pid = _spawn_program(request)
+            else:
+                pid = self._spawn_fresh(request) if fresh else os.fork()
         except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
             self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
             self._answer({"event": "exited", "process": request["process"], "pid": None, "status": 1})
@@ -275,6 +278,24 @@ class _Preload:
             time.sleep(0.01)
         family.end_descendants(os.getpid(), family.reap_children)
         os._exit(0)
+
+
+def _spawn_program(request: dict[str, Any]) -> int:
+    """A foreign program, with signals as it expects them: this process blocks some and ignores others."""
+    command: list[str] = request["job"]["command"]
+    return os.posix_spawnp(
+        command[0],
+        command,
+        {**os.environ, **request["env"], PROCESS_VARIABLE: request["process"]},
+        file_actions=[
+            (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),
+            (os.POSIX_SPAWN_OPEN, 1, request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600),
+            (os.POSIX_SPAWN_DUP2, 1, 2),
+        ],
+        setsid=True,
+        setsigmask=(),
+        setsigdef=(signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGPIPE),
+    )
 
 
 def answer_probe(request: dict[str, Any], write: int) -> None:

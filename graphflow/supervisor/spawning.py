@@ -46,6 +46,8 @@ class SpawningStarter:
         self._voices: dict[str, asyncio.StreamWriter] = {}
         self._silent: dict[str, asyncio.Event] = {}
         """Set when a worker's connection has ended."""
+        self._programs: set[str] = set()
+        """Processes that are foreign programs."""
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
         self._wanted = classes
@@ -82,6 +84,7 @@ class SpawningStarter:
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         self._silent[process] = asyncio.Event()
+        self._programs.update([process] if "command" in job else [])
         self._workers[process] = asyncio.create_task(self._live(process, job, log, env), name=process)
 
     async def _live(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
@@ -90,9 +93,10 @@ class SpawningStarter:
         port = self._server.sockets[0].getsockname()[1]
         try:
             with open(os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "ab") as out:
+                program = job.get("command")
                 worker = await asyncio.create_subprocess_exec(
-                    *(sys.executable, "-P", "-m", "graphflow.supervisor.worker", str(port)),
-                    stdin=asyncio.subprocess.PIPE,
+                    *(program or (sys.executable, "-P", "-m", "graphflow.supervisor.worker", str(port))),
+                    stdin=asyncio.subprocess.DEVNULL if program else asyncio.subprocess.PIPE,
                     stdout=out,
                     stderr=out,
                     env={**os.environ, **env},
@@ -104,11 +108,11 @@ class SpawningStarter:
             return
         self._processes[process] = worker
         self._heard({"event": "spawned", "process": process, "pid": worker.pid})
-        assert worker.stdin is not None
         try:
-            worker.stdin.write(json.dumps({"token": self._token, "job": job}).encode())
-            worker.stdin.close()
-            await worker.stdin.wait_closed()
+            if worker.stdin is not None:
+                worker.stdin.write(json.dumps({"token": self._token, "job": job}).encode())
+                worker.stdin.close()
+                await worker.stdin.wait_closed()
         except ConnectionError:  # it is already dead, as the next line finds out
             logger.debug("%s did not read its job", process)
         status = await worker.wait()
@@ -126,6 +130,8 @@ class SpawningStarter:
         voice = self._voices.get(process)
         if voice is not None:
             voice.write(b'{"do": "stop"}\n')
+        elif process in self._programs:
+            self._processes[process].terminate()
         else:  # it is not yet able to hear
             self.kill(process, pid)
 

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
-from graphflow.errors import ServiceUnavailable
+from graphflow.errors import ParameterError, ServiceUnavailable
 from graphflow.graph.plan import PlannedStep
+from graphflow.interface import type_id
 from graphflow.msgs import registry
 from graphflow.msgs.values import from_plain
+from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.wire.liveliness import Kind
 
+_DOUBLE, _DOUBLES = 3, 8
+"""Numbers of rcl_interfaces/msg/ParameterType."""
+
 
 class StepRunner:
-    """Makes the calls, under a hidden node of the supervisor.
+    """Carries steps out, under a hidden node of the supervisor.
 
     Args:
-        types: Service types by step name, as far as the plan's classes say.
+        types: Types of services and actions by step name, as far as the plan's classes say.
     """
 
     def __init__(self, context: Context, types: dict[str, str]) -> None:
@@ -28,35 +34,106 @@ class StepRunner:
         self._node: Node | None = None
 
     async def run(self, step: PlannedStep) -> Any:
-        """Run a step; returns the response.
+        """Carry out a step; returns what came of it.
 
         Raises:
             CallError: The service is unavailable, failed, or did not answer within the step's timeout.
-            EncodeError: The request does not fit the service's type.
+            EncodeError: The request does not fit the type.
+            ParameterError: The node refused a parameter.
+            GoalError: The goal did not succeed.
         """
         if self._node is None:
             self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
             await core_of(self._node).start(self._context)
-        type_name = self._types.get(step.name) or await self._find_type(step)
+        deeds = {"call": self._call_service, "set": self._set, "goal": self._send_goal, "wait": self._wait}
+        return await deeds[step.do](step, self._node)
+
+    async def _call_service(self, step: PlannedStep, node: Node) -> Any:
+        return await self._call(node, await self._type(step), step.target, step.request, step.timeout)
+
+    async def _call(self, node: Node, type_name: str, name: str, fields: dict[str, Any], timeout: float) -> Any:
         service: Any = registry.interface_class(type_name)
-        request: Any = from_plain(service.Request, step.request)
-        client = self._node.create_client(service, step.call)
+        request: Any = from_plain(service.Request, fields)
+        client = node.create_client(service, name)
         try:
-            await client.expect_ready(step.timeout)
-            return await client.call(request, timeout=step.timeout)
+            await client.expect_ready(timeout)
+            return await client.call(request, timeout=timeout)
         finally:
             client.close()
 
-    async def _find_type(self, step: PlannedStep) -> str:
-        def servers() -> list[Any]:
-            return self._context.cache.endpoints(Kind.SERVICE, step.call)
+    async def _set(self, step: PlannedStep, node: Node) -> str:
+        from graphflow.msgs.rcl_interfaces.msg import Parameter
+        from graphflow.runtime.values import to_message
 
+        def ask(service: str, **fields: Any) -> Any:
+            type_name = f"rcl_interfaces/srv/{service.title().replace('_', '')}"
+            return self._call(node, type_name, f"{step.target}/{service}", fields, step.timeout)
+
+        described = (await ask("describe_parameters", names=list(step.request))).descriptors
+        wanted = []
+        for declared, (name, value) in zip(described, step.request.items(), strict=True):
+            if declared.type == _DOUBLE and type(value) is int:
+                value = float(value)
+            elif declared.type == _DOUBLES and isinstance(value, list):
+                value = [float(number) if type(number) is int else number for number in value]
+            type_ = declared.type if value == [] else type_id(value)
+            wanted.append(Parameter(name=name, value=to_message(value, type_)))
+        result = (await ask("set_parameters_atomically", parameters=wanted)).result
+        if not result.successful:
+            raise ParameterError(result.reason or f"{step.target} refused it")
+        return ", ".join(f"{name} = {value}" for name, value in step.request.items())
+
+    async def _send_goal(self, step: PlannedStep, node: Node) -> Any:
+        action: Any = registry.interface_class(await self._type(step))
+        client = node.create_action_client(action, step.target)
         try:
-            async with self._context.clock.timeout(step.timeout):
-                await self._context.wait_for(lambda: bool(servers()))
+            await client.expect_ready(step.timeout)
+            async with client.send(from_plain(action.Goal, step.request)) as goal:
+                return await goal.result(timeout=step.timeout)
+        finally:
+            client.close()
+
+    async def _wait(self, step: PlannedStep, node: Node) -> str:
+        cache = self._context.cache
+
+        def found() -> str:
+            if step.target in cache.nodes():
+                return "node"
+            if step.target in cache.actions():
+                return "action"
+            kinds = {Kind.PUBLISHER: "topic", Kind.SERVICE: "service"}
+            return next((word for kind, word in kinds.items() if cache.endpoints(kind, step.target)), "")
+
+        if not await self._until(lambda: bool(found()), step.timeout):
+            known = [*cache.nodes(hidden=False), *cache.topics(), *cache.services()]
+            raise ServiceUnavailable(
+                f"nobody publishes or offers {step.target} after {step.timeout:g} s{did_you_mean(step.target, known)}"
+            )
+        return f"the {found()} is there"
+
+    async def _type(self, step: PlannedStep) -> str:
+        """The type of the service or action that a step needs."""
+        known = self._types.get(step.name)
+        if known:
+            return registry.full_name(known)
+
+        def types() -> list[str]:
+            if step.do == "goal":
+                return self._context.cache.actions().get(step.target, [])
+            return [str(server.type) for server in self._context.cache.endpoints(Kind.SERVICE, step.target)]
+
+        if not await self._until(lambda: bool(types()), step.timeout):
+            what = "action" if step.do == "goal" else "service"
+            raise ServiceUnavailable(f"no node offers the {what} {step.target}")
+        return types()[0]
+
+    async def _until(self, condition: Callable[[], bool], timeout: float) -> bool:
+        try:
+            async with self._context.clock.timeout(timeout):
+                await self._context.wait_for(condition)
         except TimeoutError:
-            raise ServiceUnavailable(f"no node offers the service {step.call}") from None
-        return str(servers()[0].type)
+            return False
+        return True
 
     async def close(self) -> None:
         if self._node is not None:

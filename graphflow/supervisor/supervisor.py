@@ -4,46 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import random
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from graphflow import __version__
 from graphflow.errors import GraphflowError, SupervisorError
-from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
-from graphflow.machines.process import ALARMS, Do, Event, Exit, Order, State, step
+from graphflow.graph.plan import Plan, PlannedStep
+from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, Order, State, step
+from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
 from graphflow.supervisor.doors import Doors
+from graphflow.supervisor.process import Process
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
 from graphflow.supervisor.steps import StepRunner
 
 logger = logging.getLogger("graphflow.supervisor")
-
-
-class Process:
-    """One process of the graph, as the supervisor sees it."""
-
-    def __init__(self, name: str, nodes: list[PlannedNode], log: str) -> None:
-        self.name = name
-        self.nodes = nodes
-        self.log = log
-        self.state = State.PENDING
-        self.pid: int | None = None
-        self.exit: Exit | None = None
-        self.since = time.time()
-        """When the process entered its state, in seconds since 1970."""
-        self.waiting_for = {n.name for n in nodes}
-        """Nodes that are not ready yet."""
-        self.error = ""
-        self.log_error = ""
-        """Why lines of its log were lost."""
-        self.restarts = 0
-        self.stop_asked = False
-        self.failed = False
-        """Whether the process ended by itself with a failure."""
-        self.alarm: asyncio.TimerHandle | None = None
 
 
 class Supervisor:
@@ -69,10 +49,12 @@ class Supervisor:
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
         }
         self._process_of = {n.name: p for p in self._processes.values() for n in p.nodes}
-        self._done: set[str] = set()
-        """Processes that are ready and steps that are finished, by name."""
+        self._met: set[Need] = set()
+        """What has become of processes and steps."""
         self._step_tasks: dict[str, asyncio.Task[None]] = {}
         self._order = self._make_order()
+        self._first = self._needed_at_first()
+        """What must be met for the graph to be up."""
         self._planned = {n["name"]: n for n in plan.to_json()["nodes"]}
         self._mode = "peer" if len(self._processes) <= MESH_LIMIT else "client"
         self._stopping = False
@@ -80,44 +62,32 @@ class Supervisor:
         self._began = time.monotonic()
 
     def _make_order(self) -> Order:
-        def holder(name: str) -> str:
-            return self._process_of[name].name if name in self._process_of else f"step {name}"
+        def needs(after: Mapping[str, str]) -> set[Need]:
+            found = set()
+            for name, what in after.items():
+                process = self._process_of.get(name)
+                found.add(Need(f"step {name}", "done") if process is None else Need(process.name, what))
+            return found
 
-        after: dict[str, frozenset[str]] = {}
+        after: dict[str, frozenset[Need]] = {}
         for process in self._processes.values():
-            needs = {holder(a) for node in process.nodes for a in node.after}
-            after[process.name] = frozenset(needs - {process.name})
+            mine = {need for node in process.nodes for need in needs(node.after)}
+            after[process.name] = frozenset(need for need in mine if need.name != process.name)
         for planned in self.plan.steps:
-            after[f"step {planned.name}"] = frozenset(holder(a) for a in planned.after)
+            after[f"step {planned.name}"] = frozenset(needs(planned.after))
         return Order(after)
+
+    def _needed_at_first(self) -> set[Need]:
+        """All processes and steps but those that need the end of a process, which may never come."""
+        later = self._order.later(self._processes)
+        names = [name for name in self._order.after if name not in later]
+        return {Need(name) if name in self._processes else Need(name, "done") for name in names}
 
     # what doors may ask
 
     def describe(self) -> list[dict[str, Any]]:
         """One row per node, for `ps`."""
-        return [
-            {
-                "node": node.name,
-                "state": self._state_word(process),
-                "pid": process.pid,
-                "since": process.since,
-                "process": node.process,
-                "class": node.class_path,
-                "log": process.log,
-                "restarts": process.restarts,
-                "detail": process.error
-                or (str(process.exit) if process.exit and process.exit.failed else "")
-                or (f"its log is not written whole: {process.log_error}" if process.log_error else ""),
-            }
-            for process in self._processes.values()
-            for node in process.nodes
-        ]
-
-    @staticmethod
-    def _state_word(process: Process) -> str:
-        if process.state is State.ENDED and process.failed:
-            return "failed"
-        return process.state.value
+        return [row for process in self._processes.values() for row in process.rows()]
 
     @property
     def plan(self) -> Plan:
@@ -144,7 +114,11 @@ class Supervisor:
         process = self._named(node)
         if self._stopping:
             raise SupervisorError("the graph is being stopped")
+        if process.state is State.PENDING:
+            waits = ", ".join(need.name for need in self._order.after[process.name] - self._met)
+            raise SupervisorError(f"{node} has not been started yet: it comes after {waits}")
         self.doors.announce(f"restart {node}", by)
+        process.restarts.forget()
         self._happen(process, Event.RESTART)
 
     def stop(self, node: str, by: str) -> None:
@@ -154,8 +128,11 @@ class Supervisor:
             SupervisorError: There is no such node.
         """
         process = self._named(node)
+        if process.state is State.ENDED:
+            raise SupervisorError(f"{node} is not running: {process.word}")
         self.doors.announce(f"stop {node}", by)
         process.stop_asked = True
+        process.failed &= process.state is not State.WAITING  # it is not tried again because somebody wants so
         self._happen(process, Event.STOP)
 
     def _named(self, node: str) -> Process:
@@ -212,14 +189,12 @@ class Supervisor:
         what = event["event"]
         if what == "spawned":
             process.pid = event["pid"]
-            if process.state in (State.STOPPING, State.RESTARTING):  # asked to stop before it had a pid
+            if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # asked to before it had a pid
                 self._act(process, Do.TERMINATE)
+            elif process.command:  # nobody knows when a foreign program is ready
+                self._is_ready(process, process.name)
         elif what == "ready":
-            process.waiting_for.discard(event["node"])
-            self._tell(event="ready", node=event["node"], pid=process.pid)
-            if not process.waiting_for:
-                self._happen(process, Event.READY)
-                self._finished(process.name)
+            self._is_ready(process, event["node"])
         elif what == "failed":
             process.error = event["error"]
         elif what == "log_lost":
@@ -244,23 +219,32 @@ class Supervisor:
                 self._happen(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
         self._end_if_all_have()
 
+    def _is_ready(self, process: Process, node: str) -> None:
+        process.waiting_for.discard(node)
+        self._tell(event="ready", node=node, pid=process.pid)
+        if not process.waiting_for:
+            process.ready_since = time.monotonic()
+            self._happen(process, Event.READY)
+            self._meet(process.name, "ready")
+
     # decisions carried out
 
     def _start_ready_ones(self) -> None:
         if self._stopping:
             return
-        for name in self._order.startable(self._done):
+        for name in self._order.startable(self._met):
             if name in self._processes:
                 self._happen(self._processes[name], Event.GO)
             elif name not in self._step_tasks:
                 planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
                 self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
-        if not self.up.is_set() and len(self._done) == len(self._processes) + len(self.plan.steps):
+        if not self.up.is_set() and self._first <= self._met:
             self.up.set()
             self._tell(event="up", seconds=time.monotonic() - self._began)
 
-    def _finished(self, name: str) -> None:
-        self._done.add(name)
+    def _meet(self, name: str, *what: str) -> None:
+        """Note what has become of a process or step, and start what waits for it."""
+        self._met.update(Need(name, word) for word in what)
         self._start_ready_ones()
 
     async def _run_step(self, planned: PlannedStep) -> None:
@@ -268,11 +252,11 @@ class Supervisor:
             answer = await self._steps.run(planned)
         except GraphflowError as error:
             logger.error("step %s: %s", planned.name, error)
-            self._tell(event="step", step=planned.name, ok=False, text=f"{planned.call}: {error}")
+            self._tell(event="step", step=planned.name, ok=False, text=f"{planned.target}: {error}")
             self._fail(f"step {planned.name} failed")
             return
-        self._tell(event="step", step=planned.name, ok=True, text=f"{planned.call} -> {answer}")
-        self._finished(f"step {planned.name}")
+        self._tell(event="step", step=planned.name, ok=True, text=f"{planned.target} -> {answer}")
+        self._meet(f"step {planned.name}", "done")
 
     def _fail(self, reason: str) -> None:
         self.exit_code = 1
@@ -280,7 +264,7 @@ class Supervisor:
 
     def _happen(self, process: Process, event: Event) -> None:
         was = process.state
-        if event is Event.LATE and was in (State.STOPPING, State.RESTARTING):
+        if event is Event.LATE and was in (State.STOPPING, State.RESTARTING, State.RESETTING):
             self._tell(event="note", text=f"{process.name} did not end within {ALARMS[was]:.0f} s: killed")
         process.state, actions = step(was, event)
         if process.state is not was:
@@ -288,15 +272,18 @@ class Supervisor:
             if process.alarm is not None:
                 process.alarm.cancel()
                 process.alarm = None
-            if process.state in ALARMS:
-                loop = self._context.loop
-                process.alarm = loop.call_later(ALARMS[process.state], self._happen, process, Event.LATE)
-        if was is State.RESTARTING and process.state is State.STARTING:
+            delay = process.delay if process.state is State.WAITING else ALARMS.get(process.state)
+            if delay is not None:
+                process.alarm = self._context.loop.call_later(delay, self._happen, process, Event.LATE)
+        if was in (State.RESTARTING, State.RESETTING) and event is Event.EXIT and process.state is not State.ENDED:
             self._tell_exit(process, unexpected=False)
         for action in actions:
             self._act(process, action)
         if process.state is State.ENDED and was is not State.ENDED:
             self._process_ended(process, was)
+        if process.state is State.PENDING and was is not State.PENDING:
+            self._met.discard(Need(process.name))
+            self._start_ready_ones()
 
     def _act(self, process: Process, action: Do) -> None:
         if action is Do.SPAWN:
@@ -329,31 +316,71 @@ class Supervisor:
             "deadlock": self.plan.deadlock,
             "call_timeout": self.plan.call_timeout,
         }
-        again = process.exit is not None
-        process.restarts += again
-        process.pid, process.exit, process.error, process.log_error = None, None, "", ""
-        process.stop_asked = process.failed = False
-        process.waiting_for = {n.name for n in process.nodes}
-        self._tell(event="starting", process=process.name, again=again)
+        if process.command:
+            job = {"command": list(process.command)}
+        process.begin()
+        self._tell(event="starting", process=process.name, again=process.starts > 1)
         self._starter.spawn(process.name, job, process.log, env)
 
     def _process_ended(self, process: Process, was: State) -> None:
-        asked = process.stop_asked or was is State.STOPPING
+        asked = process.stop_asked or was in (State.STOPPING, State.PENDING, State.WAITING)
         early = was is State.STARTING and not asked
         if early and not process.error:
             process.error = f"ended before it was ready: {', '.join(sorted(process.waiting_for))}"
-        failed = early or (process.exit is not None and process.exit.failed)
-        self._tell_exit(process, unexpected=failed and not asked)
-        if failed and not asked:
-            process.failed = True
-            if process.pid is not None:
-                self._write_down(process)
+        failed = not asked and (early or (process.exit is not None and process.exit.failed))
+        follows = None if asked or self._stopping else self._follows(process)
+        if isinstance(follows, GiveUp):
+            process.given_up = follows.why
+        process.failed |= failed
+        if failed and process.pid is not None:
+            self._write_down(process)
+        if was not in (State.PENDING, State.WAITING):
+            self._tell_exit(process, unexpected=failed, again=follows)
+        if isinstance(follows, Again):
+            self._start_again(process, follows)
+            return
+        if failed:
             self.exit_code = 1
-            if was is State.STARTING and not self.up.is_set():
-                self.begin_stop(now=False, reason=f"{process.name} did not start")
+        if not asked and not self._stopping:
+            self._judge_end(process, was)
         if self._stopping:
             self._stop_next_layer()
+        else:
+            self._meet(process.name, "exited", *(() if failed or asked else ("done",)))
         self._end_if_all_have()
+
+    def _follows(self, process: Process) -> Again | GiveUp | None:
+        end = process.exit if process.exit is not None else Exit()
+        chance = random.random()  # noqa: S311 - it only keeps processes from coming back together
+        return process.restarts.decide(end, process.ready_for, time.monotonic(), chance)
+
+    def _start_again(self, process: Process, follows: Again) -> None:
+        process.last_end = process.error or str(process.exit)
+        process.delay = follows.delay
+        self._met.discard(Need(process.name))
+        self._happen(process, Event.AGAIN)
+        for name in self._restarted_with(process.name):
+            self._happen(self._processes[name], Event.RESET)
+
+    def _restarted_with(self, name: str) -> list[str]:
+        """The processes that begin anew when one has failed."""
+        others = [other for other in self._processes if other != name]
+        if self.plan.strategy == "one_for_all":
+            return others
+        return [o for o in others if self.plan.strategy == "rest_for_one" and name in self._order.all_before(o)]
+
+    def _judge_end(self, process: Process, was: State) -> None:
+        """Stop the graph, if it does not go on without a process that has ended for good."""
+        if was is State.STARTING and not self.up.is_set():
+            self._fail(f"{process.name} did not start")
+        elif process.failed and process.is_critical:
+            self._fail(f"{process.name} is critical, and has {'been given up' if process.given_up else 'failed'}")
+        elif process.ends_graph:
+            self.begin_stop(now=False, reason=f"{process.name} has ended")
+        elif process.failed:
+            waits = [n for n, needs in self._order.after.items() if Need(process.name, "done") in needs]
+            if waits:
+                self._fail(f"{waits[0]} waits until {process.name} is done, and that has failed")
 
     def _write_down(self, process: Process) -> None:
         """Say in a process's log how it ended, which it could not do itself."""
@@ -365,7 +392,7 @@ class Supervisor:
         except OSError as error:  # a full disk
             logger.error("%s: %s", process.log, error)
 
-    def _tell_exit(self, process: Process, *, unexpected: bool) -> None:
+    def _tell_exit(self, process: Process, *, unexpected: bool, again: Again | GiveUp | None = None) -> None:
         if process.exit is not None:
             self._tell(
                 event="exited",
@@ -376,11 +403,21 @@ class Supervisor:
                 unexpected=unexpected,
                 error=process.error,
                 log=process.log,
+                again=again.delay if isinstance(again, Again) else None,
+                given_up=process.given_up,
             )
 
     def _end_if_all_have(self) -> None:
         """End with the last process; while consoles look on, it may be started again."""
-        if any(p.state is not State.ENDED for p in self._processes.values()):
+        left = [p for p in self._processes.values() if p.state is not State.ENDED]
+        if left and all(p.state is State.PENDING for p in left) and not self._stopping:
+            if any(not task.done() for task in self._step_tasks.values()):
+                return
+            needs = self._order.after[left[0].name] - self._met
+            words = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
+            self._fail(f"{left[0].name} comes after {words}, which cannot come any more")
+            return
+        if left:
             return
         if self._stopping or not self.doors.consoles:
             self.ended.set()

@@ -20,8 +20,9 @@ from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node import Node
-from graphflow.runtime.rosout import setup_console
+from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.run import catch_signals, serve
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor import family, logfile
@@ -65,6 +66,8 @@ def make_node(planned: PlannedNode, file: str) -> Node:
         overrides,
         planned.regrouping(file),
     )
+    if planned.log_level:
+        node_logger(planned.name).setLevel(log_level(planned.log_level))
     node = make_within(cls, given, names.name)
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")

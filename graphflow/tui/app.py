@@ -167,7 +167,9 @@ class Console(Desk):
 
     def _crashed(self, event: dict[str, Any]) -> None:
         names = ", ".join(event["nodes"])
-        self.say(f"{names} died: {event['how']}; {shown(self.prefix)} r restarts, enter on it shows why", bad=True)
+        again = event.get("again")
+        follows = f"{shown(self.prefix)} r restarts" if again is None else f"it is started again in {again:.1f} s"
+        self.say(f"{names} died: {event['how']}; {follows}, enter on it shows why", bad=True)
         self.flags[self.windows.current] = "!"
 
     # the pulse

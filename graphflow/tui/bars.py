@@ -32,10 +32,13 @@ MARKS = {
     "ready": StateMark("●", "good"),
     "starting": StateMark("◐", "warn"),
     "restarting": StateMark("◐", "warn"),
+    "resetting": StateMark("◐", "warn"),
+    "waiting": StateMark("◷", "warn"),
     "stopping": StateMark("◑", "warn"),
     "pending": StateMark("◌", "dim"),
     "ended": StateMark("○", "dim"),
     "failed": StateMark("✖", "bad"),
+    "given_up": StateMark("✖", "bad"),
     "foreign": StateMark("◆", "accent"),
 }
 

@@ -142,7 +142,7 @@ class Deeds(PaneDeeds):
                 supervision.send(do="restart", node=node)
                 self._app.did(f"graphflow restart {node}")
 
-        if supervision.nodes[node]["state"] in ("ended", "failed"):
+        if supervision.nodes[node]["state"] in ("ended", "failed", "given_up"):
             answered("r")
         else:
             self._ask(f"Restart {node}?", [Choice("r", "restart")], answered, detail)

@@ -9,7 +9,7 @@ import pytest
 
 from graphflow.errors import Place, Problem
 from graphflow.graph import source
-from graphflow.graph.check import Interfaces, check, offered_services, resolver, step_type
+from graphflow.graph.check import Interfaces, check, offered, resolver, step_type
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import resolve
 from graphflow.interface import EndpointInfo, HandlerInfo, Interface, Parameter
@@ -243,7 +243,7 @@ def test_a_service_may_be_of_a_class_that_is_not_known() -> None:
 def test_services_go_by_their_remapped_names() -> None:
     """A type is found under the name that the service will have."""
     found = plan(STEP.format("{call: /hatch}"))
-    assert offered_services(found, KNOWN) == {"/hatch": "turtlesim/srv/Spawn", "/c/stop": "std_srvs/srv/Trigger"}
+    assert offered(found, KNOWN, "service") == {"/hatch": "turtlesim/srv/Spawn", "/c/stop": "std_srvs/srv/Trigger"}
     assert step_type(found.steps[0], found, KNOWN) == "turtlesim/srv/Spawn"
     assert resolver(found.nodes[0]).resolve("spawn", "service") == "/hatch"
 

@@ -7,6 +7,7 @@ import pytest
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
 from graphflow.graph.faults import Problems, example, validated
+from graphflow.graph.model import GraphFile
 
 HERE, THERE = Place("f.yaml", 1, 1), Place("f.yaml", 2, 1)
 
@@ -14,7 +15,7 @@ HERE, THERE = Place("f.yaml", 1, 1), Place("f.yaml", 2, 1)
 def faults(text: str) -> list[str]:
     """What the model has against a file, as `line:column: message`; nothing else is looked at."""
     problems = Problems()
-    model = validated(source.read(text, "f.yaml"), problems)
+    model = validated(GraphFile, source.read(text, "f.yaml"), problems)
     assert (model is None) is bool(problems)
     return [str(p).removeprefix("f.yaml:") for p in problems]
 
@@ -22,7 +23,7 @@ def faults(text: str) -> list[str]:
 def test_a_right_file_is_its_model() -> None:
     """It has no problems, and its values are there."""
     problems = Problems()
-    model = validated(source.read("nodes:\n  a: {class: x:Y}\ndomain: 3\n", "f.yaml"), problems)
+    model = validated(GraphFile, source.read("nodes:\n  a: {class: x:Y}\ndomain: 3\n", "f.yaml"), problems)
 
     assert model is not None
     assert (list(model.nodes), model.domain, problems) == (["a"], 3, [])
@@ -35,12 +36,15 @@ NODE = "nodes:\n  a: {class: x:Y, concurrency: "
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (f"{NODE}[m]}}", "2:32: nodes.a.concurrency: expected a mapping, got ['m'], for example concurrency: {mot"),
-        (f"{NODE}{{m: 3}}}}", "2:36: nodes.a.concurrency.m: expected a mapping, got 3, for example motion: [con"),
+        (f"{NODE}[m]}}", "2:32: concurrency: expected a mapping, got ['m'], for example concurrency: {mot"),
+        (f"{NODE}{{m: 3}}}}", "2:36: concurrency.m: expected a mapping, got 3, for example motion: [con"),
         (f"{NODE}{{m: {{handler: [t]}}}}}}", "2:37: unknown key 'handler'; did you mean 'handlers'?"),
         (f"{NODE}{{m: {{handlers: [t], limit: 0}}}}}}", "2:59: limit: expected 1 or more, or none for no limit, got 0"),
-        ("nodes:\n  a: {class: x:Y, env: {B: []}}", "2:28: nodes.a.env.B: expected text or a number, got []"),
-        ("nodes:\n  a: {class: x:Y, after: [3]}", "2:27: nodes.a.after.0: expected text, got 3"),
+        ("nodes:\n  a: {class: x:Y, env: {B: []}}", "2:28: env.B: expected text or a number, got []"),
+        (
+            "nodes:\n  a: {class: x:Y, after: [3]}",
+            "2:26: after: expected a name, a list of names, or NAME: ready|",
+        ),
         ("nodes:\n  a: {class: x:Y}\ncall_timeout: -1", "3:15: call_timeout: expected seconds, or never, got -1"),
     ],
 )

@@ -98,7 +98,8 @@ nodes:
         ),
         ("include: sub/base.yaml\noverride: {/a: {parms: {}}}\n", r"over.yaml:2:17: unknown key 'parms'; did you mean"),
         ("include: sub/base.yaml\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:2:9: /a is already in the included file"),
-        ("include: [sub/base.yaml]\nnodes: {}\n", r"include: expected text"),
+        ("include: [3]\nnodes: {}\n", r"over.yaml:1:11: include: expected a mapping, got 3, for example include: base"),
+        ("include: {fil: x}\nnodes: {}\n", r"over.yaml:1:11: unknown key 'fil'; did you mean 'file'?"),
         ("override: {}\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:1:1: override: goes with include:"),
         (
             "include: sub/base.yaml\noverride: {/a: {concurrency: {g: [x], h: [x]}}}\n",

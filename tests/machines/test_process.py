@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Do, Event, Exit, Order, State, step
+from graphflow.machines.process import ALARMS, START_LIMIT, STOP_LIMIT, Do, Event, Exit, Need, Order, State, step
 
 P, S, R, T, E = State.PENDING, State.STARTING, State.READY, State.STOPPING, State.ENDED
-A = State.RESTARTING
+A, B, W = State.RESTARTING, State.RESETTING, State.WAITING
 
 # Written by hand, every state and every event; what is not said here changes nothing.
 EFFECTS = {
@@ -20,17 +20,31 @@ EFFECTS = {
     (S, Event.STOP): (T, (Do.TERMINATE,)),
     (S, Event.KILL): (T, (Do.KILL,)),
     (S, Event.RESTART): (A, (Do.TERMINATE,)),
+    (S, Event.RESET): (B, (Do.TERMINATE,)),
     (S, Event.LATE): (T, (Do.GIVE_UP, Do.TERMINATE)),
     (S, Event.EXIT): (E, ()),
     (R, Event.STOP): (T, (Do.TERMINATE,)),
     (R, Event.KILL): (T, (Do.KILL,)),
     (R, Event.RESTART): (A, (Do.TERMINATE,)),
+    (R, Event.RESET): (B, (Do.TERMINATE,)),
     (R, Event.EXIT): (E, ()),
     (A, Event.STOP): (T, ()),
     (A, Event.KILL): (T, (Do.KILL,)),
     (A, Event.LATE): (A, (Do.KILL,)),
     (A, Event.EXIT): (S, (Do.SPAWN,)),
+    (B, Event.STOP): (T, ()),
+    (B, Event.KILL): (T, (Do.KILL,)),
+    (B, Event.RESTART): (A, ()),
+    (B, Event.LATE): (B, (Do.KILL,)),
+    (B, Event.EXIT): (P, ()),
+    (W, Event.STOP): (E, ()),
+    (W, Event.KILL): (E, ()),
+    (W, Event.RESTART): (S, (Do.SPAWN,)),
+    (W, Event.RESET): (P, ()),
+    (W, Event.LATE): (S, (Do.SPAWN,)),
     (E, Event.RESTART): (S, (Do.SPAWN,)),
+    (E, Event.AGAIN): (W, ()),
+    (T, Event.RESTART): (A, ()),
     (T, Event.KILL): (T, (Do.KILL,)),
     (T, Event.LATE): (T, (Do.KILL,)),
     (T, Event.EXIT): (E, ()),
@@ -61,7 +75,7 @@ def test_the_stop_ladder() -> None:
 
 def test_only_starting_and_stopping_have_a_time_limit() -> None:
     """A process may wait and work for as long as it likes."""
-    assert ALARMS == {S: START_LIMIT, T: STOP_LIMIT, A: STOP_LIMIT}
+    assert ALARMS == {S: START_LIMIT, T: STOP_LIMIT, A: STOP_LIMIT, B: STOP_LIMIT}
     assert START_LIMIT > STOP_LIMIT > 0
 
 
@@ -104,7 +118,7 @@ def test_how_a_process_ended(status: int, exit_: Exit, failed: bool, text: str) 
 
 
 def order(**after: str) -> Order:
-    return Order({name: frozenset(needs.split()) for name, needs in after.items()})
+    return Order({name: frozenset(map(Need, needs.split())) for name, needs in after.items()})
 
 
 DIAMOND = order(base="", left="base", right="base", top="left right")
@@ -113,14 +127,29 @@ DIAMOND = order(base="", left="base", right="base", top="left right")
 def test_what_may_start() -> None:
     """A name may start when all it comes after is done, in the order of the file."""
     assert DIAMOND.startable([]) == ["base"]
-    assert DIAMOND.startable(["base"]) == ["base", "left", "right"]
-    assert DIAMOND.startable(["base", "left"]) == ["base", "left", "right"]
-    assert DIAMOND.startable(["base", "left", "right"]) == ["base", "left", "right", "top"]
+    assert DIAMOND.startable(map(Need, ["base"])) == ["base", "left", "right"]
+    assert DIAMOND.startable(map(Need, ["base", "left"])) == ["base", "left", "right"]
+    assert DIAMOND.startable(map(Need, ["base", "left", "right"])) == ["base", "left", "right", "top"]
 
 
 def test_names_in_no_order_start_at_once() -> None:
     """Without `after` everything may start together."""
     assert order(b="", a="").startable(()) == ["b", "a"]
+
+
+def test_what_may_never_begin() -> None:
+    """Names that need the end of a process, directly or through others; a step's end is sure to come."""
+    needs = {
+        "once": [],
+        "step s": [Need("once")],
+        "after": [Need("once", "done")],
+        "far": [Need("after")],
+        "plain": [Need("once"), Need("step s", "done")],
+    }
+    made = Order({name: frozenset(found) for name, found in needs.items()})
+    assert made.later({"once", "after", "far", "plain"}) == {"after", "far"}
+    assert made.startable([Need("once", "exited")]) == ["once"]
+    assert "after" in made.startable([Need("once", "exited"), Need("once", "done")])
 
 
 def test_a_diamond_stops_from_its_top() -> None:
@@ -159,7 +188,8 @@ def test_stopping_reverses_any_order(data: st.DataObject) -> None:
         name: frozenset(data.draw(st.sets(st.sampled_from(names[:i])))) if i else frozenset[str]()
         for i, name in enumerate(names)
     }
-    layers = Order(after).stop_layers(data.draw(st.permutations(names)))
+    order = Order({name: frozenset(map(Need, needs)) for name, needs in after.items()})
+    layers = order.stop_layers(data.draw(st.permutations(names)))
 
     place = {name: i for i, layer in enumerate(layers) for name in layer}
     assert sorted(name for layer in layers for name in layer) == sorted(names)

@@ -54,7 +54,7 @@ class Adder(Node):
 
 def step(call: str = "/add", timeout: float = 10.0, **request: Any) -> PlannedStep:
     place = Place("graph.yaml", 1, 1)
-    return PlannedStep("ask", call, place, place, place, request, timeout=timeout)
+    return PlannedStep("ask", "call", call, place, place, place, request, timeout=timeout)
 
 
 @asynccontextmanager

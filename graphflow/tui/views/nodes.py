@@ -115,7 +115,7 @@ class Nodes(TableView):
 
     def do_details(self) -> None:
         row = self.hub.supervision.nodes.get(self.key) if self.hub.supervision is not None else None
-        if row is not None and row["state"] in ("failed", "ended"):
+        if row is not None and row["state"] in ("failed", "given_up", "ended"):
             self.open("crash", self.key)
         elif self.key:
             self.did(f"graphflow node info {self.key}")

@@ -64,7 +64,7 @@ class Top(TableView):
         if supervision is not None:
             found[supervision.run.pid] = ["the supervisor"]
             for name, row in supervision.nodes.items():
-                if row["pid"] and row["state"] not in ("ended", "failed", "pending"):
+                if row["pid"] and row["state"] not in ("ended", "failed", "given_up", "waiting", "pending"):
                     found.setdefault(row["pid"], []).append(name)
         if live is not None:
             mine = {token.zid: token.pid for token in live.processes.values() if token.host == host_name()}

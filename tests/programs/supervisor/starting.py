@@ -9,9 +9,12 @@ import asyncio
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from graphflow.errors import Place
+from graphflow.graph.plan import PlannedNode
 from graphflow.supervisor.forking import ForkingStarter
 from graphflow.supervisor.spawning import SpawningStarter
 from graphflow.supervisor.starter import Starter
@@ -22,9 +25,8 @@ ROOT = Path(sys.argv[2])
 
 def planned(class_path: str) -> dict[str, Any]:
     """A node as a plan has it."""
-    place = ["graph.yaml", 1, 1]
-    more: dict[str, Any] = {"params": {}, "remaps": [], "after": [], "concurrency": {}, "process": "", "env": {}}
-    return {"name": "/a", "class_path": class_path, "place": place, "class_place": place, **more}
+    place = Place("graph.yaml", 1, 1)
+    return asdict(PlannedNode("/a", class_path, place, place))
 
 
 async def start(starter: Starter) -> None:

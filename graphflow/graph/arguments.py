@@ -1,0 +1,124 @@
+"""The arguments of a graph: declared under `args`, given on the command line or by the file that includes another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from graphflow.errors import GraphFileError, Place
+from graphflow.graph import source
+from graphflow.graph.faults import Problems
+from graphflow.graph.model import ARG_TYPES, Arg, keys_of
+from graphflow.graph.tree import Item
+from graphflow.names import did_you_mean
+
+COMMAND_LINE = Place("command line")
+
+
+class Arguments:
+    """The values of a graph's arguments.
+
+    Args:
+        given: Words of the command line, `name:=value`.
+    """
+
+    def __init__(self, given: Sequence[str], problems: Problems) -> None:
+        self._problems = problems
+        self._given: dict[str, str] = {}
+        for word in given:
+            name, arrow, text = word.partition(":=")
+            if arrow and name:
+                self._given[name] = text
+            else:
+                problems.add(COMMAND_LINE, f"{word!r}: an argument is written name:=value")
+        self.values: dict[str, Any] = {}
+        """By name, of those that the command line may set."""
+
+    def of_file(self, declared: Item | None, outer: Mapping[str, Any], fixed: Mapping[str, Item]) -> dict[str, Any]:
+        """The values of what a file declares.
+
+        Args:
+            declared: The file's section `args`.
+            outer: The values in force where the file is included.
+            fixed: Values that the including file gives.
+        """
+        specs = declared.entries if declared is not None else {}
+        for name, item in fixed.items():
+            if name not in specs:
+                help_ = did_you_mean(name, specs) or "; it declares none of that name under args:"
+                self._problems.add(item.at, f"the included file has no argument {name!r}{help_}")
+        found = dict(outer)
+        for name, spec in specs.items():
+            if name in fixed:
+                found[name] = self._checked(name, fixed[name].plain(), spec, fixed[name].place)
+                continue
+            if name not in outer:
+                found[name] = self._own(name, spec)
+            self.values[name] = found[name]
+        return found
+
+    def refuse_strays(self) -> None:
+        """Report words of the command line that no file has an argument for."""
+        for name in self._given:
+            if name not in self.values:
+                help_ = did_you_mean(name, self.values) or "; the file declares none under args:"
+                self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
+
+    def _own(self, name: str, spec: Item) -> Any:
+        settings = spec.entries
+        if name in self._given:
+            return self._checked(name, _read(self._given[name], settings), spec, COMMAND_LINE)
+        if "default" in settings:
+            return self._checked(name, settings["default"].plain(), spec, settings["default"].place)
+        # What is wrong with the declaration itself is reported when it is validated.
+        if spec.value is None or (isinstance(spec.value, dict) and settings.keys() <= set(keys_of(Arg))):
+            self._problems.add(spec.at, f"argument {name!r} has no default: give it as {name}:=VALUE")
+        return ""
+
+    def _checked(self, name: str, value: Any, spec: Item, place: Place) -> Any:
+        """The value, as its declared type."""
+        settings = spec.entries
+        wanted = str(settings["type"].value) if "type" in settings else ""
+        if wanted in ARG_TYPES:
+            types, words = ARG_TYPES[wanted]
+            if (isinstance(value, bool) and bool not in types) or not isinstance(value, types):
+                self._problems.add(place, f"argument {name!r}: expected {words}, got {value!r}")
+            elif isinstance(value, int) and wanted == "float":
+                value = float(value)
+        elif place == COMMAND_LINE and not _is_alike(value, settings.get("default")):
+            default = settings["default"].plain()
+            text = f"argument {name!r}: expected {_kind(default)}, as its default {_written(default)} is, got {value!r}"
+            self._problems.add(place, text)
+        choices = settings["choices"].plain() if "choices" in settings else None
+        if isinstance(choices, list) and choices and value not in choices:
+            shown = ", ".join(map(str, choices))
+            self._problems.add(spec.at, f"argument {name!r} is {value!r}, but must be one of {shown}")
+        return value
+
+
+def _read(text: str, settings: Mapping[str, Item]) -> Any:
+    """A word of the command line: YAML, but text where text is wanted."""
+    default = settings["default"].value if "default" in settings else None
+    wants_text = "type" in settings and settings["type"].value == "str"
+    wants_text = wants_text or ("type" not in settings and isinstance(default, str))
+    try:
+        value = source.read(text, "command line").data
+    except GraphFileError:
+        return text
+    return text if wants_text and not isinstance(value, str) else value
+
+
+def _is_alike(value: Any, default: Item | None) -> bool:
+    """Whether a value is of the kind of the default: a truth value or a number, if that is one."""
+    if default is None or not isinstance(default.value, (bool, int, float)):
+        return True
+    return _kind(value) == _kind(default.value)
+
+
+def _kind(value: Any) -> str:
+    kinds = {bool: "true or false", int: "a number", float: "a number", list: "a list", dict: "a mapping"}
+    return kinds.get(type(value), "text")
+
+
+def _written(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)

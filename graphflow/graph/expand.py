@@ -1,0 +1,458 @@
+"""A graph file's blocks taken apart: what is left is a flat list of nodes and steps, each with its full name.
+
+    include, group, for, if, unless, templates, $(...)   ->   nodes and steps
+
+Every block adds to the `_Scope` that holds within it: values for substitutions, a namespace, and settings that its
+nodes share. Files are taken in as they are reached, so that their names may have substitutions, too. Every value keeps
+the place where it was written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from graphflow.errors import GraphFileError, InvalidName, Place, Problem
+from graphflow.graph import source
+from graphflow.graph.arguments import Arguments
+from graphflow.graph.faults import Problems, example, unknown_key, validated
+from graphflow.graph.model import (
+    BLOCKS,
+    FROM_GROUPS,
+    TOP_KEYS,
+    ForBlock,
+    GroupBlock,
+    IncludeBlock,
+    NodeSpec,
+    keys_of,
+)
+from graphflow.graph.project import shown
+from graphflow.graph.substitutions import SubstitutionError, Substitutions, truth
+from graphflow.graph.tree import Item, first_of, located, merged, source_of, tree
+from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
+
+BY_ENTRY = ("params", "remap", "env")
+"""Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
+INHERITED = ("restart", "on_exit", "critical", "log_level")
+"""Keys of a group that a node has unless it says otherwise."""
+MAX_ROUNDS = 10_000
+"""Of all loops of a graph together."""
+MAX_FILES = 200
+
+_SPAN = re.compile(r"(-?\d{1,9})\.\.(-?\d{1,9})\Z")
+
+
+@dataclass(frozen=True)
+class _Scope:
+    """What holds in a block."""
+
+    values: Mapping[str, Any]
+    """What `$(var ...)` stands for."""
+    files: tuple[Path, ...]
+    """The file, and before it those that include it."""
+    namespace: str = "/"
+    shared: tuple[Mapping[str, Item], ...] = ()
+    """The settings of the groups around, the innermost first."""
+    templates: Mapping[str, Item] = field(default_factory=dict)
+    is_top: bool = True
+    """Whether settings of the file are those of the graph."""
+
+
+class Expansion:
+    """A file and all that it includes, taken apart.
+
+    Args:
+        given: Words of the command line, `name:=value`.
+        env: The environment; the process's own if None.
+    """
+
+    def __init__(self, given: Sequence[str], env: Mapping[str, str] | None, problems: Problems) -> None:
+        self.nodes: dict[str, Item] = {}
+        """By full name."""
+        self.steps: dict[str, Item] = {}
+        self.settings: dict[str, Item] = {}
+        """The other keys of the file, and of those that it includes whole."""
+        self.written: dict[str, tuple[str, str]] = {}
+        """The key of each node and step as its file has it, and the namespace in which it stands."""
+        self.left_out: dict[str, Place] = {}
+        """Nodes and steps that a condition has left out."""
+        self.refused: set[str] = set()
+        """Keys of nodes and steps whose names cannot be, which has been reported."""
+        self.folders: dict[str, Path] = {}
+        """The folder of each file, by the name that messages have for it."""
+        self.arguments = Arguments(given, problems)
+        self._env, self._problems = env, problems
+        self._rounds = 0
+        self._relative = 0
+        """Names so far that depend on a namespace."""
+
+    def whole(self, top: Item) -> Item:
+        """All as one flat file."""
+        nodes = top.entries.get("nodes", Item({}, top.place))._replace(value=self.nodes)
+        return top._replace(value={"nodes": nodes, "steps": Item(self.steps, top.place), **self.settings})
+
+    # files
+
+    def file(self, top: Item, path: Path) -> None:
+        """Take in the graph's own file."""
+        self._file(top, path, _Scope({}, (path.resolve(),)), {})
+        self.arguments.refuse_strays()
+
+    def _file(self, top: Item, path: Path, scope: _Scope, fixed: Mapping[str, Item]) -> Mapping[str, Item]:
+        """Take in a file; returns its templates."""
+        self.folders[top.place.file] = path.resolve().parent
+        entries = top.entries
+        if entries.get("args") is None or isinstance(entries["args"].value, dict):
+            scope = replace(scope, values=self.arguments.of_file(entries.get("args"), scope.values, fixed))
+        templates = entries.get("templates")
+        if templates is not None:
+            scope = replace(scope, templates={**scope.templates, **templates.entries})
+        for key, item in entries.items():
+            if key not in TOP_KEYS:
+                self._problems.add(item.at, unknown_key(key, TOP_KEYS))
+        overridden = entries.get("override")
+        if overridden is not None and "include" not in entries:
+            self._problems.add(overridden.at, "override: goes with include:, whose nodes it changes")
+        scope = self._body(entries, scope, overridden)
+        for key, item in entries.items():
+            if key == "name" and len(scope.files) > 1:  # the graph is called as its own file says
+                continue
+            if scope.is_top and key in TOP_KEYS and key not in (*BLOCKS, "templates", "override"):
+                old = self.settings.get(key)
+                keeps = key == "args" and old is not None
+                item = merged(old, item) if keeps and old is not None else item
+                self.settings[key] = item if key == "args" else self._substituted(item, scope)
+        for key in ("nodes", "steps"):
+            if key in entries and not isinstance(entries[key].value, (dict, type(None))):
+                self.settings[key] = entries[key]  # its type is reported with those of the others
+        return scope.templates
+
+    def _include(self, item: Item, scope: _Scope, overridden: Item | None = None) -> _Scope:
+        """Take in other files; returns the scope with their templates."""
+        if isinstance(item.value, list):
+            for one in item.value:
+                scope = self._include(one, scope)
+            return scope
+        block = Item({"file": item}, item.place) if isinstance(item.value, str) else item
+        if self._is_left_out(block, scope):
+            return scope
+        block = self._substituted(block.without("if", "unless"), scope)
+        model = self._checked(IncludeBlock, block)
+        if model is None:
+            return scope
+        file = block.entries["file"]
+        path = self.folders[file.place.file] / model.file
+        if path.resolve() in scope.files:
+            self._problems.add(file.place, f"{model.file} includes itself")
+            return scope
+        top = self._read(path, file.place)
+        if top is None:
+            return scope
+        before = set(self.nodes)
+        inner = replace(scope, files=(*scope.files, path.resolve()), templates={})
+        if model.namespace or not isinstance(item.value, str):
+            inner = replace(inner, is_top=inner.is_top and not block.entries.keys() & {"args", "namespace"})
+        inner = replace(inner, namespace=self._namespace(block, scope))
+        templates = self._file(top, path, inner, block.entries["args"].entries if model.args else {})
+        changes = [o for o in (block.entries.get("override"), overridden) if o is not None]
+        for change in changes:
+            self._override(self._substituted(change, scope), set(self.nodes) - before, scope)
+        return replace(scope, templates={**templates, **scope.templates})
+
+    def _read(self, path: Path, place: Place) -> Item | None:
+        if not path.is_file():
+            near = did_you_mean(path.name, [f.name for f in path.parent.glob("*.yaml")])
+            raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
+        if len(self.folders) > MAX_FILES:
+            raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
+        top = tree(source.read_file(path, shown(path)))
+        if not isinstance(top.value, dict):
+            self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
+            return None
+        return top
+
+    def _override(self, changes: Item, included: set[str], scope: _Scope) -> None:
+        """Change nodes of an included file."""
+        by_key = {self.written[name][0]: name for name in included}
+        if not isinstance(changes.value, dict):
+            self.settings["override"] = changes  # its type is reported with those of the others
+            return
+        for key, change in changes.entries.items():
+            name = key if key in included else by_key.get(key, "")
+            if not name:
+                near = did_you_mean(key, [*by_key, *included])
+                self._problems.add(change.at, f"the included file has no node {key!r}{near}")
+            elif not isinstance(change.value, dict):
+                self._problems.add(change.place, f"{key}: expected a mapping of what differs, got {change.plain()!r}")
+            elif self._is_left_out(change, scope):
+                self.left_out[name] = change.at
+                del self.nodes[name]
+            else:
+                changed = merged(self.nodes[name], change.without("if", "unless"), BY_ENTRY)
+                self.nodes[name] = changed._replace(place=self.nodes[name].place, key=self.nodes[name].key)
+
+    # blocks
+
+    def _body(self, entries: Mapping[str, Item], scope: _Scope, overridden: Item | None = None) -> _Scope:
+        """Take in what is in a file, group or loop; returns the scope with the templates of what it includes."""
+        if "include" in entries and entries["include"].value is not None:
+            scope = self._include(entries["include"], scope, overridden)
+        for key, item in entries.items():
+            if key == "nodes":
+                for name, node in item.entries.items():
+                    self._node(name, node, scope)
+            elif key == "steps":
+                for name, step in item.entries.items():
+                    self._step(name, step, scope)
+            elif key in ("group", "for"):
+                for block in item.value if isinstance(item.value, list) else [item]:
+                    if block.value is not None:
+                        self._group(block, scope) if key == "group" else self._for(block, scope)
+        return scope
+
+    def _group(self, block: Item, scope: _Scope) -> None:
+        if self._is_left_out(block, scope):
+            return
+        settings = self._substituted(block.without("if", "unless", *BLOCKS), scope)
+        bodies = {key: item for key, item in block.entries.items() if key in BLOCKS}
+        if self._checked(GroupBlock, settings._replace(value={**settings.entries, **bodies}), block) is None:
+            return
+        inner = replace(
+            scope,
+            namespace=self._namespace(settings, scope),
+            shared=(settings.entries, *scope.shared),
+            is_top=False,
+        )
+        before = self._relative
+        self._body(bodies, inner)
+        if "namespace" in settings.entries and self._relative == before and inner.namespace != scope.namespace:
+            text = "every name in this group begins with a slash, so the namespace has no effect; leave the slashes out"
+            self._problems.add(settings.entries["namespace"].place, text)
+
+    def _for(self, block: Item, scope: _Scope) -> None:
+        if self._is_left_out(block, scope):
+            return
+        entries = block.entries
+        if not isinstance(block.value, dict) or not {"var", "in"} <= entries.keys():
+            self._checked(ForBlock, block)
+            return
+        name, over = entries["var"], self._substituted(entries["in"], scope)
+        if not isinstance(name.value, str) or not name.value.isidentifier():
+            self._problems.add(name.place, f"var: expected a name for the loop's values, got {name.plain()!r}")
+            return
+        for value in self._rounds_of(over):
+            self._group(
+                block.without("var", "in", "if", "unless"),
+                replace(scope, values={**scope.values, name.value: value}),
+            )
+
+    def _rounds_of(self, over: Item) -> Iterator[Any]:
+        """The values of a loop."""
+        values = over.plain()
+        span = _SPAN.match(values) if isinstance(values, str) else None
+        if span:
+            values = range(int(span[1]), int(span[2]) + 1)
+        if not isinstance(values, (list, range)):
+            self._problems.add(over.place, f"in: expected a list or a span such as 1..10, got {values!r}")
+            return
+        for value in values:
+            self._rounds += 1
+            if self._rounds > MAX_ROUNDS:
+                raise GraphFileError([Problem(over.place, f"the loops have more than {MAX_ROUNDS:,} rounds")])
+            yield value
+
+    def _namespace(self, settings: Item, scope: _Scope) -> str:
+        """The namespace in a block that may have one of its own."""
+        item = settings.entries.get("namespace")
+        if item is None or not isinstance(item.value, str) or not item.value:
+            return scope.namespace
+        try:
+            if item.value.startswith("/"):
+                return check_namespace(item.value)
+            self._relative += 1
+            return check_namespace(join(scope.namespace, item.value))
+        except InvalidName as error:
+            self._problems.add(item.place, str(error))
+            return scope.namespace
+
+    # nodes and steps
+
+    def _node(self, written: str, item: Item, scope: _Scope) -> None:
+        key = str(self._one(written, item.at, scope))
+        whole = self._from_template(item, scope)
+        if whole is None:
+            self.refused.add(key)
+            return
+        item = whole
+        own = item.entries.get("namespace")
+        own = own and self._substituted(own, scope)
+        name = self._full_name(key, item, own, scope)
+        if name is None:
+            self.refused.add(key)
+            return
+        if self._is_left_out(item, scope):
+            self.left_out[name] = item.at
+            return
+        if self._is_taken(name, item, self.nodes, "nodes"):
+            return
+        item = self._substituted(item.without("if", "unless", "template", "namespace"), scope)
+        if own is not None and not isinstance(own.value, str):
+            item = item._replace(value={**item.entries, "namespace": own})
+        if isinstance(item.value, dict):
+            item = self._with_groups(item, scope)
+        self.nodes[name] = item
+        self.written[name] = (key, scope.namespace)
+
+    def _full_name(self, key: str, item: Item, own: Item | None, scope: _Scope) -> str | None:
+        namespace = own.value if own is not None and isinstance(own.value, str) else ""
+        if key.startswith("/") and namespace:
+            short = split(key)[1]
+            text = f"{key} is a full name, so a namespace would have no effect; name the node {short}, or remove this"
+            self._problems.add(own.place if own else item.at, text)
+        if ":" in key:
+            text = f"the name {key!r} has a colon in it; write a space after the colon that ends a key"
+            self._problems.add(item.place, text)
+            return None
+        self._relative += not key.startswith("/") and not namespace.startswith("/")
+        try:
+            around = check_namespace(join(scope.namespace, namespace)) if namespace else scope.namespace
+        except InvalidName as error:
+            self._problems.add(own.place if own else item.at, str(error))
+            return None
+        try:
+            return check_full_name(join(around, key), "node name")
+        except InvalidName as error:
+            self._problems.add(item.at, str(error))
+            return None
+
+    def _step(self, written: str, item: Item, scope: _Scope) -> None:
+        name = str(self._one(written, item.at, scope))
+        if self._is_left_out(item, scope):
+            self.left_out[name] = item.at
+            return
+        if self._is_taken(name, item, self.steps, "steps"):
+            return
+        item = self._substituted(item.without("if", "unless"), scope)
+        for key in ("call", "set", "goal", "wait"):
+            target = item.entries.get(key)
+            if target is None or not isinstance(target.value, str):
+                continue
+            self._relative += not target.value.startswith("/")
+            try:
+                full = expand(target.value, scope.namespace, "graph")
+            except InvalidName as error:
+                self._problems.add(target.place, str(error))
+                self.refused.add(name)
+                return
+            item = item._replace(value={**item.entries, key: target._replace(value=full)})
+        self.steps[name] = item
+        self.written[name] = (name, scope.namespace)
+
+    def _is_taken(self, name: str, item: Item, those: Mapping[str, Item], what: str) -> bool:
+        if name not in those:
+            return False
+        first = those[name].at
+        if first.file != item.at.file:
+            if what == "nodes":
+                text = f"{name} is already in the included file; change it under override:"
+            else:
+                text = f"there is a step {name!r} already, at {first}; give this one another name"
+        elif first == item.at:
+            text = f"every round of the loop has the same {what[:-1]} {name}; put the loop's variable into its name"
+        else:
+            text = f"there are two {what} {name}; the other is on line {first.line}"
+        self._problems.add(item.at, text)
+        return True
+
+    def _from_template(self, item: Item, scope: _Scope) -> Item | None:
+        """A node with what its template has; None, with a problem added, if there is no such template."""
+        wanted = item.entries.get("template")
+        if wanted is None:
+            return item
+        name = self._substituted(wanted, scope).value
+        base = scope.templates.get(name) if isinstance(name, str) else None
+        if base is None:
+            near = did_you_mean(str(name), scope.templates) or "; the file has none under templates:"
+            self._problems.add(wanted.place, f"there is no template {name!r}{near}")
+            return None
+        if not isinstance(base.value, dict):
+            self._problems.add(base.place, f"templates.{name}: expected a mapping, as for a node, got {base.plain()!r}")
+            return None
+        for key, entry in base.entries.items():
+            if key not in keys_of(NodeSpec) or key == "template":
+                self._problems.add(entry.at, unknown_key(key, keys_of(NodeSpec)))
+        return merged(base, item, BY_ENTRY)
+
+    def _with_groups(self, item: Item, scope: _Scope) -> Item:
+        """A node with what the groups around it give it."""
+        entries = dict(item.entries)
+        for key in INHERITED:
+            found = first_of([entries, *scope.shared]).get(key)
+            if found is not None:
+                entries[key] = found
+        for key in BY_ENTRY:
+            of_groups = first_of([group[key].entries for group in scope.shared if key in group])
+            if not of_groups:
+                continue
+            if key == "env":
+                own = entries.get("env", Item({}, item.place))
+                entries["env"] = own._replace(value=first_of([own.entries, of_groups]))
+            else:
+                entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
+        return item._replace(value=entries)
+
+    # values
+
+    def _is_left_out(self, item: Item, scope: _Scope) -> bool:
+        """Whether a block's condition leaves it out."""
+        left_out = False
+        for key, wanted in (("if", True), ("unless", False)):
+            condition = item.entries.get(key)
+            if condition is None:
+                continue
+            try:
+                value = self._one(condition.value, condition.place, scope)
+                left_out |= truth(value) is not wanted
+            except SubstitutionError as error:
+                text = f"{key}: {error}; compare with $(eval NAME == 'text')"
+                self._problems.add_unknown(condition.place, text)
+        return left_out
+
+    def _one(self, value: Any, place: Place, scope: _Scope) -> Any:
+        if not isinstance(value, str) or "$(" not in value:
+            return value
+        folder = self.folders.get(place.file, Path())
+        try:
+            return Substitutions(scope.values, str(folder), self._env).apply(value)
+        except SubstitutionError as error:
+            self._problems.add_unknown(place, str(error))
+            return value
+
+    def _substituted(self, item: Item, scope: _Scope) -> Item:
+        """The same with every substitution made, in keys too."""
+        if isinstance(item.value, dict):
+            result: dict[str, Item] = {}
+            for key, inner in item.value.items():
+                name = str(self._one(key, inner.at, scope))
+                if name in result:
+                    self._problems.add(inner.at, f"the key {key!r} becomes {name!r}, which is already here")
+                result[name] = self._substituted(inner, scope)
+            return item._replace(value=result)
+        if isinstance(item.value, list):
+            return item._replace(value=[self._substituted(inner, scope) for inner in item.value])
+        value = self._one(item.value, item.place, scope)
+        return located(value, item.place)._replace(key=item.key)
+
+    def _checked(self, model: type[BaseModel], block: Item, whole: Item | None = None) -> Any:
+        """The model of a block; None, with problems added, where its keys or types are wrong."""
+        if not isinstance((whole or block).value, (dict, str)):
+            what = {IncludeBlock: "include", ForBlock: "for"}.get(model, "group")
+            text = f"{what}: expected a mapping, got {(whole or block).plain()!r}{example(what)}"
+            self._problems.add((whole or block).place, text)
+            return None
+        return validated(model, source_of(block), self._problems)

@@ -1,0 +1,109 @@
+"""What `$(eval ...)` may say: arithmetic, comparisons and choices over a graph's arguments, and nothing else.
+
+Numbers, texts and lists, `and`, `or`, `not`, `in`, `x if y else z`, and a few functions. No attributes, no methods, no
+imports; every result is bounded in size, so that no expression can cost the time or memory of whoever looks at a file.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+MAX_LENGTH = 1000
+"""Characters of an expression."""
+MAX_BITS = 4096
+"""Of a power."""
+MAX_LIST = 10_000
+"""Elements of a list."""
+
+
+class ExpressionError(ValueError):
+    """An expression is malformed, or has no value."""
+
+
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
+    """The value of an expression.
+
+    Args:
+        names: The values that it may name.
+
+    Raises:
+        ExpressionError: It is not one that is allowed here, names something unknown, or has no value.
+    """
+    import simpleeval
+
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(f"an expression has at most {MAX_LENGTH} characters")
+    evaluator = simpleeval.EvalWithCompoundTypes(
+        operators={**simpleeval.DEFAULT_OPERATORS, ast.Pow: _power, ast.Mult: _times, ast.Mod: _modulo},
+        functions=FUNCTIONS,
+        names={**names, "true": True, "false": False, "pi": math.pi},
+    )
+    for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
+        evaluator.nodes.pop(kind, None)
+    evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator._eval(node.value), node.attr)
+    try:
+        ast.parse(text.strip(), mode="eval")  # simpleeval would take a statement, too
+        return evaluator.eval(text.strip())
+    except simpleeval.NameNotDefined as error:
+        raise ExpressionError(f"{error.name!r} is no argument{_known(names)}") from None
+    except simpleeval.FunctionNotDefined as error:
+        raise ExpressionError(f"there is no function {error.func_name!r}; there are {', '.join(FUNCTIONS)}") from None
+    except simpleeval.FeatureNotAvailable:
+        raise ExpressionError("only arithmetic, comparisons and choices can be written here") from None
+    except SyntaxError as error:
+        raise ExpressionError(f"not an expression: {error.msg}") from None
+    except RecursionError:
+        raise ExpressionError("nested too deep") from None
+    except (simpleeval.InvalidExpression, ArithmeticError, TypeError, ValueError, LookupError) as error:
+        raise ExpressionError(str(error) or type(error).__name__) from None
+
+
+def _known(names: Mapping[str, Any]) -> str:
+    return f"; there are {', '.join(names)}" if names else ""
+
+
+def _entry(value: Any, name: str) -> Any:
+    if not isinstance(value, dict) or name not in value:
+        raise ExpressionError(f"nothing called {name!r} is in {value!r}")
+    return value[name]
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    _refuse_others(base, exponent)
+    if isinstance(base, int) and base.bit_length() * abs(exponent) > MAX_BITS:
+        raise ExpressionError(f"{base}**{exponent} is too large")
+    return base**exponent
+
+
+def _times(left: Any, right: Any) -> Any:
+    _refuse_others(left, right)
+    return left * right
+
+
+def _modulo(left: Any, right: Any) -> Any:
+    _refuse_others(left, right)
+    return left % right
+
+
+def _refuse_others(*values: Any) -> None:
+    """Texts and lists grow when they are multiplied or formatted."""
+    if not all(isinstance(value, (int, float)) for value in values):
+        raise ExpressionError("*, ** and % are for numbers")
+
+
+def _range(*bounds: int) -> list[int]:
+    found = range(*bounds)
+    if len(found) > MAX_LIST:
+        raise ExpressionError(f"a range has at most {MAX_LIST} numbers")
+    return list(found)
+
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **{f.__name__: f for f in (abs, bool, float, int, len, max, min, round, str, sum)},
+    **{f.__name__: f for f in (math.sqrt, math.sin, math.cos, math.atan2, math.radians, math.degrees)},
+    "range": _range,
+}
+"""What an expression may call."""

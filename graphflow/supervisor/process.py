@@ -1,0 +1,110 @@
+"""One process of a graph, as its supervisor sees it."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import Any
+
+from graphflow.graph.plan import PlannedNode
+from graphflow.machines.process import Exit, State
+from graphflow.machines.restarts import BACKOFF, Restarts
+
+
+class Process:
+    """A worker with its nodes, or a foreign program.
+
+    Args:
+        name: The process's name: that of its node, unless several share it.
+        log: The file that its output goes to.
+    """
+
+    def __init__(self, name: str, nodes: list[PlannedNode], log: str) -> None:
+        self.name = name
+        self.nodes = nodes
+        self.log = log
+        self.state = State.PENDING
+        self.pid: int | None = None
+        self.exit: Exit | None = None
+        """How it ended, of a process that has."""
+        self.since = time.time()
+        """When the process entered its state, in seconds since 1970."""
+        self.ready_since: float | None = None
+        """When it was ready, on the monotonic clock."""
+        self.waiting_for = {n.name for n in nodes}
+        """Nodes that are not ready yet."""
+        self.error = ""
+        self.log_error = ""
+        """Why lines of its log were lost."""
+        self.starts = 0
+        self.stop_asked = False
+        self.failed = False
+        """Whether the process ended by itself with a failure."""
+        self.given_up = ""
+        """Why it is not started again, though it should be."""
+        self.delay = 0.0
+        """Seconds until it is started again, from the moment on in which it ended."""
+        self.last_end = ""
+        """How the one before this one ended, by itself."""
+        self.alarm: asyncio.TimerHandle | None = None
+        policies = [node.restart for node in nodes if node.restart != BACKOFF]
+        self.restarts = Restarts(policies[0] if policies else BACKOFF)
+        self.ends_graph = any(node.on_exit == "shutdown" for node in nodes)
+        self.is_critical = any(node.critical for node in nodes)
+
+    @property
+    def command(self) -> tuple[str, ...]:
+        """The program and its words; empty for a worker."""
+        return self.nodes[0].command
+
+    @property
+    def word(self) -> str:
+        """Its state, as `ps` has it."""
+        if self.state is State.ENDED and self.given_up:
+            return "given_up"
+        return "failed" if self.state is State.ENDED and self.failed else self.state.value
+
+    @property
+    def detail(self) -> str:
+        """What is wrong with it."""
+        if self.state is State.WAITING:
+            left = max(0.0, self.since + self.delay - time.time())
+            return f"{self.error or self.exit}; it is started again in {left:.1f} s"
+        if self.given_up:
+            return f"{self.error or self.exit}; given up: {self.given_up}"
+        if self.error:
+            return self.error
+        if self.exit is not None and self.exit.failed:
+            return str(self.exit)
+        return f"its log is not written whole: {self.log_error}" if self.log_error else ""
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One row per node, for `ps`."""
+        return [
+            {
+                "node": node.name,
+                "state": self.word,
+                "pid": self.pid,
+                "since": self.since,
+                "process": node.process,
+                "class": node.class_path or " ".join(node.command),
+                "log": self.log,
+                "restarts": max(0, self.starts - 1),
+                "detail": self.detail,
+                "last_end": self.last_end,
+            }
+            for node in self.nodes
+        ]
+
+    def begin(self) -> None:
+        """Forget what became of the process before this one."""
+        self.starts += 1
+        self.pid, self.exit, self.ready_since = None, None, None
+        self.error = self.log_error = self.given_up = ""
+        self.stop_asked = self.failed = False
+        self.waiting_for = {n.name for n in self.nodes}
+
+    @property
+    def ready_for(self) -> float:
+        """Seconds since it was ready."""
+        return 0.0 if self.ready_since is None else time.monotonic() - self.ready_since
