@@ -1,15 +1,21 @@
-"""`graphflow plan` and `graphflow check`: graph files without running them."""
+"""`graphflow plan`, `check`, `explain` and `schema`: graph files without running them."""
 
 from __future__ import annotations
 
-from collections.abc import Sized
+from collections.abc import Iterator, Sequence, Sized
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from graphflow.cli import exits, output
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
+
+if TYPE_CHECKING:
+    from graphflow.errors import Place, Problem
+    from graphflow.graph.check import Interfaces
+    from graphflow.graph.plan import Plan
 
 
 def find_graph(text: str) -> Path:
@@ -34,31 +40,81 @@ def find_graph(text: str) -> Path:
     raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled])}")
 
 
+_graph = click.argument("graph", metavar="GRAPH.yaml")
+_args = click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
+_json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
 @click.command()
-@click.argument("graph", metavar="GRAPH.yaml")
-@click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def plan(graph: str, args: tuple[str, ...], as_json: bool) -> None:
+@_graph
+@_args
+@_json
+@click.option("--diff", "other", metavar="OTHER.yaml", help="Show what would be different in another file.")
+def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) -> None:
     """Show exactly what a graph file would run and where each setting comes from. Imports nothing."""
     path = find_graph(graph)
     from graphflow.graph.resolve import load
 
     resolved = load(path, args)
-    if as_json:
+    if other is not None:
+        output.lines(_difference(resolved, load(find_graph(other), args)))
+    elif as_json:
         output.as_json(resolved.to_json())
     else:
         output.lines(resolved.lines())
 
 
+def _difference(one: Plan, other: Plan) -> Iterator[str]:
+    """Two plans as a unified diff, without the places of settings."""
+    from difflib import unified_diff
+
+    ours, theirs = ([line.partition("  # ")[0] for line in list(plan.lines())[1:]] for plan in (one, other))
+    yield from unified_diff(ours, theirs, one.file, other.file, lineterm="", n=2)
+
+
 @click.command()
-@click.argument("graph", metavar="GRAPH.yaml")
-@click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
-def check(graph: str, args: tuple[str, ...]) -> int:
+@_graph
+@_args
+@_json
+def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
     Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE.
     """
     path = find_graph(graph)
+    from graphflow.errors import GraphFileError
+    from graphflow.graph.static import findings
+
+    try:
+        resolved, found = _checked(path, args)
+    except GraphFileError as error:
+        problems = sorted(error.problems)
+        if as_json:
+            output.as_json({"problems": [_problem(problem) for problem in problems], "deadlocks": []})
+        else:
+            output_problems(problems)
+        return exits.USAGE
+    ways = findings(resolved, found)
+    certain = [way for way in ways if way.grade == "CERTAIN"]
+    if as_json:
+        deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
+        output.as_json({"problems": [], "deadlocks": deadlocks})
+        return exits.FAILED if certain else exits.OK
+    for way in ways:
+        output.talk(str(way))
+    possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
+    told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
+    more = f"no mistakes, {', '.join(told)}" if told else "no problems"
+    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
+    return exits.FAILED if certain else exits.OK
+
+
+def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:
+    """A graph and what its classes declare.
+
+    Raises:
+        GraphFileError: Every mistake that was found.
+    """
     from graphflow.errors import GraphFileError
     from graphflow.graph.check import check as check_plan
     from graphflow.graph.project import add_interfaces
@@ -66,29 +122,67 @@ def check(graph: str, args: tuple[str, ...]) -> int:
     from graphflow.supervisor.classes import read_interfaces
     from graphflow.supervisor.probe import probe
 
-    try:
-        resolved = load(path, args)
-        add_interfaces(Path(resolved.root))
-        found = read_interfaces(probe(resolved.classes(), resolved.root))
-        problems = check_plan(resolved, found)
-    except GraphFileError as error:
-        problems = list(error.problems)
-    for problem in sorted(problems):
-        output.talk(str(problem))
+    resolved = load(path, args)
+    add_interfaces(Path(resolved.root))
+    found = read_interfaces(probe(resolved.classes(), resolved.root))
+    problems = check_plan(resolved, found)
     if problems:
-        output.talk(_count(problems, "problem"))
-        return exits.USAGE
-    from graphflow.graph.static import findings
+        raise GraphFileError(problems)
+    return resolved, found
 
-    ways = findings(resolved, found)
-    for way in ways:
-        output.talk(str(way))
-    certain = [way for way in ways if way.grade == "CERTAIN"]
-    possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
-    told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
-    more = f"no mistakes, {', '.join(told)}" if told else "no problems"
-    output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
-    return exits.FAILED if certain else exits.OK
+
+def output_problems(problems: Sequence[Problem]) -> None:
+    """Say what is wrong with a graph file."""
+    for problem in problems:
+        output.talk(str(problem))
+    output.talk(_count(problems, "problem"))
+
+
+def _problem(problem: Problem) -> dict[str, Any]:
+    return {"message": problem.message, **_place(problem.place)}
+
+
+def _place(place: Place) -> dict[str, Any]:
+    return {"file": place.file, "line": place.line, "column": place.column}
+
+
+@click.command()
+@_graph
+@click.argument("name", required=False)
+@_args
+@_json
+def explain(graph: str, name: str | None, args: tuple[str, ...], as_json: bool) -> None:
+    """Explain how a name of a graph comes about: who uses it, by which namespace and rule.
+
+    Without NAME, all names that the classes show.
+    """
+    from graphflow.graph import explain as explaining
+
+    if name is not None and ":=" in name:
+        args, name = (name, *args), None
+    resolved, found = _checked(find_graph(graph), args)
+    names = explaining.names(resolved, found)
+    if name is not None:
+        full = name if name.startswith("/") else f"/{name}"
+        if full not in names:
+            raise UsageFault(f"nothing in {graph} is called {full}{did_you_mean(full, names)}")
+        names = {full: names[full]}
+    if as_json:
+        output.as_json(names)
+        return
+    for full, lines in sorted(names.items()):
+        output.lines([full, *(f"  {line}" for line in lines)])
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of graph files, with which an editor completes and checks them as you type.
+
+    Save it, and begin a graph file with:  # yaml-language-server: $schema=graph.schema.json
+    """
+    from graphflow.graph.schema import graph_schema
+
+    output.as_json(graph_schema())
 
 
 def _count(things: Sized, word: str) -> str:

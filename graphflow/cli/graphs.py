@@ -21,6 +21,7 @@ from graphflow.wire.profile import PROFILES, VARIABLE
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 _everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
 
+LEVELS = ("debug", "info", "warn", "error", "fatal")
 DETAIL = 60
 """Characters of what is wrong with a node that `ps` shows; its log has the rest."""
 PS_LIMIT = 1.0
@@ -35,6 +36,10 @@ PS_LIMIT = 1.0
 @click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
 @click.option("--private", is_flag=True, help="Use a port and a domain of its own.")
 @click.option("--races", is_flag=True, help="Report updates of node attributes that are lost between handlers.")
+@click.option(
+    "--only", multiple=True, metavar="NODE", help="Start this node, and what it comes after; may be repeated."
+)
+@click.option("--replace", is_flag=True, help="Stop the graph first, if it is running.")
 @click.option("--domain", type=click.IntRange(0), help="Domain id; overrides the file's.")
 @click.option("--wire", type=click.Choice(PROFILES), help="ROS 2 distribution whose message definitions to use.")
 @reach_options
@@ -46,6 +51,8 @@ def up(
     show_args: bool,
     private: bool,
     races: bool,
+    only: tuple[str, ...],
+    replace: bool,
     domain: int | None,
     wire: str | None,
     connect: tuple[str, ...],
@@ -67,11 +74,13 @@ def up(
         domain = _go_private(domain)
     if domain is None and os.environ.get("GRAPHFLOW_DOMAIN"):
         domain = domain_id()
+    if replace:
+        _take_down_running(path)
     # Nothing heavy may be imported before the fork: the children share what this process has.
     from graphflow.supervisor.launch import launch
 
     uses_console = not detach and not no_console and output.is_terminal()
-    report, launched = launch(path, list(args), domain)
+    report, launched = launch(path, list(args), domain, only)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])
@@ -84,6 +93,16 @@ def up(
     if detach:
         launched.let_go()
     return code
+
+
+def _take_down_running(path: Path) -> None:
+    """Stop what runs of a graph file, in this domain."""
+    from graphflow.cli.streaming import take_down
+    from graphflow.supervisor import rundir
+
+    for run in rundir.running():
+        if run.is_here and run.file == str(path.resolve()):
+            take_down(run, now=False)
 
 
 def _open_console(run: dict[str, Any]) -> int:
@@ -194,9 +213,21 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 @click.argument("nodes", nargs=-1, metavar="[NODE]...")
 @click.option("-f", "--follow", is_flag=True, help="Keep printing as more is written. Ctrl-C stops it.")
 @click.option("-n", "--lines", type=click.IntRange(0), help="Only the last N lines of each node.")
+@click.option("--node", "more", multiple=True, metavar="NODE", help="The same as NODE.")
+@click.option("--level", type=click.Choice(LEVELS), help="Only messages of this level or a more serious one.")
+@click.option("--since", metavar="TIME", help="Only messages of the last 30s, 5m or 2h, or since 14:05[:30].")
 @_graph
-def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | None) -> int:
+def logs(
+    nodes: tuple[str, ...],
+    follow: bool,
+    lines: int | None,
+    more: tuple[str, ...],
+    level: str | None,
+    since: str | None,
+    name: str | None,
+) -> int:
     """Show what the nodes of a graph have written, even after it has ended."""
+    from graphflow.cli.loglines import Chosen
     from graphflow.cli.streaming import LogReader
     from graphflow.names import did_you_mean
     from graphflow.supervisor import rundir
@@ -213,11 +244,12 @@ def logs(nodes: tuple[str, ...], follow: bool, lines: int | None, name: str | No
         folder, alive = found, False
         output.talk(f"no graph is running; this is the latest run of {folder.parent.name}, {folder.name}")
     files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != rundir.SUPERVISOR_LOG}
-    wanted = [n.strip("/").replace("/", ".") for n in nodes] or list(files)
+    wanted = [n.strip("/").replace("/", ".") for n in (*nodes, *more)] or list(files)
     for node in wanted:
         if node not in files:
             raise UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
-    reader = LogReader([files[n] for n in wanted], width=max(map(len, wanted), default=0))
+    chosen = Chosen(level, since) if level or since else None
+    reader = LogReader([files[n] for n in wanted], max(map(len, wanted), default=0), chosen)
     reader.show(last=lines)
     while follow and alive:
         time.sleep(0.1)

@@ -1,22 +1,41 @@
-"""`graphflow restart` and `stop`: single nodes of a running graph."""
+"""`graphflow start`, `stop`, `restart`, `status` and `wait`: single nodes of a running graph."""
 
 from __future__ import annotations
 
+import time
+from pathlib import Path
 from typing import Any
 
 import click
 
 from graphflow.cli import exits, output
-from graphflow.errors import SupervisorError
+from graphflow.errors import SupervisorError, UsageFault
 from graphflow.machines.process import START_LIMIT, STOP_LIMIT
+from graphflow.names import did_you_mean
 from graphflow.supervisor import rundir
 from graphflow.supervisor.control import ControlClient
+from graphflow.times import ago
 
 LIMIT = START_LIMIT + 2 * STOP_LIMIT
 """Seconds that a node may take to end and to be ready again."""
+LAST_LINES = 20
+"""Lines of a node's log that `status` shows."""
+LOOK_EVERY = 0.05
+OVER = ("failed", "given_up", "ended")
+"""States in which a node stays."""
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 _nodes = click.argument("nodes", nargs=-1, required=True, metavar="NODE...")
+
+
+@click.command()
+@_nodes
+@_graph
+def start(nodes: tuple[str, ...], name: str | None) -> int:
+    """Start nodes that have ended or failed. Returns when they are ready."""
+    for file in (node for node in nodes if node.endswith((".yaml", ".yml"))):
+        raise UsageFault(f"a graph is started by: graphflow up {file}")
+    return max(_do("start", node, name) for node in nodes)
 
 
 @click.command()
@@ -31,19 +50,128 @@ def restart(nodes: tuple[str, ...], name: str | None) -> int:
 @_nodes
 @_graph
 def stop(nodes: tuple[str, ...], name: str | None) -> int:
-    """Stop nodes. The others run on; `graphflow restart` starts them again."""
+    """Stop nodes. The others run on; `graphflow start` starts them again."""
     return max(_do("stop", node, name) for node in nodes)
 
 
+@click.command()
+@click.argument("node", metavar="NODE")
+@_graph
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def status(node: str, name: str | None, as_json: bool) -> int:
+    """Show how a node is, how it last ended, and the end of its log.
+
+    Exit code 0: it is ready, or will be; 1: it has failed.
+    """
+    run = rundir.choose(name)
+    row = _row(run.socket, _full(node))
+    last = _last_lines(Path(row["log"]))
+    is_bad = row["state"] in ("failed", "given_up")
+    if as_json:
+        output.as_json({"graph": run.graph, **row, "last_lines": last})
+        return exits.FAILED if is_bad else exits.OK
+    process = f", process {row['pid']}" if row["pid"] and row["state"] not in (*OVER, "waiting", "pending") else ""
+    output.data(f"{row['node']}: {row['state']} for {ago(time.time() - row['since'])}{process}")
+    facts = {
+        "": row["detail"],
+        "class": row["class"],
+        "shares the process": row["process"],
+        "started again": f"{row['restarts']} times" if row["restarts"] else "",
+        "its last end": row["last_end"],
+        "log": row["log"],
+    }
+    output.lines(f"  {what}: {fact}" if what else f"  {fact}" for what, fact in facts.items() if fact)
+    if last:
+        output.data(f"  its last {len(last)} lines:" if len(last) > 1 else "  its last line:")
+        output.lines(f"    {line}" for line in last)
+    return exits.FAILED if is_bad else exits.OK
+
+
+@click.command()
+@click.argument("nodes", nargs=-1, metavar="[NODE]...")
+@click.option("--ready", is_flag=True, help="Until they are ready, which is what is waited for without it, too.")
+@click.option("--ended", is_flag=True, help="Until they have ended.")
+@click.option("--timeout", type=click.FloatRange(0), default=60.0, show_default=True, help="Seconds to wait.")
+@_graph
+def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None) -> int:
+    """Wait until nodes are ready, or all nodes of a graph that is being started; it may not even have begun to.
+
+    Exit code 0: they are; 1: one has failed; 4: not within --timeout.
+    """
+    if ready and ended:
+        raise UsageFault("--ready and --ended: one of them")
+    deadline = time.monotonic() + timeout
+    while True:
+        rows = _rows_if_any(name)
+        if rows is None and ended:
+            return exits.OK
+        wanted = _wanted(nodes, rows) if rows is not None else []
+        failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
+        if failed and not ended:
+            output.error(f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}")
+            return exits.FAILED
+        good = OVER if ended else ("ready", "ended")
+        if wanted and all(row["state"] in good for row in wanted):
+            return exits.OK
+        if time.monotonic() > deadline:
+            left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
+            raise SupervisorError(f"after {timeout:g} s {left or 'no graph is running'}", exits.TIMEOUT)
+        time.sleep(LOOK_EVERY)
+
+
+def _rows_if_any(graph: str | None) -> list[dict[str, Any]] | None:
+    """The rows of all nodes; None while no graph is running."""
+    try:
+        return _rows(rundir.choose(graph).socket)
+    except SupervisorError as error:
+        if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it is not there yet, or has just gone
+            return None
+        raise
+
+
+def _wanted(nodes: tuple[str, ...], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    if not nodes:
+        return rows
+    known = {row["node"]: row for row in rows}
+    for node in map(_full, nodes):
+        if node not in known:
+            raise UsageFault(f"the graph has no node {node}{did_you_mean(node, known)}")
+    return [known[_full(node)] for node in nodes]
+
+
+def _full(node: str) -> str:
+    return node if node.startswith("/") else f"/{node}"
+
+
+def _rows(socket: str) -> list[dict[str, Any]]:
+    with ControlClient(socket) as client:
+        client.send(do="ps")
+        rows: list[dict[str, Any]] = next(client.receive(), {}).get("nodes", [])
+    return rows
+
+
+def _row(socket: str, node: str) -> dict[str, Any]:
+    return _wanted((node,), _rows(socket))[0]
+
+
+def _last_lines(log: Path) -> list[str]:
+    try:
+        with log.open("rb") as file:
+            file.seek(max(0, file.seek(0, 2) - 65536))
+            return file.read().decode(errors="replace").splitlines()[-LAST_LINES:]
+    except OSError:
+        return []
+
+
 def _do(what: str, node: str, graph: str | None) -> int:
-    node = node if node.startswith("/") else f"/{node}"
+    node = _full(node)
     run = rundir.choose(graph)
     with ControlClient(run.socket) as client:
         client.send(do=what, node=node)
         answer = next(client.receive(), {})
     if answer.get("event") == "error":
         raise SupervisorError(answer["message"])
-    row = _await(run.socket, node, "ready" if what == "restart" else "ended")
+    row = _await(run.socket, node, "ended" if what == "stop" else "ready")
     if what == "stop":
         output.data(f"{node} has ended")
         return exits.OK
@@ -55,17 +183,12 @@ def _do(what: str, node: str, graph: str | None) -> int:
 
 
 def _await(socket: str, node: str, wanted: str) -> dict[str, Any]:
-    """The row of a node once it is as wanted, or has failed."""
-    import time
-
+    """The row of a node once it is as wanted, or stays as it is."""
     deadline = time.monotonic() + LIMIT
     while True:
-        with ControlClient(socket) as client:
-            client.send(do="ps")
-            rows = next(client.receive(), {}).get("nodes", [])
-        row: dict[str, Any] = next((r for r in rows if r["node"] == node), {})
-        if row.get("state") in (wanted, "failed", "ended"):
+        row = _row(socket, node)
+        if row["state"] in (wanted, *OVER):
             return row
         if time.monotonic() > deadline:
-            raise SupervisorError(f"{node} is still {row.get('state')} after {LIMIT:g} s", exits.TIMEOUT)
-        time.sleep(0.05)
+            raise SupervisorError(f"{node} is still {row['state']} after {LIMIT:g} s", exits.TIMEOUT)
+        time.sleep(LOOK_EVERY)

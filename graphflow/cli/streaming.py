@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.cli import exits, output
+from graphflow.cli.loglines import Chosen
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient
@@ -31,9 +32,15 @@ _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
 class LogReader:
-    """Prints what is appended to log files, each line with the name of its node."""
+    """Prints what is appended to log files, each line with the name of its node.
 
-    def __init__(self, files: Iterable[Path], width: int) -> None:
+    Args:
+        width: Of the names.
+        chosen: Which lines; None for all.
+    """
+
+    def __init__(self, files: Iterable[Path], width: int, chosen: Chosen | None = None) -> None:
+        self._chosen = chosen
         self._files = dict.fromkeys(files, (0, b""))
         self._width = width
         self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
@@ -56,6 +63,8 @@ class LogReader:
             self._files[path] = (offset, rest)
             if lines:
                 texts = lines.decode(errors="replace").split("\n")
+                if self._chosen is not None:
+                    texts = self._chosen.of(path, texts)
                 self._print(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
 
     def _print(self, path: Path, texts: list[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Annotated, Any, get_args
 
 from pydantic import (
@@ -15,6 +15,7 @@ from pydantic import (
     StrictFloat,
     StrictInt,
     StrictStr,
+    WithJsonSchema,
     model_validator,
 )
 
@@ -54,27 +55,9 @@ def _limit(value: Any) -> Any:
     return value
 
 
-def _when_full(value: str) -> str:
-    if value not in get_args(WhenFull):
-        raise ValueError(f"when_full: expected one of {', '.join(get_args(WhenFull))}, got {value!r}")
-    return value
-
-
-def _policy(value: str) -> str:
-    if value not in get_args(DeadlockPolicy):
-        raise ValueError(f"deadlock: expected one of {', '.join(get_args(DeadlockPolicy))}, got {value!r}")
-    return value
-
-
 def _call_timeout(value: Any) -> Any:
     if value != "never" and (not isinstance(value, (int, float)) or isinstance(value, bool) or not value > 0):
         raise ValueError(f"call_timeout: expected seconds, or never, got {value!r}")
-    return value
-
-
-def _arg_type(value: str) -> str:
-    if value not in ARG_TYPES:
-        raise ValueError(f"type: expected one of {', '.join(ARG_TYPES)}, got {value!r}")
     return value
 
 
@@ -85,6 +68,11 @@ def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
         return value
 
     return checked
+
+
+def _enum(words: Iterable[str]) -> WithJsonSchema:
+    """One of these, or a text with a substitution that becomes one of them."""
+    return WithJsonSchema({"anyOf": [{"enum": list(words)}, {"type": "string", "pattern": r"\$\("}]})
 
 
 def _after(value: Any) -> Any:
@@ -140,7 +128,7 @@ class Arg(_Model):
     default: Any = None
     doc: StrictStr = ""
     unit: StrictStr = ""
-    type: Annotated[StrictStr, AfterValidator(_arg_type)] | None = None
+    type: Annotated[StrictStr, AfterValidator(_one_of("type", tuple(ARG_TYPES))), _enum(ARG_TYPES)] | None = None
     choices: list[Scalar] = []
 
 
@@ -150,7 +138,9 @@ class GroupSpec(_Model):
     handlers: StrictStr | list[StrictStr] = []
     limit: Annotated[Any, AfterValidator(_limit)] = None
     thread: StrictBool | None = None
-    when_full: Annotated[StrictStr, AfterValidator(_when_full)] | None = None
+    when_full: (
+        Annotated[StrictStr, AfterValidator(_one_of("when_full", get_args(WhenFull))), _enum(get_args(WhenFull))] | None
+    ) = None
 
     @model_validator(mode="before")
     @classmethod
@@ -161,7 +151,7 @@ class GroupSpec(_Model):
 class RestartSpec(_Model):
     """When a node that has ended is started again; written as one word when nothing else needs saying."""
 
-    policy: Annotated[StrictStr, AfterValidator(_one_of("restart", POLICIES))] = "on_failure"
+    policy: Annotated[StrictStr, AfterValidator(_one_of("restart", POLICIES)), _enum(POLICIES)] = "on_failure"
     delay: StrictFloat | StrictInt = Field(BACKOFF.delay, gt=0)
     max_delay: StrictFloat | StrictInt = Field(BACKOFF.max_delay, gt=0)
     max_restarts: StrictInt = Field(BACKOFF.max_restarts, ge=1)
@@ -181,9 +171,9 @@ class _Settings(_Model):
     remap: dict[str, StrictStr] = {}
     env: dict[str, EnvValue] = {}
     restart: RestartSpec | None = None
-    on_exit: Annotated[StrictStr, AfterValidator(_one_of("on_exit", ON_EXIT))] | None = None
+    on_exit: Annotated[StrictStr, AfterValidator(_one_of("on_exit", ON_EXIT)), _enum(ON_EXIT)] | None = None
     critical: StrictBool | None = None
-    log_level: Annotated[StrictStr, AfterValidator(_one_of("log_level", LOG_LEVELS))] | None = None
+    log_level: Annotated[StrictStr, AfterValidator(_one_of("log_level", LOG_LEVELS)), _enum(LOG_LEVELS)] | None = None
     if_: Condition = Field(None, alias="if")
     unless: Condition = None
 
@@ -284,9 +274,11 @@ class GraphFile(_Model):
     templates: dict[str, Any] = {}
     include: IncludeBlock | list[IncludeBlock] = []
     override: dict[str, Any] = {}
-    deadlock: Annotated[StrictStr, AfterValidator(_policy)] = "raise"
+    deadlock: Annotated[
+        StrictStr, AfterValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
+    ] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
-    strategy: Annotated[StrictStr, AfterValidator(_one_of("strategy", STRATEGIES))] = "one_for_one"
+    strategy: Annotated[StrictStr, AfterValidator(_one_of("strategy", STRATEGIES)), _enum(STRATEGIES)] = "one_for_one"
     console: Any = None
     """Read by `graph.console`."""
 

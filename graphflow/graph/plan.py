@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from graphflow.errors import Place
+from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
 from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.restarts import BACKOFF, Backoff
-from graphflow.names import Remap
+from graphflow.names import Remap, did_you_mean
 
 Deed = Literal["call", "set", "goal", "wait"]
 """What a step does: a service call, parameters set, an action's goal to its end, a wait for a name to be there."""
@@ -137,6 +137,28 @@ class Plan:
     """What is started again with a process that has failed: it alone, `rest_for_one` or `one_for_all`."""
     console: dict[str, Any] | None = None
     """The windows and panes that a console opens with, as `graph.console` reads them."""
+
+    def only(self, names: Iterable[str]) -> Plan:
+        """The part of the graph that some nodes need: they, and what comes before them.
+
+        Raises:
+            GraphFileError: There is no such node.
+        """
+        items: list[PlannedNode | PlannedStep] = [*self.nodes, *self.steps]
+        known = {item.name: item.after for item in items}
+        todo = [name if name.startswith("/") else f"/{name}" for name in names]
+        for name in todo:
+            if name not in known:
+                text = f"the graph has no node {name}{did_you_mean(name, known)}"
+                raise GraphFileError([Problem(Place("command line"), text)])
+        needed: set[str] = set()
+        while todo:
+            name = todo.pop()
+            if name not in needed:
+                needed.add(name)
+                todo += known[name]
+        nodes = tuple(node for node in self.nodes if node.name in needed)
+        return replace(self, nodes=nodes, steps=tuple(step for step in self.steps if step.name in needed))
 
     def classes(self) -> list[str]:
         """The classes of the nodes, each once; foreign programs have none."""

@@ -9,7 +9,8 @@ A door sends one request and reads lines until the supervisor closes the connect
     {"do": "hello"}                     -> {"event": "hello", ...}: the graph, its file, the windows kept with the run
     {"do": "plan"}                      -> {"event": "plan", "plan": ...}: what the graph file says, as `Plan.to_json`
     {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
-    {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}; likewise "stop"
+    {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}
+                                           likewise "start", "stop"
     {"do": "follow"}                    -> {"event": "hello", ...}, what has happened so far, then events as they come
 
 A `follow` with `"console": name` counts as a console. Whoever follows may send more requests: these, `announce` and
@@ -55,7 +56,7 @@ class Commands(Protocol):
 
     def begin_stop(self, *, now: bool, reason: str) -> None: ...
 
-    def restart(self, node: str, by: str) -> None: ...
+    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None: ...
 
     def stop(self, node: str, by: str) -> None: ...
 
@@ -154,8 +155,8 @@ class ControlServer:
                 return self._commands.hello()
             if what == "down":
                 self._commands.begin_stop(now=bool(request.get("now")), reason=str(request.get("reason", "down")))
-            elif what == "restart":
-                self._commands.restart(str(request.get("node")), by)
+            elif what in ("restart", "start"):
+                self._commands.restart(str(request.get("node")), by, only_ended=what == "start")
             elif what == "stop":
                 self._commands.stop(str(request.get("node")), by)
             elif what == "announce":

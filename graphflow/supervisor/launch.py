@@ -15,7 +15,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -61,19 +61,20 @@ class Launched(NamedTuple):
         os.close(self.lifeline)
 
 
-def launch(file: Path, given: list[str], domain: int | None) -> tuple[Report, Launched]:
+def launch(file: Path, given: list[str], domain: int | None, only: Sequence[str] = ()) -> tuple[Report, Launched]:
     """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
 
     Args:
         file: The graph file.
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
+        only: Nodes that are wanted, if not all are.
 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
     begin = _begin_portable if is_portable() else _begin_forked
-    begun = begin({"file": str(file), "given": given, "domain": domain})
+    begun = begin({"file": str(file), "given": given, "domain": domain, "only": list(only)})
     data = b""
     try:
         while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
@@ -171,7 +172,7 @@ class _Launch:
     """
 
     def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1) -> None:
-        self._file, self._given, self._domain = Path(job["file"]), job["given"], job["domain"]
+        self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._starter: Starter
 
@@ -229,6 +230,8 @@ class _Launch:
         from graphflow.supervisor.classes import read_interfaces
 
         plan = load(self._file, self._given)
+        if self._only:
+            plan = plan.only(self._only)
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
         self._starter.begin_probe(plan.classes(), plan.root)

@@ -105,11 +105,14 @@ class Supervisor:
             "layout": self.doors.layout,
         }
 
-    def restart(self, node: str, by: str) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
         """Start a node's process again, whether it runs or has ended.
 
+        Args:
+            only_ended: Not if it runs.
+
         Raises:
-            SupervisorError: There is no such node, or the graph is being stopped.
+            SupervisorError: There is no such node, it cannot be started now, or the graph is being stopped.
         """
         process = self._named(node)
         if self._stopping:
@@ -117,7 +120,9 @@ class Supervisor:
         if process.state is State.PENDING:
             waits = ", ".join(need.name for need in self._order.after[process.name] - self._met)
             raise SupervisorError(f"{node} has not been started yet: it comes after {waits}")
-        self.doors.announce(f"restart {node}", by)
+        if only_ended and process.state not in (State.ENDED, State.WAITING):
+            raise SupervisorError(f"{node} runs already: it is {process.word}; to begin anew: graphflow restart {node}")
+        self.doors.announce(f"{'start' if only_ended else 'restart'} {node}", by)
         process.restarts.forget()
         self._happen(process, Event.RESTART)
 

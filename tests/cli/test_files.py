@@ -111,3 +111,40 @@ def test_check_of_a_certain_deadlock(machine: Machine) -> None:
     assert "self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add" in text
     assert "1 node, 0 steps, no mistakes, 1 deadlock" in text
     assert "CERTAIN" not in machine.look("check", "deadlock/self_call_fixed")
+
+
+GRAPHS = "graphs/draw_circle.yaml", "graphs/turtlesim.yaml"
+
+
+def test_two_plans(machine: Machine) -> None:
+    """What differs between two files, or between a file and itself with other arguments."""
+    text = machine.look("plan", GRAPHS[0], "--diff", GRAPHS[1])
+    assert text.startswith(f"--- {GRAPHS[0]}\n+++ {GRAPHS[1]}\n")
+    assert "-/draw_circle" in text
+    assert "# graphs" not in text
+    assert machine.look("plan", GRAPHS[0], "--diff", GRAPHS[0]) == ""
+
+
+def test_checks_for_programs(machine: Machine, tmp_path: Path) -> None:
+    """Problems and deadlocks with their places; the exit code is the same."""
+    assert json.loads(machine.look("check", "--json", GRAPHS[0])) == {"problems": [], "deadlocks": []}
+    wrong = tmp_path / "g.yaml"
+    wrong.write_text("nodes: {a: {clas: x:Y}}\n")
+    (problem,) = json.loads(machine.look("check", "--json", str(wrong), code=2))["problems"]
+    assert problem["message"] == "unknown key 'clas'; did you mean 'class'?"
+    assert (problem["line"], problem["column"]) == (1, 13)
+
+
+def test_names_explained(machine: Machine) -> None:
+    """Of one name or all; one that is not there is told with the nearest."""
+    text = machine.look("explain", GRAPHS[0], "turtle1/cmd_vel")
+    assert text.startswith("/turtle1/cmd_vel\n")
+    assert "/draw_circle publishes it as 'turtle1/cmd_vel'" in text
+    everything = json.loads(machine.look("explain", GRAPHS[0], "--json", "linear:=1.0"))
+    assert {"/turtlesim", "/draw_circle", "/turtle1/cmd_vel", "/spawn"} <= everything.keys()
+    assert "did you mean '/spawn'?" in machine.look("explain", GRAPHS[0], "/spwan", code=2)
+
+
+def test_the_schema(machine: Machine) -> None:
+    """It is one document."""
+    assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"

@@ -141,3 +141,16 @@ def test_show_args(machine: Machine, tmp_path: Path) -> None:
     ):
         file.write_bytes(data)
         assert (problem or "no arguments") in machine.look("up", "-s", str(file), code=2 if problem else 0)
+
+
+def test_a_part_of_a_graph_and_in_place_of_it(machine: Machine) -> None:
+    """`--only` starts a node and what it needs; `--replace` stops what runs of the file first; logs can be chosen."""
+    project = make_project(machine.run_directory / "lab")
+    file = write(project, f"{GOOD}  /c: {{class: nodes.lab:Good, after: /a}}\n")
+    machine.run("up", "-d", file, "--only", "c", cwd=project)
+    before = rows(machine)
+    assert list(before) == ["/a", "/c"]
+    assert "has no node /d" in machine.run("up", "-d", file, "--replace", "--only", "d", cwd=project, code=2)
+    machine.run("up", "-d", file, "--replace", cwd=project)
+    assert list(rows(machine)) == ["/a", "/b", "/c"]
+    machine.look("down")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 
@@ -36,3 +37,38 @@ def test_restart_and_stop(machine: Machine) -> None:
     assert rows(machine)["/a"]["restarts"] == 3
     assert "has no node /aa; did you mean '/a'?" in machine.look("restart", "/aa", code=1)
     machine.look("down")
+
+
+def test_the_status_of_a_node(standing: Machine) -> None:
+    """Its state, class and log with the end of it, or the same for programs."""
+    lines = standing.look("status", "talker").splitlines()
+    assert lines[0].startswith("/talker: ready for ")
+    assert "  class: nodes.talker:Talker" in lines
+    assert any(line.startswith("    [INFO]") for line in lines)
+    found = json.loads(standing.look("status", "/talker", "--json"))
+    assert (found["graph"], found["node"], found["state"], found["restarts"]) == ("standing", "/talker", "ready", 0)
+    assert found["last_lines"]
+    assert "has no node /tolker; did you mean '/talker'?" in standing.look("status", "tolker", code=2)
+
+
+def test_waiting(standing: Machine) -> None:
+    """What is ready needs no waiting; what does not end is told with its state, and exit code 4."""
+    standing.look("wait")
+    standing.look("wait", "--ready", "talker", "/office/clerk")
+    text = standing.look("wait", "--ended", "talker", "--timeout", "0.1", code=4)
+    assert "after 0.1 s /talker is ready" in text
+    assert "--ready and --ended: one of them" in standing.look("wait", "--ready", "--ended", code=2)
+    assert "has no node /tolker; did you mean '/talker'?" in standing.look("wait", "tolker", code=2)
+
+
+def test_what_cannot_be_done(standing: Machine) -> None:
+    """Nothing that is asked for is silently left undone."""
+    text = standing.look("start", "/talker", code=1)
+    assert "/talker runs already: it is ready; to begin anew: graphflow restart /talker" in text
+    assert "a graph is started by: graphflow up lab.yaml" in standing.look("start", "lab.yaml", code=2)
+
+
+def test_waiting_for_nothing(machine: Machine) -> None:
+    """Where no graph is running, it is waited for one to begin; all nodes have ended already."""
+    assert "after 0.1 s no graph is running" in machine.look("wait", "--timeout", "0.1", code=4)
+    machine.look("wait", "--ended")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.errors import Place
+from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
 from graphflow.graph.plan import Plan, Rule, node_from_json
 from graphflow.graph.resolve import resolve
@@ -87,3 +87,15 @@ def test_a_plan_does_not_change(plan: Plan) -> None:
         plan.domain = 6  # type: ignore[misc]
     with pytest.raises(FrozenInstanceError):
         plan.nodes[0].process = "two"  # type: ignore[misc]
+
+
+def test_a_part_of_a_plan() -> None:
+    """Some nodes and what comes before them, steps and nodes; a name that is not there is told."""
+    text = "nodes: {a: {class: x:Y}, b: {class: x:Y, after: s}, c: {class: x:Y}}\n"
+    text += "steps: {s: {wait: /a, after: a}, t: {wait: /c}}"
+    whole = resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"), [], {})
+    part = whole.only(["b"])
+    assert ([n.name for n in part.nodes], [s.name for s in part.steps]) == (["/a", "/b"], ["s"])
+    assert [n.name for n in whole.only(["/c"]).nodes] == ["/c"]
+    with pytest.raises(GraphFileError, match="the graph has no node /bb; did you mean '/b'"):
+        whole.only(["bb"])

@@ -43,10 +43,10 @@ class Graph:
     def begin_stop(self, *, now: bool, reason: str) -> None:
         self.stopped.append(reason)
 
-    def restart(self, node: str, by: str) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
         if node != "/a":
             raise SupervisorError(f"graph g has no node {node}")
-        self.asked.append(("restart", node, by))
+        self.asked.append(("start" if only_ended else "restart", node, by))
 
     def stop(self, node: str, by: str) -> None:
         self.asked.append(("stop", node, by))

@@ -39,7 +39,7 @@ class Graph:
     def begin_stop(self, *, now: bool, reason: str) -> None:
         self.asked.append(f"stop {reason}")
 
-    def restart(self, node: str, by: str) -> None:
+    def restart(self, node: str, by: str, *, only_ended: bool = False) -> None:
         self.asked.append(f"restart {node}")
         self.doors.announce(f"restart {node}", by)
 

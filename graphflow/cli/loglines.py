@@ -1,0 +1,65 @@
+"""Lines of logs, chosen by level and time: `[WARN] [1795223522.100807190] [talker]: text`."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+
+from graphflow.errors import UsageFault
+
+_HEAD = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[(\d{1,12}\.\d{1,9})\] ")
+_ORDER = ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")
+_AGO = re.compile(r"(\d{1,6}(?:\.\d{1,3})?)\s*(s|m|h|d)?\Z")
+_CLOCK = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}))?\Z")
+_UNITS = {None: 1, "s": 1, "m": 60, "h": 3600, "d": 86400}
+
+
+class Chosen:
+    """Which lines are wanted. A line without a head, as of a traceback, goes with the message before it.
+
+    Args:
+        level: The least serious level; None for any.
+        since: A time as `time_of` reads it; None for any.
+
+    Raises:
+        UsageFault: `since` is no time.
+    """
+
+    def __init__(self, level: str | None, since: str | None) -> None:
+        self._least = _ORDER.index(level.upper()) if level else 0
+        self._since = time_of(since, time.time()) if since else 0.0
+        self._goes_on: dict[Path, bool] = {}
+
+    def of(self, file: Path, lines: list[str]) -> list[str]:
+        """Those lines that are wanted, of the next ones in a file."""
+        found = []
+        is_wanted = self._goes_on.get(file, self._least == 0 and self._since == 0.0)
+        for line in lines:
+            head = _HEAD.match(line)
+            if head:
+                is_wanted = _ORDER.index(head[1]) >= self._least and float(head[2]) >= self._since
+            elif line.startswith("[supervisor] "):
+                is_wanted = True
+            if is_wanted:
+                found.append(line)
+        self._goes_on[file] = is_wanted
+        return found
+
+
+def time_of(text: str, now: float) -> float:
+    """Seconds since 1970 of `5m` (ago), or of `14:05` today, or yesterday if that is yet to come.
+
+    Raises:
+        UsageFault: `text` is neither.
+    """
+    ago = _AGO.match(text.strip())
+    if ago:
+        return now - float(ago[1]) * _UNITS[ago[2]]
+    clock = _CLOCK.match(text.strip())
+    if clock and int(clock[1]) < 24 and int(clock[2]) < 60 and int(clock[3] or 0) < 60:
+        today = time.localtime(now)
+        at = (today.tm_year, today.tm_mon, today.tm_mday, int(clock[1]), int(clock[2]), int(clock[3] or 0), 0, 0, -1)
+        found = time.mktime(at)
+        return found if found <= now else found - 86400
+    raise UsageFault(f"--since {text}: write 30s, 5m or 2h for so long ago, or a time of the day such as 14:05")
