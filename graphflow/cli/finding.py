@@ -9,22 +9,13 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
+from graphflow.graph.executables import EXECUTABLES
 from graphflow.graph.project import demos_root, project_root
 from graphflow.names import did_you_mean
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
-
-EXECUTABLES = {
-    ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
-    ("turtlesim", "turtle_teleop_key"): "nodes.turtle_teleop:TurtleTeleop",
-    ("demo_nodes_cpp", "talker"): "nodes.talker:Talker",
-    ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
-    ("demo_nodes_py", "talker"): "nodes.talker:Talker",
-    ("demo_nodes_py", "listener"): "nodes.listener:Listener",
-}
-"""Executables of ROS 2's packages whose nodes come with graphflow."""
 
 
 def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:

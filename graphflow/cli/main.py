@@ -29,13 +29,14 @@ _VERBS = {
     "start": ("nodes", "Start nodes that have ended."),
     "restart": ("nodes", "Restart nodes, whether they run or have ended."),
     "stop": ("nodes", "Stop nodes."),
-    "status": ("nodes", "Show how a node is, and the end of its log."),
+    "status": ("nodes", "Show how a node is, how it last ended, and the end of its log."),
     "wait": ("nodes", "Wait until nodes are ready."),
     "logs": ("graphs", "Show what the nodes of a graph have written."),
     "plan": ("files", "Show exactly what a graph file would run."),
     "check": ("files", "Report every mistake in a graph file."),
     "explain": ("files", "Explain how a name of a graph comes about."),
     "schema": ("files", "Print the JSON Schema of graph files."),
+    "launch": ("launch", "Convert ROS's launch files."),
     "run": ("run", "Run one node."),
     "demo": ("demo", "Walk through an example, step by step."),
     "node": ("node", "List and describe nodes."),
@@ -52,7 +53,7 @@ _VERBS = {
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
-_OTHER_WORDS = {"launch": "up", "kill": "down", "interfaces": "interface"}
+_OTHER_WORDS = {"kill": "down", "interfaces": "interface"}
 """What people coming from other tools type."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from graphflow.errors import GraphFileError, Place
@@ -34,13 +34,20 @@ class Arguments:
         self.values: dict[str, Any] = {}
         """By name, of those that the command line may set."""
 
-    def of_file(self, declared: Item | None, outer: Mapping[str, Any], fixed: Mapping[str, Item]) -> dict[str, Any]:
+    def of_file(
+        self,
+        declared: Item | None,
+        outer: Mapping[str, Any],
+        fixed: Mapping[str, Item],
+        substitute: Callable[[Item, Mapping[str, Any]], Item] = lambda item, _: item,
+    ) -> dict[str, Any]:
         """The values of what a file declares.
 
         Args:
             declared: The file's section `args`.
             outer: The values in force where the file is included.
             fixed: Values that the including file gives.
+            substitute: Makes the substitutions in a default, with the values of the arguments before it.
         """
         specs = declared.entries if declared is not None else {}
         for name, item in fixed.items():
@@ -53,6 +60,9 @@ class Arguments:
                 found[name] = self._checked(name, fixed[name].plain(), spec, fixed[name].place)
                 continue
             if name not in outer:
+                if "default" in spec.entries:
+                    default = substitute(spec.entries["default"], found)
+                    spec = spec._replace(value={**spec.entries, "default": default})
                 found[name] = self._own(name, spec)
             self.values[name] = found[name]
         return found

@@ -18,8 +18,8 @@ from typing import Any
 from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
-from graphflow.graph import source
 from graphflow.graph.arguments import Arguments
+from graphflow.graph.executables import package_folder
 from graphflow.graph.faults import Problems, example, unknown_key, validated
 from graphflow.graph.model import (
     BLOCKS,
@@ -31,9 +31,10 @@ from graphflow.graph.model import (
     NodeSpec,
     keys_of,
 )
-from graphflow.graph.project import shown
-from graphflow.graph.substitutions import SubstitutionError, Substitutions, truth
-from graphflow.graph.tree import Item, first_of, located, merged, source_of, tree
+from graphflow.graph.project import project_root, shown
+from graphflow.graph.reading import read
+from graphflow.graph.substitutions import SubstitutionError, Substitutions, python_package, truth
+from graphflow.graph.tree import Item, first_of, located, merged, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
 BY_ENTRY = ("params", "remap", "env")
@@ -87,6 +88,8 @@ class Expansion:
         """The folder of each file, by the name that messages have for it."""
         self.arguments = Arguments(given, problems)
         self._env, self._problems = env, problems
+        self._root = Path()
+        """The project's folder."""
         self._rounds = 0
         self._relative = 0
         """Names so far that depend on a namespace."""
@@ -100,6 +103,7 @@ class Expansion:
 
     def file(self, top: Item, path: Path) -> None:
         """Take in the graph's own file."""
+        self._root = project_root(path)
         self._file(top, path, _Scope({}, (path.resolve(),)), {})
         self.arguments.refuse_strays()
 
@@ -108,7 +112,13 @@ class Expansion:
         self.folders[top.place.file] = path.resolve().parent
         entries = top.entries
         if entries.get("args") is None or isinstance(entries["args"].value, dict):
-            scope = replace(scope, values=self.arguments.of_file(entries.get("args"), scope.values, fixed))
+            outer = scope
+
+            def substituted(item: Item, known: Mapping[str, Any]) -> Item:
+                return self._substituted(item, replace(outer, values=known))
+
+            values = self.arguments.of_file(entries.get("args"), scope.values, fixed, substituted)
+            scope = replace(scope, values=values)
         templates = entries.get("templates")
         if templates is not None:
             scope = replace(scope, templates={**scope.templates, **templates.entries})
@@ -170,7 +180,7 @@ class Expansion:
             raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
         if len(self.folders) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
-        top = tree(source.read_file(path, shown(path)))
+        top = read(path, shown(path), self._problems.add)
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None
@@ -428,10 +438,14 @@ class Expansion:
             return value
         folder = self.folders.get(place.file, Path())
         try:
-            return Substitutions(scope.values, str(folder), self._env).apply(value)
+            return Substitutions(scope.values, str(folder), self._env, self._package).apply(value)
         except SubstitutionError as error:
             self._problems.add_unknown(place, str(error))
             return value
+
+    def _package(self, name: str) -> str | None:
+        folder = package_folder(name, self._root)
+        return str(folder) if folder is not None else python_package(name)
 
     def _substituted(self, item: Item, scope: _Scope) -> Item:
         """The same with every substitution made, in keys too."""

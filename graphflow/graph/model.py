@@ -219,6 +219,7 @@ class StepSpec(_Model):
     set_: StrictStr = Field("", alias="set")
     goal: StrictStr = ""
     wait: StrictStr = ""
+    delay: StrictFloat | StrictInt | None = Field(None, gt=0)
     type: Annotated[StrictStr, AfterValidator(_interface_type)] | None = None
     request: dict[str, Any] = {}
     params: dict[str, Any] = {}

@@ -13,8 +13,8 @@ from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Remap, did_you_mean
 
-Deed = Literal["call", "set", "goal", "wait"]
-"""What a step does: a service call, parameters set, an action's goal to its end, a wait for a name to be there."""
+Deed = Literal["call", "set", "goal", "wait", "delay"]
+"""What a step does: a service call, parameters set, a goal to its end, a wait for a name, or for some seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +223,7 @@ class Plan:
         for step in self.steps:
             yield f"step {step.name}"
             yield from _after_line(step.after)
-            yield f"  {step.do:8} {step.target} {step.request if step.do != 'wait' else ''}".rstrip()
+            yield f"  {step.do:8} {step.target} {step.request if step.do not in ('wait', 'delay') else ''}".rstrip()
 
 
 def _after_line(after: Mapping[str, str]) -> Iterator[str]:

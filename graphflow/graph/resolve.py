@@ -16,8 +16,9 @@ from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
+from graphflow.graph.reading import read
 from graphflow.graph.source import Source
-from graphflow.graph.tree import source_of, tree
+from graphflow.graph.tree import Item, source_of, tree
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import did_you_mean, expand, split
@@ -34,18 +35,21 @@ def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = 
     Raises:
         GraphFileError: Every mistake that could be found.
     """
-    return resolve(source.read_file(path, shown(path)), path, given, env)
+    problems = Problems()
+    return _resolve(read(path, shown(path), problems.add), path, given, env, problems)
 
 
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
     """Resolve what `source.read` found. Arguments and errors as for `load`."""
-    problems = Problems()
-    if not isinstance(src.data, dict):
-        what = "the file is empty; " if src.data is None else ""
-        problems.add(src.place(()), f"{what}a graph file is a mapping with the key 'nodes'{example('nodes')}")
+    return _resolve(tree(src), path, given, env, Problems())
+
+
+def _resolve(top: Item, path: Path, given: Sequence[str], env: Mapping[str, str] | None, problems: Problems) -> Plan:
+    if not isinstance(top.value, dict):
+        what = "the file is empty; " if top.value is None else ""
+        problems.add(top.place, f"{what}a graph file is a mapping with the key 'nodes'{example('nodes')}")
         problems.raise_any()
     expansion = Expansion(given, env, problems)
-    top = tree(src)
     expansion.file(top, path)
     if not problems and not top.entries.keys() & {*BLOCKS}:
         problems.add(top.place, "the key 'nodes' is missing")
@@ -63,7 +67,7 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     console = console_section(src, problems.add)
     problems.raise_any()
     return Plan(
-        name=model.name or path.stem,
+        name=model.name or path.stem.removesuffix(".launch"),
         file=src.file,
         root=str(project_root(path)),
         nodes=tuple(ordered_nodes),
@@ -162,7 +166,10 @@ def _restart(src: Source, spec: NodeSpec, base: source.Path, problems: Problems)
             text = f"on_exit: restart contradicts restart: {given.policy}; leave one of them out"
             problems.add(src.place((*base, "on_exit")), text)
         given = RestartSpec.model_validate({**(given.model_dump() if given else {}), "policy": "always"})
-    return BACKOFF if given is None else Backoff(**given.model_dump())
+    if given is None:
+        return BACKOFF
+    numbers = (float(given.delay), float(given.max_delay), given.max_restarts, float(given.within))
+    return Backoff(given.policy, *numbers)  # type: ignore[arg-type]  # its validator has looked
 
 
 def _concurrency(
@@ -217,7 +224,7 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
     return tuple(rules)
 
 
-_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": ""}
+_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": ""}
 """What a step does, and the key for what it sends."""
 
 
@@ -226,6 +233,7 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
     for name, spec in model.steps.items():
         at: source.Path = ("steps", name)
         written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait}
+        written["delay"] = "" if spec.delay is None else f"{spec.delay:g} s"
         deeds = [deed for deed, target in written.items() if target]
         if len(deeds) != 1:
             what = " and ".join(deeds) or "none of them"
@@ -253,7 +261,7 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
                 field_places=dict(zip(spec.request, fields, strict=True)),
                 type=spec.type,
                 after=spec.after,
-                timeout=float(spec.timeout),
+                timeout=float(spec.timeout if spec.delay is None else spec.delay),
             )
         )
     return steps

@@ -43,6 +43,10 @@ class Backoff:
     within: float = 30.0
     """Seconds in which so many new starts are too many."""
 
+    def __str__(self) -> str:
+        times = f"{self.max_restarts} times in {self.within:g} s"
+        return f"{self.policy}, after {self.delay:g} to {self.max_delay:g} s, up to {times}"
+
 
 BACKOFF = Backoff()
 

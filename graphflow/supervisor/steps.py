@@ -46,6 +46,9 @@ class StepRunner:
             self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
             await core_of(self._node).start(self._context)
         deeds = {"call": self._call_service, "set": self._set, "goal": self._send_goal, "wait": self._wait}
+        if step.do == "delay":
+            await self._context.clock.sleep(step.timeout)
+            return "over"
         return await deeds[step.do](step, self._node)
 
     async def _call_service(self, step: PlannedStep, node: Node) -> Any:

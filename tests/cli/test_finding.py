@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.finding import EXECUTABLES, find_class
+from graphflow.cli.finding import find_class
 from graphflow.errors import UsageFault
+from graphflow.graph.executables import EXECUTABLES
 from graphflow.graph.project import demos_root
 from tests.conftest import PROJECT
 

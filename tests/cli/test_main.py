@@ -13,7 +13,8 @@ from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
-VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "restart", "stop", "logs", "plan", "check", "run")
+VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
+VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
 VERBS += ("demo", "node", "topic", "service", "action", "param", "waits", "groups", "doctor", "console", "interface")
 
 
@@ -64,8 +65,8 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "message"),
     [
         (["topik"], "no such command 'topik'; did you mean 'topic'?"),
-        (["launch"], "no such command 'launch'; did you mean 'up'?"),
-        (["lanch"], "no such command 'lanch'; did you mean 'up'?"),
+        (["launch", "x.xml"], "a graph or launch file is started by: graphflow up x.xml"),
+        (["lanch"], "no such command 'lanch'; did you mean 'launch'?"),
         (["kill"], "no such command 'kill'; did you mean 'down'?"),
         (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
         (["topic", "lst"], "no such command 'lst'; did you mean 'list'?"),

@@ -22,7 +22,7 @@ def test_what_ros2_has_and_graphflow_not_yet(words: str) -> None:
     [
         ("topic ech", "no such command 'ech'; did you mean 'echo'?"),
         ("topi", "no such command 'topi'; did you mean 'topic'?"),
-        ("launch", "no such command 'launch'; did you mean 'up'?"),
+        ("kill", "no such command 'kill'; did you mean 'down'?"),
         ("frobnicate", "no such command 'frobnicate'; graphflow --help lists them"),
         ("service x", "no such command 'x'; there is call, list"),
     ],

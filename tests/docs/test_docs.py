@@ -61,6 +61,7 @@ PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
 KINDS = {
     "python": {"file", "raises", "ros2"},
     "yaml": {"file", "wrong", "fragment", "net"},
+    "xml": {"file"},
     "msg": {"file"},
     "srv": {"file"},
     "action": {"file"},

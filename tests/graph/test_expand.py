@@ -289,7 +289,10 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
         ),
         ("include: {fil: x}", "2:11: unknown key 'fil'; did you mean 'file'?"),
         ("include: {file: 3}", "2:17: file: expected text, got 3"),
-        ("steps: {s: {call: /x, set: /y}}", "2:9: a step has one of call, set, goal, wait; 's' has call and set"),
+        (
+            "steps: {s: {call: /x, set: /y}}",
+            "2:9: a step has one of call, set, goal, wait, delay; 's' has call",
+        ),
         ("steps: {s: {wait: /x, request: {a: 1}}}", "2:23: request: does not go with wait:, which sends nothing"),
         ("steps: {s: {call: /x, params: {a: 1}}}", "2:23: params: does not go with call:; write request:"),
         ("steps: {s: {set: /a}}", "2:9: there is nothing to set; write params: {NAME: VALUE} beside set: /a"),

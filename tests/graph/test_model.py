@@ -23,7 +23,7 @@ def test_keys_are_those_written_in_files() -> None:
     """`class` is a key; Python's name for it is not."""
     words = "namespace params remap env restart on_exit critical log_level if unless class command template params_file"
     assert keys_of(NodeSpec) == [*words.split(), "process", "after", "concurrency"]
-    words = "call set goal wait type request params after timeout if unless"
+    words = "call set goal wait delay type request params after timeout if unless"
     assert keys_of(StepSpec) == words.split()
     assert keys_of(Arg) == ["default", "doc", "unit", "type", "choices"]
     words = "name domain args nodes steps group for templates include override deadlock call_timeout strategy console"

@@ -1,0 +1,115 @@
+"""`graphflow launch convert`: ROS's launch files as graph files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import Problem, UsageFault
+
+if TYPE_CHECKING:
+    from graphflow.graph.tree import Item
+
+PYTHON_LIMIT = 20.0
+"""Seconds that a launch file in Python may take to describe itself."""
+
+
+class _Verbs(Verbs):
+    def unknown(self, ctx: click.Context, word: str) -> str:
+        return f"a graph or launch file is started by: graphflow up {word if '.' in word else 'FILE'}"
+
+
+@click.group(cls=_Verbs)
+def launch() -> None:
+    """Convert ROS's launch files. Those in YAML and XML also start as they are: graphflow up FILE."""
+
+
+@launch.command()
+@click.argument("file", metavar="FILE", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "-o", "--output", "target", metavar="GRAPH.yaml", type=click.Path(path_type=Path), help="Write to a file."
+)
+def convert(file: Path, target: Path | None) -> int:
+    """Write a launch file in Python, XML or YAML as a graph file.
+
+    What a graph file has no words for is listed with its line. One in Python is run, in a process of its own, against
+    stand-ins for ROS's launch packages; so do not convert what you do not trust.
+
+    Exit code 0: all of it is there; 1: something is not.
+    """
+    from graphflow.graph.project import shown
+    from graphflow.graph.reading import read
+
+    problems: list[Problem] = []
+
+    def complain(place: Any, message: str) -> None:
+        problems.append(Problem(place, message))
+
+    if target is not None and target.exists():
+        raise UsageFault(f"{target} is there already; remove it, or name another file")
+    top = _python(file, problems) if file.suffix == ".py" else read(file, shown(file), complain, complain)
+    text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top)}"
+    if target is None:
+        output.lines(text.rstrip("\n").split("\n"))
+    else:
+        target.write_text(text, encoding="utf-8")
+        output.talk(f"{target}: written; try it with: graphflow check {target}")
+    for problem in sorted(set(problems)):
+        output.talk(str(problem))
+    return exits.FAILED if problems else exits.OK
+
+
+def _python(file: Path, problems: list[Problem]) -> Item:
+    from graphflow.errors import GraphFileError, Place
+    from graphflow.graph import ros_launch
+    from graphflow.graph.project import project_root, shown
+
+    name = shown(file)
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    try:
+        ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
+    except subprocess.TimeoutExpired:
+        raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
+    try:
+        told = json.loads(ran.stdout)
+    except ValueError:
+        words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None
+    problems += [Problem(Place(name, p["line"], 1), p["message"]) for p in told["problems"]]
+
+    def complain(place: Any, message: str) -> None:
+        problems.append(Problem(place, message))
+
+    return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(file), complain, complain)
+
+
+def _yaml(top: Item) -> str:
+    """A tree as YAML that reads back as the same."""
+    import yaml
+
+    from graphflow.graph.source import scalar
+
+    class Dumper(yaml.SafeDumper):
+        """Quotes every text that YAML 1.2 reads as something else."""
+
+        def ignore_aliases(self, data: Any) -> bool:
+            return True
+
+    def text(dumper: yaml.SafeDumper, value: str) -> yaml.ScalarNode:
+        try:
+            is_text = isinstance(scalar(value), str)
+        except ValueError:
+            is_text = False
+        return dumper.represent_scalar("tag:yaml.org,2002:str", value, style=None if is_text else "'")
+
+    Dumper.add_representer(str, text)
+    return yaml.dump(
+        top.plain(), Dumper=Dumper, sort_keys=False, default_flow_style=None, width=110, allow_unicode=True
+    )

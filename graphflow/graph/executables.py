@@ -1,0 +1,93 @@
+"""What ROS's pairs of package and executable are here: nodes that come with graphflow, or of the project."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+
+EXECUTABLES = {
+    ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
+    ("turtlesim", "turtle_teleop_key"): "nodes.turtle_teleop:TurtleTeleop",
+    ("demo_nodes_cpp", "talker"): "nodes.talker:Talker",
+    ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
+    ("demo_nodes_py", "talker"): "nodes.talker:Talker",
+    ("demo_nodes_py", "listener"): "nodes.listener:Listener",
+}
+"""Executables of ROS 2's packages whose nodes come with graphflow."""
+_NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle"}
+"""Names of nodes that are not those of their executables."""
+_PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+_SEARCH_DEPTH = 4
+"""Folders below a project's root in which packages are looked for."""
+
+
+class Executable(NamedTuple):
+    """A node class, and the name that the node has unless another is given."""
+
+    class_path: str
+    node_name: str
+
+
+def find(package: str, executable: str, root: Path) -> Executable | None:
+    """The node that an executable is; None if there is none of that name here.
+
+    Args:
+        root: The folder of the project: a module `nodes/EXECUTABLE.py` with one class is an executable of the package
+            that is called as the project, and so is what a `setup.py` has among its `console_scripts`.
+    """
+    if (package, executable) in EXECUTABLES:
+        return Executable(EXECUTABLES[package, executable], _NAMES.get(executable, executable))
+    module = _scripts(package, root).get(executable)
+    if module is None and package in (root.name, _project_name(root)):
+        module = f"nodes.{executable}"
+    file = root / f"{module.replace('.', '/')}.py" if module is not None else None
+    classes = _classes(file) if file is not None and file.is_file() else []
+    return Executable(f"{module}:{classes[0]}", executable) if len(classes) == 1 else None
+
+
+def package_folder(package: str, root: Path) -> Path | None:
+    """The folder of a project's package: one with a `package.xml` of that name, or the project itself."""
+    pattern = "package.xml"
+    for depth in range(_SEARCH_DEPTH):
+        for file in sorted(root.glob("*/" * depth + pattern)):
+            found = _PACKAGE_NAME.search(file.read_text(encoding="utf-8", errors="replace"))
+            if found and found[1] == package:
+                return file.parent
+    return root if package in (root.name, _project_name(root)) else None
+
+
+def _scripts(package: str, root: Path) -> dict[str, str]:
+    """The modules of a package's executables, from the `console_scripts` of its `setup.py`."""
+    folder = package_folder(package, root)
+    if folder is None or folder != root or not (root / "setup.py").is_file():
+        return {}  # only modules below the root can be imported
+    found = {}
+    for node in ast.walk(_parsed(root / "setup.py")):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            script = re.fullmatch(r"\s*([\w.-]+)\s*=\s*([\w.]+):\w+\s*", node.value)
+            if script:
+                found[script[1]] = script[2]
+    return found
+
+
+def _project_name(root: Path) -> str:
+    try:
+        return str(tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["name"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
+def _classes(file: Path) -> list[str]:
+    """Classes of a file that are nodes by what they derive from."""
+    definitions = [node for node in _parsed(file).body if isinstance(node, ast.ClassDef)]
+    return [node.name for node in definitions if any(ast.unparse(base).endswith("Node") for base in node.bases)]
+
+
+def _parsed(file: Path) -> ast.Module:
+    try:
+        return ast.parse(file.read_text(encoding="utf-8"))
+    except (OSError, SyntaxError, ValueError):
+        return ast.Module([], [])

@@ -1,0 +1,31 @@
+"""Files as trees of items, in our own words whatever they were written in: graph files, and ROS's launch files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.graph import ros_launch, source, xml_source
+from graphflow.graph.project import project_root
+from graphflow.graph.ros_launch import Complain, nothing
+from graphflow.graph.tree import Item, tree
+
+
+def read(path: Path, name: str, complain: Complain, note: Complain = nothing) -> Item:
+    """A graph file, or a launch file in YAML or XML.
+
+    Args:
+        name: The file as messages show it.
+        complain: Called with what a launch file says that a graph file cannot.
+        note: Called with what the reader of a converted launch file should know of.
+
+    Raises:
+        GraphFileError: It cannot be read; why, and where.
+    """
+    if path.suffix == ".py":
+        text = f"a launch file in Python is converted first: graphflow launch convert {name} -o {path.stem}.yaml"
+        raise GraphFileError([Problem(Place(name), text)])
+    top = xml_source.read_file(path, name) if path.suffix == ".xml" else tree(source.read_file(path, name))
+    if ros_launch.is_launch_file(top):
+        return ros_launch.native(top, project_root(path), complain, note)
+    return top

@@ -1,0 +1,499 @@
+"""ROS's launch files as graph files: the YAML dialect, and what `xml_source` makes of XML, in our own words.
+
+    launch:                                              nodes:
+    - arg: {name: rate, default: "2.0"}                    /lab/talker:
+    - group:                                                 class: nodes.talker:Talker
+      - push_ros_namespace: {namespace: lab}       ->        params: {rate: $(var rate)}
+      - node: {pkg: demo_nodes_py, exec: talker,         (and args: {rate: {default: 2.0}})
+               param: [{name: rate, value: $(var rate)}]}
+
+What sets something for all actions after it (a namespace, a parameter, a remap, a variable) becomes a group around
+them. Every value keeps its place. What has no words here is a problem, with its line.
+
+Source: launch and launch_ros, the parsers of their frontends; the design articles on launch XML and YAML.
+"""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from graphflow.errors import GraphFileError, Place
+from graphflow.graph import executables, source
+from graphflow.graph.tree import Item, located, tree
+from graphflow.names import did_you_mean
+
+Complain = Callable[[Place, str], None]
+
+_ANY = {"if", "unless"}
+_IGNORED = {"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout", "exec_name", "log_cmd"}
+"""Attributes without a meaning here: output is always logged, and stopping is always the same."""
+_RECORDED = {"number", "after_number", "after_what"}
+"""Attributes that `recorded` adds to those of ROS: which action it is, and after which one it comes."""
+_RUN = {*_RECORDED, "name", "env", "respawn", "respawn_delay", "respawn_max_retries", "on_exit", *_ANY, *_IGNORED}
+_KNOWN: dict[str, set[str]] = {
+    "arg": {"name", "default", "description", "choice", *_ANY},
+    "let": {"name", "value", *_ANY},
+    "set_env": {"name", "value", *_ANY},
+    "group": {"children", "scoped", "forwarding", "keep", *_ANY, *_RECORDED},
+    "include": {"file", "arg", "let", *_ANY, *_RECORDED},
+    "node": {"pkg", "exec", "namespace", "args", "ros_args", "remap", "param", *_RUN},
+    "executable": {"cmd", "cwd", "shell", *_RUN},
+    "push_ros_namespace": {"namespace", *_ANY},
+    "set_parameter": {"name", "value", *_ANY},
+    "set_remap": {"from", "to", *_ANY},
+    "set_use_sim_time": {"value", *_ANY},
+    "timer": {"period", "children", *_ANY, *_RECORDED},
+    "log": {"message", "level", *_ANY, *_RECORDED},
+}
+"""Actions that have words here, and their attributes."""
+_SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace"}
+_ELSEWHERE = {
+    "node_container": "components are not built yet",
+    "load_composable_node": "components are not built yet",
+    "shutdown": "write on_exit: shutdown at the node that it waits for",
+    "unset_env": "write env: in a group or at a node",
+    "append_env": "write env: in a group or at a node",
+    "reset_env": "write env: in a group or at a node",
+    "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
+    "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
+}
+_SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "set_use_sim_time", "let")
+
+
+def is_launch_file(top: Item) -> bool:
+    """Whether what was read is of ROS's dialect."""
+    return "launch" in top.entries and isinstance(top.entries["launch"].value, list)
+
+
+def nothing(place: Place, text: str) -> None:
+    """Nobody wants to know."""
+
+
+def recorded(actions: list[dict[str, Any]], file: str) -> Item:
+    """A launch file in Python as an item: what `supervisor.launch_recorder` has written down of it."""
+
+    def action(said: dict[str, Any]) -> Item:
+        [(name, attributes)] = said.items()
+        place = Place(file, attributes.pop("line"), 1)
+        children = attributes.pop("children", None)
+        item = located(attributes, place)
+        if children is not None:
+            item.value["children"] = Item([action(child) for child in children], place)
+        return Item({name: item._replace(key=place)}, place)
+
+    top = Place(file, 1, 1)
+    return Item({"launch": Item([action(said) for said in actions], top)}, top)
+
+
+def native(top: Item, root: Path, complain: Complain, note: Complain = nothing) -> Item:
+    """A launch file as a graph file.
+
+    Args:
+        top: The file: a list of actions under `launch`.
+        root: The project's folder.
+        complain: Called with what has no words here.
+        note: Called with what has, but which the reader should know of.
+    """
+    return _Translation(root, complain, note).file(top)
+
+
+class _Translation:
+    def __init__(self, root: Path, complain: Complain, note: Complain) -> None:
+        self._root, self._complain, self._note = root, complain, note
+        self._args: dict[str, Item] = {}
+        self._count: dict[str, int] = {}
+        self._numbered: dict[int, str] = {}
+        """The names of actions that others come after."""
+
+    def file(self, top: Item) -> Item:
+        body = self._block(top.entries["launch"].value)
+        if self._args:
+            body = {"args": Item(self._args, top.place), **body}
+        return top._replace(value=body)
+
+    # lists of actions
+
+    def _block(self, actions: list[Item]) -> dict[str, Item]:
+        """What actions do one after another, as the body of a file or group."""
+        body: dict[str, Item] = {}
+        for i, action in enumerate(actions):
+            if not isinstance(action.value, dict) or len(action.value) != 1:
+                text = "expected an action, for example node: {pkg: turtlesim, exec: turtlesim_node}"
+                self._complain(action.place, f"{text}, got {action.plain()!r}")
+                continue
+            [(written, item)] = action.entries.items()
+            name = _SAME.get(written, written)
+            item = item._replace(key=item.key or action.place)
+            if name == "group" and isinstance(item.value, list):
+                item = item._replace(value={"children": item})
+            if not self._is_known(name, item):
+                continue
+            if name in _SCOPING:
+                rest = self._block(actions[i + 1 :])
+                _add(body, "group", self._around(name, item, rest))
+                break
+            self._act(name, item, body)
+        return body
+
+    def _is_known(self, name: str, item: Item) -> bool:
+        if name not in _KNOWN:
+            hint = _ELSEWHERE.get(name)
+            near = f": {hint}" if hint else did_you_mean(name, _KNOWN)
+            self._complain(item.at, f"the action {name!r} has no words in a graph file{near}")
+            return False
+        if not isinstance(item.value, dict):
+            self._complain(item.place, f"{name}: expected a mapping of its attributes, got {item.plain()!r}")
+            return False
+        for key, value in item.entries.items():
+            if key not in _KNOWN[name]:
+                known = sorted(_KNOWN[name] - _IGNORED)
+                self._complain(value.at, f"{name}: unknown attribute {key!r}{did_you_mean(key, known)}")
+        return True
+
+    def _around(self, name: str, item: Item, rest: dict[str, Item]) -> Item:
+        """A group around the actions that come after one which sets something for them."""
+        if item.entries.keys() & _ANY:
+            self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
+        nothing = Item("", item.place)
+        if name == "let":
+            values = Item([_typed(item.entries.get("value", nothing))], item.place)
+            loop = Item({"var": item.entries.get("name", nothing), "in": values, **rest}, item.place)
+            return item._replace(value={"for": loop})
+        key, value = self._setting(name, item)
+        inner = rest.get("group")
+        only = inner is not None and len(rest) == 1 and isinstance(inner.value, dict) and key not in inner.value
+        body = inner.value if inner is not None and only else rest
+        return item._replace(value={key: value, **body})
+
+    def _setting(self, name: str, item: Item) -> tuple[str, Item]:
+        """What an action sets for all after it: the key of a group, and its value."""
+        match name:
+            case "push_ros_namespace":
+                return "namespace", item.entries.get("namespace", Item("", item.place))
+            case "set_parameter":
+                return "params", self._pair(item, "name", "value", is_typed=True)
+            case "set_use_sim_time":
+                value = _typed(item.entries.get("value", Item("", item.place)))
+                return "params", Item({"use_sim_time": value}, item.place)
+            case "set_remap":
+                return "remap", self._pair(item, "from", "to")
+            case _:
+                return "env", self._pair(item, "name", "value")
+
+    def _pair(self, item: Item, key: str, value: str, *, is_typed: bool = False) -> Item:
+        name = item.entries.get(key)
+        if name is None or not isinstance(name.value, str):
+            self._complain(item.at, f"the attribute {key!r} is missing")
+            return Item({}, item.place)
+        found = item.entries.get(value, Item("", item.place))
+        return Item({name.value: (_typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
+
+    # actions
+
+    def _act(self, name: str, item: Item, body: dict[str, Item]) -> None:
+        if name == "arg":
+            self._arg(item)
+        elif name == "node":
+            self._node(item, body)
+        elif name == "executable":
+            self._executable(item, body)
+        elif name == "include":
+            _add(body, "include", self._include(item))
+        elif name == "group":
+            inner = self._block(_children(item))
+            conditions = {key: item.entries[key] for key in _ANY if key in item.entries}
+            only = inner.get("group")
+            if only is not None and len(inner) == 1 and isinstance(only.value, dict) and not conditions:
+                inner = only.value  # a group that only has a namespace pushed is that group
+            if inner:
+                _add(body, "group", item._replace(value={**conditions, **inner}))
+        elif name == "timer":
+            self._timer(item, body)
+
+    def _arg(self, item: Item) -> None:
+        name = item.entries.get("name")
+        if name is None or not isinstance(name.value, str):
+            self._complain(item.at, "arg: the attribute 'name' is missing")
+            return
+        spec: dict[str, Item] = {}
+        if "default" in item.entries:
+            spec["default"] = _typed(item.entries["default"])
+        if "description" in item.entries and item.entries["description"].value:
+            spec["doc"] = item.entries["description"]
+        if "choice" in item.entries:
+            choices = [
+                choice.entries["value"] for choice in _items(item.entries["choice"]) if "value" in choice.entries
+            ]
+            spec["choices"] = Item([_typed(choice) for choice in choices], item.entries["choice"].place)
+        self._args[name.value] = item._replace(value=spec)
+
+    def _include(self, item: Item) -> Item:
+        entries: dict[str, Item] = {k: item.entries[k] for k in ("file", "if", "unless") if k in item.entries}
+        file = entries.get("file")
+        if file is not None and str(file.value).endswith(".py"):
+            self._complain(file.place, f"{file.value} is in Python: convert it too, and name the result here")
+        args = [arg for key in ("arg", "let") for arg in _items(item.entries.get(key))]
+        if args:
+            pairs = [self._pair(arg, "name", "value", is_typed=True) for arg in args]
+            entries["args"] = Item({key: value for pair in pairs for key, value in pair.entries.items()}, item.place)
+        return item._replace(value=entries)
+
+    def _timer(self, item: Item, body: dict[str, Item]) -> None:
+        period = item.entries.get("period")
+        if period is None:
+            self._complain(item.at, "timer: the attribute 'period' is missing")
+            return
+        step = f"timer_{self._next('timer')}"
+        delay = item._replace(value={"delay": _typed(period), **self._conditions(item)})
+        _put(body, "steps", step, delay)
+        inner = self._block(_children(item))
+        after = Item(step, item.place, item.place)
+        for section in ("nodes", "steps"):
+            for name, entry in inner.get(section, Item({}, item.place)).entries.items():
+                _put(
+                    body,
+                    section,
+                    name,
+                    entry._replace(value={**entry.entries, "after": entry.entries.get("after", after)}),
+                )
+        if set(inner) - {"nodes", "steps"}:
+            self._complain(
+                item.at, "timer: only nodes and programs can be delayed; put the timer into the group or file"
+            )
+
+    def _conditions(self, item: Item) -> dict[str, Item]:
+        return {key: item.entries[key] for key in _ANY if key in item.entries}
+
+    def _node(self, item: Item, body: dict[str, Item]) -> None:
+        package, name = item.entries.get("pkg"), item.entries.get("exec")
+        if package is None or name is None or not isinstance(package.value, str) or not isinstance(name.value, str):
+            self._complain(item.at, "node: the attributes 'pkg' and 'exec' are needed")
+            return
+        found = executables.find(package.value, name.value, self._root)
+        own = item.entries.get("name")
+        entries: dict[str, Item] = {}
+        if "namespace" in item.entries:
+            entries["namespace"] = item.entries["namespace"]
+        if "remap" in item.entries:
+            pairs = [self._pair(remap, "from", "to") for remap in _items(item.entries["remap"])]
+            rules = {key: value for pair in pairs for key, value in pair.entries.items()}
+            entries["remap"] = Item(rules, item.entries["remap"].place, item.entries["remap"].key)
+        self._params(item, entries)
+        if found is None:
+            entries = self._program_of_ros(item, package.value, name.value, entries)
+        else:
+            self._words(item, entries)
+            entries = {"class": Item(found.class_path, name.place, item.at), **entries}
+        entries |= self._common(item)
+        usual = name.value if found is None else found.node_name
+        key = own.value if own is not None and isinstance(own.value, str) else usual
+        self._add_node(body, key, item._replace(value=entries, key=own.place if own is not None else item.key))
+
+    def _program_of_ros(self, item: Item, package: str, name: str, given: dict[str, Item]) -> dict[str, Item]:
+        """A node that only ROS has, as the program that runs it."""
+        place = item.entries["exec"].place
+        self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
+        words = ["ros2", "run", package, name]
+        words += _split(item.entries.get("args"))
+        ros = [f"{old}:={new.value}" for old, new in given.get("remap", Item({}, place)).entries.items()]
+        ros += [f"__node:={item.entries['name'].value}"] if "name" in item.entries else []
+        ros += [f"__ns:=/{str(given['namespace'].value).strip('/')}"] if "namespace" in given else []
+        rules = [word for rule in ros for word in ("-r", rule)]
+        values = {key: value.plain() for key, value in given.get("params", Item({}, place)).entries.items()}
+        rules += [word for key, value in values.items() for word in ("-p", f"{key}:={json.dumps(value)}")]
+        rules += [
+            w for file in given.get("params_file", Item([], place)).value for w in ("--params-file", str(file.value))
+        ]
+        words += ["--ros-args", *rules] if rules else []
+        kept = {key: given[key] for key in ("namespace",) if key in given}
+        return {"command": Item([Item(word, place) for word in words], place, item.at), **kept}
+
+    def _params(self, item: Item, entries: dict[str, Item]) -> None:
+        files: list[Item] = []
+        values: dict[str, Item] = {}
+
+        def take(params: list[Item], into: dict[str, Item]) -> None:
+            for param in params:
+                if "from" in param.entries:
+                    files.append(param.entries["from"])
+                elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
+                    inner: dict[str, Item] = {}
+                    take(_items(param.entries["param"]), inner)
+                    into[str(name.value)] = Item(inner, param.place, name.place)
+                else:
+                    pair = self._pair(param, "name", "value")
+                    kind = param.entries.get("type")
+                    is_text = kind is not None and kind.value == "str"
+                    into.update({key: value if is_text else _typed(value) for key, value in pair.entries.items()})
+
+        take(_items(item.entries.get("param")), values)
+        if files:
+            entries["params_file"] = Item(files, files[0].place, files[0].place)
+        if values:
+            place = item.entries["param"].place
+            entries["params"] = Item(values, place, place)
+
+    def _words(self, item: Item, entries: dict[str, Item]) -> None:
+        """What `args` and `ros_args` say, as far as it is the level of the log."""
+        for key in ("args", "ros_args"):
+            given = item.entries.get(key)
+            words = [word for word in _split(given) if word != "--ros-args"]
+            if words[:1] == ["--log-level"] and len(words) == 2 and given is not None:
+                entries["log_level"] = Item(words[1].lower(), given.place, given.key)
+            elif words and given is not None:
+                self._complain(given.at, f"{key}: a node is given no words; write params: and remap: in a graph file")
+
+    def _executable(self, item: Item, body: dict[str, Item]) -> None:
+        command = item.entries.get("cmd")
+        if command is None:
+            self._complain(item.at, "executable: the attribute 'cmd' is missing")
+            return
+        entries = self._common(item)
+        words = [str(word.value) for word in command.value] if isinstance(command.value, list) else None
+        try:
+            words = words or shlex.split(str(command.value))
+        except ValueError as error:
+            self._complain(command.place, f"cmd: {error}")
+            return
+        step = self._step(words, command)
+        if step is not None:
+            name = f"{words[2]}_{self._next('step')}"
+            before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
+            _put(body, "steps", name, item._replace(value={**step, **before}))
+            return
+        shell = item.entries.get("shell")
+        if shell is not None and str(shell.value).lower() in ("true", "1"):
+            words = ["sh", "-c", " ".join(words) if isinstance(command.value, list) else str(command.value)]
+        if "cwd" in item.entries:
+            words = ["env", "-C", str(item.entries["cwd"].value), *words]
+        if words[:1] == ["ros2"]:
+            words[0] = "graphflow"
+        entries = {"command": Item([Item(word, command.place) for word in words], command.place, item.at), **entries}
+        own = item.entries.get("name")
+        base = Path(words[0]).name.replace("-", "_").replace(".", "_")
+        key = str(own.value) if own is not None else f"{base}_{self._next(base)}"
+        self._add_node(body, key, item._replace(value=entries))
+
+    def _step(self, words: list[str], command: Item) -> dict[str, Item] | None:
+        """A step in place of a command line of ROS's."""
+        match words:
+            case ["ros2", "service", "call", name, type_, *values]:
+                return self._sent("call", name, type_, values, command)
+            case ["ros2", "action", "send_goal", name, type_, *values]:
+                return self._sent("goal", name, type_, [v for v in values if not v.startswith("-")], command)
+            case ["ros2", "param", "set", node, parameter, value]:
+                params = Item({parameter: _typed(Item(value, command.place))}, command.place)
+                return {"set": Item(node, command.place), "params": params}
+        return None
+
+    def _sent(self, deed: str, name: str, type_: str, values: list[str], command: Item) -> dict[str, Item]:
+        found = {deed: Item(name, command.place), "type": Item(type_, command.place)}
+        text = " ".join(values)
+        if text:
+            try:
+                data = source.read(text, command.place.file).data
+                if isinstance(data, str):  # it had quotes for a shell around it
+                    data = source.read(data, command.place.file).data
+            except GraphFileError as error:
+                self._complain(command.place, f"the request {text[:60]!r}: {error.problems[0].message}")
+                return found
+            found["request"] = located(data, command.place)
+        return found
+
+    def _common(self, item: Item) -> dict[str, Item]:
+        """What nodes and programs share."""
+        entries = self._conditions(item)
+        get = item.entries.get
+        if "env" in item.entries:
+            pairs = [self._pair(variable, "name", "value") for variable in _items(item.entries["env"])]
+            entries["env"] = Item({k: v for pair in pairs for k, v in pair.entries.items()}, item.entries["env"].place)
+        respawn = get("respawn")
+        if respawn is not None and str(respawn.value).lower() in ("true", "1"):
+            settings = {"policy": Item("always", respawn.place)}
+            for key, ours in (("respawn_delay", "delay"), ("respawn_max_retries", "max_restarts")):
+                value = get(key)
+                if value is not None and not str(value.value).startswith(("-", "0")):
+                    settings[ours] = _typed(value)
+            entries["restart"] = Item(settings, respawn.place, respawn.key)
+        if "on_exit" in item.entries:
+            entries["on_exit"] = item.entries["on_exit"]
+        before = get("after_number")
+        if before is not None and before.value in self._numbered:
+            entries["after"] = Item(
+                {self._numbered[before.value]: item.entries["after_what"]}, before.place, before.place
+            )
+        if "number" in item.entries:
+            entries["number"] = item.entries["number"]
+        return entries
+
+    def _add_node(self, body: dict[str, Item], key: str, item: Item) -> None:
+        number, item = item.entries.get("number"), item.without(*_RECORDED)
+        if number is not None:
+            self._numbered[number.value] = key
+        nodes = body.get("nodes")
+        if nodes is not None and key in nodes.value:  # the same name in another namespace, or twice: reported later
+            _add(body, "group", Item({"nodes": Item({key: item}, item.place)}, item.place))
+        else:
+            _put(body, "nodes", key, item)
+
+    def _next(self, word: str) -> int:
+        self._count[word] = self._count.get(word, 0) + 1
+        return self._count[word]
+
+
+def _children(item: Item) -> list[Item]:
+    children = item.entries.get("children")
+    return children.value if children is not None and isinstance(children.value, list) else []
+
+
+def _items(item: Item | None) -> list[Item]:
+    """A list's items, of which one alone may stand without the list."""
+    if item is None:
+        return []
+    return item.value if isinstance(item.value, list) else [item]
+
+
+def _split(item: Item | None) -> list[str]:
+    """The words of a text, or of a list of them."""
+    if item is None:
+        return []
+    if isinstance(item.value, list):
+        return [str(word.value) for word in item.value]
+    try:
+        return shlex.split(str(item.value))
+    except ValueError:  # a quote that is not closed
+        return str(item.value).split()
+
+
+def _typed(item: Item) -> Item:
+    """A text as what it reads as in YAML: launch files have nothing but texts."""
+    if not isinstance(item.value, str) or "$(" in item.value:
+        return item
+    try:
+        read = tree(source.read(item.value, item.place.file))
+    except GraphFileError:
+        return item
+    if isinstance(read.value, dict) or read.value is None:
+        return item
+    return located(read.plain(), item.place)._replace(key=item.key)
+
+
+def _put(body: dict[str, Item], section: str, key: str, item: Item) -> None:
+    """Add an entry to a section of a body."""
+    old = body.get(section, Item({}, item.place, item.at))
+    body[section] = old._replace(value={**old.value, key: item})
+
+
+def _add(body: dict[str, Item], key: str, item: Item) -> None:
+    """Add a block of a kind of which there may be several."""
+    old = body.get(key)
+    if old is None:
+        body[key] = item
+    elif isinstance(old.value, list):
+        body[key] = old._replace(value=[*old.value, item])
+    else:
+        body[key] = Item([old, item], old.place, old.key)

@@ -1,0 +1,100 @@
+"""ROS's launch files in XML, read as the YAML dialect has them: a list of actions with their attributes.
+
+    <node pkg="p" exec="e"><param name="a" value="1"/></node>   ->   {node: {pkg: p, exec: e, param: [{name: a, ...}]}}
+
+Source: launch_xml, "Entity"; design article "ROS 2 Launch XML Format".
+"""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+from xml.parsers import expat
+
+from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.graph.source import MAX_BYTES, MAX_DEPTH
+from graphflow.graph.tree import Item
+
+LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
+"""Elements that are attributes of the one around them, as lists; any other in it is an action."""
+_WITH_ACTIONS = ("launch", "group", "timer", "ros_timer")
+
+
+def read_file(path: pathlib.Path, name: str) -> Item:
+    """A launch file.
+
+    Args:
+        name: The file as messages show it.
+
+    Raises:
+        GraphFileError: It cannot be read, is no XML, or has what is refused here: entities of its own, great size.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise _error(Place(name), f"cannot be read: {error.strerror}") from None
+    if len(data) > MAX_BYTES:
+        raise _error(Place(name), f"the file is larger than {MAX_BYTES:,} bytes")
+    return _Reader(name).read(data)
+
+
+class _Reader:
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._parser = expat.ParserCreate()
+        self._open: list[tuple[str, Item, list[Item]]] = []
+        """Elements under way: the name, the attributes, the children."""
+        self._top: Item | None = None
+
+    def read(self, data: bytes) -> Item:
+        self._parser.StartElementHandler = self._begin
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._text
+        self._parser.StartDoctypeDeclHandler = self._refuse
+        try:
+            self._parser.Parse(data, True)
+        except expat.ExpatError as error:
+            text = expat.ErrorString(error.code)
+            raise _error(Place(self._name, error.lineno, error.offset + 1), f"not valid XML: {text}") from None
+        assert self._top is not None
+        return self._top
+
+    @property
+    def _place(self) -> Place:
+        return Place(self._name, self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
+
+    def _begin(self, name: str, attributes: dict[str, str]) -> None:
+        place = self._place
+        if not self._open and name != "launch":
+            raise _error(place, f"a launch file's outermost element is <launch>, not <{name}>")
+        if len(self._open) >= MAX_DEPTH:
+            raise _error(place, f"nested more than {MAX_DEPTH} deep")
+        values = {key: Item(value, place, place) for key, value in attributes.items()}
+        self._open.append((name, Item(values, place, place), []))
+
+    def _end(self, name: str) -> None:
+        name, attributes, children = self._open.pop()
+        if name in _WITH_ACTIONS:
+            lists = [child for child in children if next(iter(child.value)) == "keep"]
+            actions = [child for child in children if child not in lists]
+            attributes.value["children"] = Item(actions, attributes.place, attributes.key)
+        else:
+            for child in children:
+                [(kind, item)] = child.value.items()
+                attributes.value.setdefault(kind, Item([], item.place, item.key)).value.append(item)
+        action = Item({name: attributes}, attributes.place)
+        if self._open:
+            self._open[-1][2].append(action)
+        else:
+            self._top = Item({"launch": attributes.value["children"]}, attributes.place)
+
+    def _text(self, text: str) -> None:
+        if text.strip() and self._open:
+            raise _error(self._place, f"{text.strip()[:40]!r}: text between elements means nothing; use an attribute")
+
+    def _refuse(self, *_: Any) -> None:
+        raise _error(self._place, "<!DOCTYPE> is not used here; remove it")
+
+
+def _error(place: Place, message: str) -> GraphFileError:
+    return GraphFileError([Problem(place, message)])

@@ -1,0 +1,61 @@
+"""`graphflow launch convert`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph.resolve import load
+from tests.conftest import PROGRAMS, Machine
+
+pytestmark = pytest.mark.real
+ROBOT = PROGRAMS / "launch" / "robot.launch.py"
+XML = """<launch>
+  <arg name="rate" default="1e3"/> <arg name="on" default="12:30"/>
+  <node pkg="demo_nodes_py" exec="talker"><param name="greeting" value="1e3" type="str"/></node>
+</launch>
+"""
+
+
+def test_python(machine: Machine, tmp_path: Path) -> None:
+    """What it describes is a graph file; what is left out is listed with its line, and the exit code says so."""
+    target = tmp_path / "robot.yaml"
+    told = machine.look("launch", "convert", str(ROBOT), "-o", str(target), code=1)
+    assert f"{target}: written; try it with: graphflow check {target}" in told
+    assert "rviz2 rviz2: no node of that name is here; ros2 runs it, which must be installed" in told
+    assert "b.launch.py is in Python: convert it too, and name the result here" in told
+    assert "ComposableNodeContainer has no words in a graph file" in told
+    text = target.read_text()
+    assert text.startswith("# From robot.launch.py, by graphflow launch convert.\n")
+    text = text.replace("quiet", "speed").replace("unless: $(var speed)", "unless: false")
+    target.write_text(text.replace("$(find-pkg-share robot)/config/params.yaml", "p.yaml"))
+    (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {background_g: 1}}\n")
+    (tmp_path / "pyproject.toml").write_text('[project]\nname = "robot"\n')
+    plan = load(target, [], {})
+    assert {node.name for node in plan.nodes} == {"/sim", "/echo_1", "/robot1/talker", "/rviz2", "/listener", "/leo"}
+    assert plan.nodes[0].env == {"A": "c"}
+    (spawn, _) = plan.steps
+    assert (spawn.target, spawn.request, spawn.after) == ("/spawn", {"x": 2, "y": 2, "name": "t2"}, {"/sim": "ready"})
+
+
+def test_xml(machine: Machine, tmp_path: Path) -> None:
+    """Without -o it goes to stdout; texts that YAML would read as numbers stay texts."""
+    file = tmp_path / "a.launch.xml"
+    file.write_text(XML)
+    target = tmp_path / "a.yaml"
+    target.write_text(machine.look("launch", "convert", str(file)))
+    plan = load(target, [], {})
+    assert plan.args == {"rate": 1000.0, "on": "12:30"}
+    assert plan.nodes[0].params["greeting"].value == "1e3"
+    assert "is there already" in machine.look("launch", "convert", str(file), "-o", str(target), code=2)
+
+
+def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
+    """It is said why, or what to type instead."""
+    (tmp_path / "a.py").write_text("import os\nos._exit(3)\n")
+    assert "it ended before it had described itself" in machine.look(
+        "launch", "convert", str(tmp_path / "a.py"), code=2
+    )
+    assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
+    assert "is started by: graphflow up a.launch.xml" in machine.look("launch", "a.launch.xml", code=2)

@@ -1,0 +1,34 @@
+"""Which file is read how."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import GraphFileError
+from graphflow.graph.reading import read
+
+NODE = "{pkg: turtlesim, exec: turtlesim_node}"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "nodes"),
+    [
+        ("a.yaml", "nodes: {a: {class: x:Y}}", ["a"]),
+        ("a.yaml", f"launch: [{{node: {NODE}}}]", ["turtlesim"]),
+        ("a.launch.xml", '<launch><node pkg="turtlesim" exec="turtlesim_node" name="s"/></launch>', ["s"]),
+    ],
+)
+def test_by_name_and_content(tmp_path: Path, name: str, text: str, nodes: list[str]) -> None:
+    """XML by its name, ROS's dialect by its key; in the end all are graph files."""
+    (tmp_path / name).write_text(text)
+    complaints: list[str] = []
+    top = read(tmp_path / name, name, lambda _, said: complaints.append(said))
+    assert (list(top.entries["nodes"].value), complaints) == (nodes, [])
+
+
+def test_python(tmp_path: Path) -> None:
+    """It is not run just because somebody looks at it."""
+    with pytest.raises(GraphFileError, match="a launch file in Python is converted first"):
+        read(tmp_path / "a.launch.py", "a.launch.py", lambda *_: None)

@@ -1,0 +1,248 @@
+"""ROS's launch files, in YAML and XML, as graph files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from graphflow.errors import GraphFileError
+from graphflow.graph import ros_launch, source
+from graphflow.graph.resolve import load
+from graphflow.graph.tree import tree
+
+CANONICAL = """\
+launch:
+- arg: {name: "background_r", default: "0"}
+- arg: {name: "ns", default: "turtlesim1", description: Where., choice: [{value: turtlesim1}, {value: b}]}
+- group:
+    - push_ros_namespace: {namespace: "$(var ns)"}
+    - include: {file: "$(dirname)/talker.launch.xml", arg: [{name: rate, value: "4.0"}]}
+- node:
+    pkg: "turtlesim"
+    exec: "turtlesim_node"
+    name: "sim"
+    namespace: "turtlesim2"
+    param:
+    - {name: "background_r", value: "$(var background_r)"}
+"""
+TALKER = """\
+<?xml version="1.0"?>
+<!-- a talker and its listener -->
+<launch>
+  <arg name="rate" default="1.0" description="How often."/>
+  <let name="who" value="world"/>
+  <set_parameter name="use_sim_time" value="false"/>
+  <node pkg="demo_nodes_py" exec="talker" respawn="true" respawn_delay="2" ros_args="--ros-args --log-level DEBUG">
+    <param name="greeting" value="hello $(var who)"/>
+    <param name="number" value="7" type="str"/>
+    <param name="limits"><param name="speed" value="1.5"/></param>
+    <param from="$(dirname)/params.yaml"/>
+    <remap from="chatter" to="news"/>
+    <env name="A" value="1"/>
+  </node>
+  <group if="$(eval rate &gt; 2.0)">
+    <push-ros-namespace namespace="inner"/>
+    <node pkg="demo_nodes_cpp" exec="listener" name="ear" output="screen"/>
+  </group>
+</launch>
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A project's folder of launch files."""
+    (tmp_path / "talker.launch.xml").write_text(TALKER)
+    (tmp_path / "multi.launch.yaml").write_text(CANONICAL)
+    (tmp_path / "params.yaml").write_text("/**: {ros__parameters: {gain: 3.0}}\n")
+    return tmp_path
+
+
+def test_a_file_of_each_kind(folder: Path) -> None:
+    """One includes the other; arguments, namespaces, conditions, typed parameters, and the names that nodes have."""
+    found = load(folder / "multi.launch.yaml", ["background_r:=7"], {})
+    assert (found.name, found.args) == ("multi", {"background_r": 7, "ns": "turtlesim1"})
+    nodes = {node.name: node for node in found.nodes}
+    assert list(nodes) == ["/turtlesim1/talker", "/turtlesim1/inner/ear", "/turtlesim2/sim"]
+    talker, sim = nodes["/turtlesim1/talker"], nodes["/turtlesim2/sim"]
+    assert (talker.class_path, sim.class_path) == ("nodes.talker:Talker", "nodes.turtlesim:TurtleSim")
+    assert {name: setting.value for name, setting in talker.params.items()} == {
+        "gain": 3.0,
+        "use_sim_time": False,
+        "greeting": "hello world",
+        "number": "7",
+        "limits.speed": 1.5,
+    }
+    assert [(rule.match, rule.replacement) for rule in talker.remaps] == [("chatter", "news")]
+    assert (talker.env, talker.log_level) == ({"A": "1"}, "debug")
+    assert (talker.restart.policy, talker.restart.delay) == ("always", 2.0)
+    assert sim.params["background_r"].value == 7
+    assert str(talker.params["greeting"].place).endswith("talker.launch.xml:8:5")
+    alone = load(folder / "talker.launch.xml", [], {})
+    assert [node.name for node in alone.nodes] == ["/talker"]
+
+
+def native(text: str, root: Path = Path("/nowhere")) -> tuple[Any, list[str], list[str]]:
+    """A launch file in our words, what has none, and what is worth a note."""
+    complaints: list[str] = []
+    notes: list[str] = []
+    top = tree(source.read(text, "f.yaml"))
+    assert ros_launch.is_launch_file(top)
+    made = ros_launch.native(
+        top, root, lambda at, said: complaints.append(f"{at}: {said}"), lambda at, said: notes.append(said)
+    )
+    return made.plain(), complaints, notes
+
+
+TURTLE = "node: {pkg: turtlesim, exec: turtlesim_node}"
+SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
+
+
+@pytest.mark.parametrize(
+    ("actions", "expected"),
+    [
+        (f"[{{{TURTLE}}}]", {"nodes": {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}}),
+        (
+            "[{set_env: {name: A, value: b}}, {set_remap: {from: x, to: y}}, {node: {pkg: turtlesim, exec: "
+            "turtlesim_node, name: sim}}]",
+            {"group": {"env": {"A": "b"}, "remap": {"x": "y"}, "nodes": SIM}},
+        ),
+        (
+            "[{let: {name: n, value: '3'}}, {group: [{set_use_sim_time: {value: 'true'}}, {node: {pkg: turtlesim, "
+            "exec: turtlesim_node, name: sim}}]}]",
+            {"group": {"for": {"var": "n", "in": [3], "group": {"params": {"use_sim_time": True}, "nodes": SIM}}}},
+        ),
+        (
+            "[{executable: {cmd: rviz2 -d 'a b.rviz', on_exit: shutdown}}, {executable: {cmd: rviz2, cwd: /tmp}}]",
+            {
+                "nodes": {
+                    "rviz2_1": {"command": ["rviz2", "-d", "a b.rviz"], "on_exit": "shutdown"},
+                    "env_1": {"command": ["env", "-C", "/tmp", "rviz2"]},
+                }
+            },
+        ),
+        (
+            "[{executable: {cmd: 'echo $HOME | cat', shell: 'true'}}, {executable: {cmd: ros2 topic list}}]",
+            {
+                "nodes": {
+                    "sh_1": {"command": ["sh", "-c", "echo $HOME | cat"]},
+                    "graphflow_1": {"command": ["graphflow", "topic", "list"]},
+                }
+            },
+        ),
+        (
+            "[{executable: {cmd: \"ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, name: leo}'\"}}, "
+            "{executable: {cmd: ros2 param set /sim background_r 150}}, "
+            "{executable: {cmd: \"ros2 action send_goal /turn turtlesim/action/RotateAbsolute '{theta: 1.5}' -f\"}}]",
+            {
+                "steps": {
+                    "call_1": {
+                        "call": "/spawn",
+                        "type": "turtlesim/srv/Spawn",
+                        "request": {"x": 2.0, "name": "leo"},
+                    },
+                    "set_2": {"set": "/sim", "params": {"background_r": 150}},
+                    "send_goal_3": {
+                        "goal": "/turn",
+                        "type": "turtlesim/action/RotateAbsolute",
+                        "request": {"theta": 1.5},
+                    },
+                }
+            },
+        ),
+        (
+            "[{timer: {period: 2.5, children: [{node: {pkg: turtlesim, exec: turtlesim_node, name: sim}}]}}]",
+            {
+                "steps": {"timer_1": {"delay": 2.5}},
+                "nodes": {"sim": {"after": "timer_1", **SIM["sim"]}},
+            },
+        ),
+        (
+            "[{include: {file: a.yaml, if: $(var x)}}, {include: {file: b.yaml, arg: [{name: n, value: '1'}]}}]",
+            {"include": [{"file": "a.yaml", "if": "$(var x)"}, {"file": "b.yaml", "args": {"n": 1}}]},
+        ),
+        ("[{log: {message: hello}}, {group: []}]", {}),
+        (
+            "[{node: {pkg: turtlesim, exec: turtlesim_node, name: a, namespace: n}}, {node: {pkg: turtlesim, exec: "
+            "turtlesim_node, name: a, namespace: m}}]",
+            {
+                "nodes": {"a": {"class": "nodes.turtlesim:TurtleSim", "namespace": "n"}},
+                "group": {"nodes": {"a": {"class": "nodes.turtlesim:TurtleSim", "namespace": "m"}}},
+            },
+        ),
+    ],
+)
+def test_actions(actions: str, expected: dict[str, Any]) -> None:
+    """Each in our words; what sets something for those after it becomes a group around them."""
+    assert native(f"launch: {actions}\n") == (expected, [], [])
+
+
+@pytest.mark.parametrize(
+    ("action", "complaint"),
+    [
+        ("nod: {pkg: a}", "f.yaml:1:11: the action 'nod' has no words in a graph file; did you mean 'node'?"),
+        ("node: {pkg: a, exe: b}", "f.yaml:1:26: node: unknown attribute 'exe'; did you mean 'exec'?"),
+        ("node: {pkg: a}", "f.yaml:1:11: node: the attributes 'pkg' and 'exec' are needed"),
+        ("node: 3", "f.yaml:1:17: node: expected a mapping of its attributes, got 3"),
+        (
+            "a: 1, b: 2",
+            "f.yaml:1:10: expected an action, for example node: {pkg: turtlesim, exec: turtlesim_node}, got",
+        ),
+        ("node_container: {}", "f.yaml:1:11: the action 'node_container' has no words in a graph file: components"),
+        ("shutdown: {}", "f.yaml:1:11: the action 'shutdown' has no words in a graph file: write on_exit: shutdown"),
+        ("arg: {default: '1'}", "f.yaml:1:11: arg: the attribute 'name' is missing"),
+        ("set_remap: {to: a}", "f.yaml:1:11: the attribute 'from' is missing"),
+        ("set_remap: {from: a, to: b, if: 'true'}", "f.yaml:1:11: set_remap: a condition here has no words"),
+        ("executable: {}", "f.yaml:1:11: executable: the attribute 'cmd' is missing"),
+        ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
+        ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
+        ("timer: {children: []}", "f.yaml:1:11: timer: the attribute 'period' is missing"),
+        ("include: {file: a.launch.py}", "f.yaml:1:27: a.launch.py is in Python: convert it too, and name the result"),
+        (
+            "node: {pkg: turtlesim, exec: turtlesim_node, args: --fast}",
+            "f.yaml:1:56: args: a node is given no words; write params: and remap: in a graph file",
+        ),
+    ],
+)
+def test_what_has_no_words(action: str, complaint: str) -> None:
+    """It is told with its line, and what to do."""
+    _, complaints, _ = native(f"launch: [{{{action}}}]\n")
+    assert complaints
+    assert complaints[0].startswith(complaint)
+
+
+def test_a_node_that_only_ros_has() -> None:
+    """It is run by ros2, with its names and values as words; the reader of a converted file is told so."""
+    made, complaints, notes = native(
+        "launch: [{node: {pkg: nav2, exec: planner, name: p, namespace: n, args: -x 1, remap: [{from: a, to: b}], "
+        "param: [{name: rate, value: '2.5'}, {from: f.yaml}], respawn: 'true'}}]\n"
+    )
+    assert complaints == []
+    assert notes == ["nav2 planner: no node of that name is here; ros2 runs it, which must be installed"]
+    words = "ros2 run nav2 planner -x 1 --ros-args -r a:=b -r __node:=p -r __ns:=/n -p rate:=2.5 --params-file f.yaml"
+    assert made["nodes"]["p"] == {"command": words.split(), "namespace": "n", "restart": {"policy": "always"}}
+
+
+def test_what_was_recorded_of_python() -> None:
+    """Actions with their lines; those that come after a process know it by its number."""
+    actions = [
+        {"node": {"line": 3, "pkg": "turtlesim", "exec": "turtlesim_node", "name": "sim", "number": 1}},
+        {"executable": {"line": 5, "cmd": ["echo", "$(var x)"], "after_number": 1, "after_what": "exited"}},
+        {"group": {"line": 7, "children": [{"shutdown": {"line": 8}}]}},
+    ]
+    complaints: list[str] = []
+    top = ros_launch.recorded(actions, "f.launch.py")
+    made = ros_launch.native(top, Path("/nowhere"), lambda at, said: complaints.append(str(at)))
+    assert made.plain()["nodes"] == {
+        **SIM,
+        "echo_1": {"command": ["echo", "$(var x)"], "after": {"sim": "exited"}},
+    }
+    assert complaints == ["f.launch.py:8:1"]
+
+
+def test_python_is_converted_first(tmp_path: Path) -> None:
+    """To start one is answered with how."""
+    (tmp_path / "a.launch.py").touch()
+    with pytest.raises(GraphFileError, match=r"first: graphflow launch convert .*a.launch.py -o a.launch.yaml"):
+        load(tmp_path / "a.launch.py")

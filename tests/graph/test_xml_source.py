@@ -1,0 +1,65 @@
+"""Launch files in XML, read as the YAML dialect has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import GraphFileError, Place
+from graphflow.graph.xml_source import read_file
+
+BOMB = '<!DOCTYPE launch [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;">]><launch><arg name="&b;"/></launch>'
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    (tmp_path / "f.xml").write_text(text)
+    return tmp_path / "f.xml"
+
+
+def test_elements(tmp_path: Path) -> None:
+    """What belongs to an action are its attributes, as lists; what is inside of groups and timers are actions."""
+    text = """<launch>
+  <group if="a">
+    <node pkg="p" exec="e"><param name="x" value="1"/><param name="y" value="2"/><remap from="a" to="b"/></node>
+    <timer period="1.0"><log message="hi"/></timer>
+  </group>
+</launch>"""
+    top = read_file(written(tmp_path, text), "f.xml")
+    node = {
+        "pkg": "p",
+        "exec": "e",
+        "param": [{"name": "x", "value": "1"}, {"name": "y", "value": "2"}],
+        "remap": [{"from": "a", "to": "b"}],
+    }
+    timer = {"period": "1.0", "children": [{"log": {"message": "hi"}}]}
+    assert top.plain() == {"launch": [{"group": {"if": "a", "children": [{"node": node}, {"timer": timer}]}}]}
+    group = top.entries["launch"].value[0].entries["group"]
+    assert group.place == Place("f.xml", 2, 3)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("<launch>", "f.xml:1:9: not valid XML: no element found"),
+        ("", "f.xml:1:1: not valid XML: no element found"),
+        ("<launch><a></b></launch>", "f.xml:1:14: not valid XML: mismatched tag"),
+        ("<robot/>", "f.xml:1:1: a launch file's outermost element is <launch>, not <robot>"),
+        ("<launch>\n hello</launch>", "'hello': text between elements means nothing; use an attribute"),
+        ("<launch>" + "<group>" * 50, "nested more than 40 deep"),
+        (BOMB, "<!DOCTYPE> is not used here; remove it"),
+        ('<launch a="&undefined;"/>', "not valid XML: undefined entity"),
+        ("x" * 1_000_001, "f.xml: the file is larger than 1,000,000 bytes"),
+    ],
+)
+def test_what_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    """With its place; entities that grow are not even read."""
+    with pytest.raises(GraphFileError) as caught:
+        read_file(written(tmp_path, text), "f.xml")
+    assert said in str(caught.value)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    """It is said why it cannot be read."""
+    with pytest.raises(GraphFileError, match=r"f.xml: cannot be read: No such file"):
+        read_file(tmp_path / "f.xml", "f.xml")

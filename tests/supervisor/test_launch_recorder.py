@@ -1,0 +1,101 @@
+"""Launch files in Python, run against stand-ins."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import PROGRAMS
+
+pytestmark = pytest.mark.real
+ROBOT = PROGRAMS / "launch" / "robot.launch.py"
+
+
+def record(file: Path) -> Any:
+    """What a file describes, and what has no words, as lines."""
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    ran = subprocess.run(command, capture_output=True, timeout=30, check=True)
+    return json.loads(ran.stdout)
+
+
+def line_of(text: str) -> int:
+    return 1 + next(i for i, line in enumerate(ROBOT.read_text().splitlines()) if text in line)
+
+
+def test_what_is_recorded() -> None:
+    """Each action with its line and its arguments, substitutions as texts, and what others come after by its number."""
+    told = record(ROBOT)
+    actions = [next(iter(action.items())) for action in told["actions"]]
+    names = "arg arg set_env node executable log executable group group timer include node log"
+    assert [name for name, _ in actions] == names.split()
+    found = [attributes for _, attributes in actions]
+    assert found[1] | {"line": 0} == {
+        "line": 0,
+        "name": "who",
+        "description": "",
+        "default": "leo",
+        "choice": [{"value": "leo"}, {"value": "don"}],
+    }
+    assert (found[2]["name"], found[2]["value"]) == ("A", "$(env B c)")
+    assert found[3] == {
+        "line": line_of("sim = Node("),
+        "number": 1,
+        "name": "sim",
+        "pkg": "turtlesim",
+        "exec": "turtlesim_node",
+        "remap": [{"from": "/turtle1/cmd_vel", "to": "/cmd_vel"}],
+        "param": [
+            {"name": "background_r", "value": 10},
+            {"name": "name", "value": "5", "type": "str"},
+            {"name": "gain", "value": "$(var speed)"},
+            {"name": "list", "value": [1.0, 2.0]},
+            {"name": "n", "param": [{"name": "a", "value": True}]},
+            {"from": "$(find-pkg-share robot)/config/params.yaml"},
+        ],
+    }
+    assert (found[4]["after_number"], found[4]["after_what"], found[4]["shell"]) == (1, "ready", "True")
+    assert (found[6]["after_number"], found[6]["after_what"], found[6]["cmd"]) == (1, "exited", ["echo", "over"])
+    push, talker = (next(iter(child.items())) for child in found[7]["children"])
+    assert (push[0], push[1]["namespace"]) == ("push_ros_namespace", "robot1")
+    assert (talker[1]["unless"], talker[1]["on_exit"]) == ("$(var quiet)", "shutdown")
+    assert found[8]["if"] == "$(eval '$(var who)' == 'leo')"
+    assert found[8]["children"][0]["node"]["args"] == ["-d", "$(find-pkg-share robot)/rviz/a.rviz"]
+    assert (found[9]["period"], found[9]["children"][0]["node"]["respawn"]) == (5.0, "True")
+    assert found[10]["file"] == "$(find-pkg-share robot)/launch/b.launch.py"
+    assert found[10]["arg"] == [{"name": "speed", "value": "$(var speed)"}]
+    assert found[10]["if"] == "$(equals $(var who) don)"
+    assert found[11]["name"] == "$(var who)"
+
+
+def test_what_has_no_words() -> None:
+    """Is told with its line."""
+    problems = {problem["line"]: problem["message"] for problem in record(ROBOT)["problems"]}
+    assert problems[line_of("OnProcessIO(target")].startswith("an event handler OnProcessIO has no words")
+    assert problems[line_of("EmitEvent(event=Sh")].startswith("OnProcessExit: write on_exit: shutdown at the node")
+    assert problems[line_of("OpaqueFunction(function")].startswith("OpaqueFunction: it was called once, with $(var")
+    assert problems[line_of("ComposableNodeContainer(name")].startswith("ComposableNodeContainer has no words")
+    assert len(problems) == 4
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("import launch\n\nx = 1 / 0\n", 3, "ZeroDivisionError: division by zero"),
+        ("def f(:\n", 1, "SyntaxError: invalid syntax"),
+        ("x = 1\n", 1, "NameError: it has no function generate_launch_description()"),
+        ("import numpyy\n", 1, "ModuleNotFoundError: No module named 'numpyy'"),
+        ("def generate_launch_description():\n    open('/nowhere/x')\n", 2, "FileNotFoundError: [Errno 2]"),
+        ("def generate_launch_description():\n    return 3\n", 1, "AttributeError: "),
+    ],
+)
+def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> None:
+    """The error is told with the line of the file."""
+    (tmp_path / "a.launch.py").write_text(text)
+    (problem,) = record(tmp_path / "a.launch.py")["problems"]
+    assert problem["line"] == line
+    assert problem["message"].startswith(message)
