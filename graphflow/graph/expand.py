@@ -35,7 +35,7 @@ from graphflow.graph.project import project_root, shown
 from graphflow.graph.reading import read
 from graphflow.graph.substitutions import SubstitutionError, Substitutions, python_package, truth
 from graphflow.graph.tree import Item, first_of, located, merged, source_of
-from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
+from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
 
 BY_ENTRY = ("params", "remap", "env")
 """Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
@@ -176,7 +176,9 @@ class Expansion:
 
     def _read(self, path: Path, place: Place) -> Item | None:
         if not path.is_file():
-            near = did_you_mean(path.name, [f.name for f in path.parent.glob("*.yaml")])
+            stems = {file.stem: file.name for file in path.parent.glob("*.yaml")}
+            found = stems.get(nearest(path.stem, stems) or "")
+            near = f"; did you mean {found!r}?" if found else ""
             raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
         if len(self.folders) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])

@@ -11,6 +11,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from graphflow.names import did_you_mean
+
 MAX_LENGTH = 1000
 """Characters of an expression."""
 MAX_BITS = 4096
@@ -38,7 +40,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError(f"an expression has at most {MAX_LENGTH} characters")
     evaluator = simpleeval.EvalWithCompoundTypes(
         operators={**simpleeval.DEFAULT_OPERATORS, ast.Pow: _power, ast.Mult: _times, ast.Mod: _modulo},
-        functions=FUNCTIONS,
+        functions=dict(FUNCTIONS),  # it adds to them
         names={**names, "true": True, "false": False, "pi": math.pi},
     )
     for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
@@ -48,7 +50,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         ast.parse(text.strip(), mode="eval")  # simpleeval would take a statement, too
         return evaluator.eval(text.strip())
     except simpleeval.NameNotDefined as error:
-        raise ExpressionError(f"{error.name!r} is no argument{_known(names)}") from None
+        raise ExpressionError(f"{error.name!r} is no argument{did_you_mean(error.name, names)}") from None
     except simpleeval.FunctionNotDefined as error:
         raise ExpressionError(f"there is no function {error.func_name!r}; there are {', '.join(FUNCTIONS)}") from None
     except simpleeval.FeatureNotAvailable:
@@ -59,10 +61,6 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError("nested too deep") from None
     except (simpleeval.InvalidExpression, ArithmeticError, TypeError, ValueError, LookupError) as error:
         raise ExpressionError(str(error) or type(error).__name__) from None
-
-
-def _known(names: Mapping[str, Any]) -> str:
-    return f"; there are {', '.join(names)}" if names else ""
 
 
 def _entry(value: Any, name: str) -> Any:

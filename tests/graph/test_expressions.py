@@ -42,7 +42,7 @@ def test_values(text: str, value: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("cont * 2", "'cont' is no argument; there are count, mode, turtle, ids"),
+        ("cont * 2", "'cont' is no argument; did you mean 'count'?"),
         ("exec('x')", "there is no function 'exec'; there are abs, bool"),
         ("count.real", "nothing called 'real' is in 3"),
         ("turtle.nam", "nothing called 'nam' is in"),
