@@ -76,7 +76,7 @@ def status(node: str, name: str | None, as_json: bool) -> int:
         "": row["detail"],
         "class": row["class"],
         "shares the process": row["process"],
-        "started again": f"{row['restarts']} times" if row["restarts"] else "",
+        "started again": {0: "", 1: "once"}.get(row["restarts"], f"{row['restarts']} times"),
         "its last end": row["last_end"],
         "log": row["log"],
     }

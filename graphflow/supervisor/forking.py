@@ -32,6 +32,8 @@ class ForkingStarter:
         self._lines: list[Lines] = []
         self._workers: dict[int, tuple[str, int]] = {}
         """Living workers by process id: the name of each, and the descriptor that tells its end."""
+        self._programs: set[str] = set()
+        """Processes that are foreign programs."""
         self._heard: Heard
         self._lost: Callable[[str], None]
         self._has_ended = False
@@ -100,11 +102,17 @@ class ForkingStarter:
         return f"process {self._pid}, which starts the nodes, is stopped; to let it go on: kill -CONT {self._pid}"
 
     def _lose(self) -> None:
-        """The preload process has ended. The system has asked its workers to do the same; this is their parent now."""
+        """The preload process has ended. The system has asked its workers to do the same; this is their parent now.
+
+        Foreign programs know nothing of that, and are asked here.
+        """
         _, status = os.waitpid(self._pid, 0)
         self._has_ended = True
         how = Exit.of_status(os.waitstatus_to_exitcode(status))
         self._lost(f"process {self._pid}, which starts the nodes, was ended by {how}")
+        for pid, (name, _) in self._workers.items():
+            if name in self._programs:
+                family.kill_group(pid, signal.SIGTERM)
         self._ending = asyncio.create_task(self._end_workers())
 
     async def _end_workers(self) -> None:
@@ -122,6 +130,8 @@ class ForkingStarter:
                 self._ended(pid, status)
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
+        if "command" in job:
+            self._programs.add(process)
         self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
 
     def terminate(self, process: str, pid: int) -> None:
