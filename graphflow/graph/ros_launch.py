@@ -38,6 +38,7 @@ _KNOWN: dict[str, set[str]] = {
     "arg": {"name", "default", "description", "choice", *_ANY},
     "let": {"name", "value", *_ANY},
     "set_env": {"name", "value", *_ANY},
+    "append_env": {"name", "value", "prepend", "separator", *_ANY},
     "group": {"children", "scoped", "forwarding", "keep", *_ANY, *_RECORDED},
     "include": {"file", "arg", "let", *_ANY, *_RECORDED},
     "node": {"pkg", "exec", "namespace", "args", "ros_args", "remap", "param", *_RUN},
@@ -56,12 +57,11 @@ _ELSEWHERE = {
     "load_composable_node": "components are not built yet",
     "shutdown": "write on_exit: shutdown at the node that it waits for",
     "unset_env": "write env: in a group or at a node",
-    "append_env": "write env: in a group or at a node",
     "reset_env": "write env: in a group or at a node",
     "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
-_SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "set_use_sim_time", "let")
+_SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
 
 
 def is_launch_file(top: Item) -> bool:
@@ -181,6 +181,15 @@ class _Translation:
                 return "params", Item({"use_sim_time": value}, item.place)
             case "set_remap":
                 return "remap", self._pair(item, "from", "to")
+            case "append_env":
+                pair, get = self._pair(item, "name", "value"), item.entries.get
+                separator = str(get("separator", Item(":", item.place)).value)
+                is_first = str(get("prepend", Item("", item.place)).value).lower() in ("true", "1")
+                found = {}
+                for name, value in pair.entries.items():
+                    parts = [f"$(optenv {name})", str(value.value)]
+                    found[name] = value._replace(value=separator.join(parts[::-1] if is_first else parts))
+                return "env", pair._replace(value=found)
             case _:
                 return "env", self._pair(item, "name", "value")
 

@@ -14,6 +14,7 @@ import io
 import json
 import os
 import sys
+from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
@@ -24,6 +25,8 @@ _FILE = ""
 _problems: list[dict[str, Any]] = []
 _numbers: dict[int, int] = {}
 """Numbers of actions that others come after."""
+_ending: set[int] = set()
+"""Actions with whose end everything ends."""
 
 
 def _line() -> int:
@@ -57,6 +60,10 @@ class Said:
         """As a LaunchDescription has it."""
         self.__dict__.setdefault("added", []).append(action)
 
+    def find(self, package: Any = None) -> str:
+        """As a FindPackageShare has it."""
+        return f"$(find-pkg-share {text(package)})"
+
     def perform(self, context: Any = None) -> str:
         return text(self)
 
@@ -88,6 +95,8 @@ def text(value: Any) -> str:
             return f"$(env {text(first)}{'' if default is None else f' {text(default)}'})"
         case "FindPackageShare" | "FindPackagePrefix":
             return f"$(find-pkg-share {text(first)})"
+        case "ExecutableInPackage":
+            return f"$(find-exec {text(value.get('executable', 0))})"
         case "PathJoinSubstitution":
             return "/".join(text(part).strip("/") if i else text(part) for i, part in enumerate(first))
         case "PythonExpression":
@@ -137,6 +146,8 @@ def actions(said: Any) -> list[dict[str, Any]]:
     attributes |= {"line": said.line, **_condition(said)}
     if id(said) in _numbers:
         attributes["number"] = _numbers[id(said)]
+    if id(said) in _ending:
+        attributes["on_exit"] = "shutdown"
     return [{name: attributes}]
 
 
@@ -171,6 +182,9 @@ def _action(said: Said) -> tuple[str, Any]:
             return "let", {"name": text(get("name", 0)), "value": text(get("value", 1))}
         case "SetEnvironmentVariable":
             return "set_env", {"name": text(get("name", 0)), "value": text(get("value", 1))}
+        case "AppendEnvironmentVariable":
+            found = {"name": text(get("name", 0)), "value": text(get("value", 1))}
+            return "append_env", {**found, "prepend": str(get("prepend", 2, default=False))}
         case "SetParameter":
             return "set_parameter", {"name": text(get("name", 0)), "value": plain(get("value", 1))}
         case "SetRemap":
@@ -196,6 +210,10 @@ def _action(said: Said) -> tuple[str, Any]:
         case "Node":
             return "node", _node(said)
         case "ExecuteProcess" | "ExecuteLocal":
+            first, *rest = get("cmd", 0, [""])
+            if isinstance(first, Said) and first.name == "ExecutableInPackage":  # a node, by another way
+                found = {"pkg": text(first.get("package", 1)), "exec": text(first.get("executable", 0))}
+                return "node", {**_common(said), **found, "args": [text(word) for word in rest]}
             return "executable", _process(said)
     _problem(said, f"{said.name} has no words in a graph file")
     return "", []
@@ -219,9 +237,7 @@ def _handled(said: Said) -> list[dict[str, Any]]:
     if not isinstance(target, Said) or (callable(then) and not isinstance(then, Said)):
         _problem(said, f"{handler.name}: only for one process, with a list of actions")
         return []
-    if any(one.name in ("EmitEvent", "Shutdown") for one in (then if isinstance(then, list) else [then])):
-        _problem(said, f"{handler.name}: write on_exit: shutdown at the node that it waits for")
-        return []
+    then = [one for one in (then if isinstance(then, list) else [then]) if not _is_shutdown(one)]
     number = _numbers.setdefault(id(target), len(_numbers) + 1)
     found = actions(then)
     for action in found:
@@ -288,13 +304,28 @@ def plain(value: Any) -> Any:
 # the modules
 
 
+_SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
+_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages"}
+
+
+class _Environment(dict[str, str]):
+    """The environment; a variable that is not set is a substitution, so that a path made of it is one, too."""
+
+    def __missing__(self, name: str) -> str:
+        return f"$(env {name})"
+
+
 class _StandIn(ModuleType):
     """A module that has whatever is asked for."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        made: Any = type(name, (Said,), {"name": name}) if name[:1].isupper() else _function(name)
+        made: Any
+        if name in _SUBMODULES:  # also for those who have only imported `launch`
+            made = import_module(f"{self.__name__}.{name}")
+        else:
+            made = type(name, (Said,), {"name": name}) if name[:1].isupper() else _function(name)
         setattr(self, name, made)
         return made
 
@@ -325,6 +356,7 @@ def record(path: str) -> dict[str, Any]:
     global _FILE
     _FILE = path
     sys.meta_path.insert(0, _Finder())
+    os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
     found: list[dict[str, Any]] = []
     try:
         with open(path, encoding="utf-8") as file:
@@ -347,6 +379,10 @@ def record(path: str) -> dict[str, Any]:
     return {"actions": found, "problems": _problems}
 
 
+def _is_shutdown(said: Any) -> bool:
+    return isinstance(said, Said) and said.name in ("EmitEvent", "Shutdown")
+
+
 def _number_targets(said: Any) -> None:
     """Number the actions that event handlers wait for, before they are written down."""
     if isinstance(said, (list, tuple)):
@@ -355,6 +391,9 @@ def _number_targets(said: Any) -> None:
     elif isinstance(said, Said):
         if said.name in ("OnProcessExit", "OnProcessStart") and isinstance(target := said.get("target_action"), Said):
             _numbers.setdefault(id(target), len(_numbers) + 1)
+            then = said.get("on_exit")
+            if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
+                _ending.add(id(target))
         _number_targets([*said.args, *said.kwargs.values()])
 
 
