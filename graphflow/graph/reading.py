@@ -7,7 +7,8 @@ from pathlib import Path
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import ros_launch, source, xml_source
 from graphflow.graph.project import project_root
-from graphflow.graph.ros_launch import Complain, nothing
+from graphflow.graph.ros_commands import Complain
+from graphflow.graph.ros_launch import nothing
 from graphflow.graph.tree import Item, tree
 
 

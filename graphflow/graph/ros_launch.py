@@ -17,16 +17,14 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from graphflow.errors import GraphFileError, Place
-from graphflow.graph import executables, source
-from graphflow.graph.tree import Item, located, tree
+from graphflow.errors import Place
+from graphflow.graph import executables
+from graphflow.graph.ros_commands import Complain, step_of, typed
+from graphflow.graph.tree import Item, located
 from graphflow.names import did_you_mean
-
-Complain = Callable[[Place, str], None]
 
 _ANY = {"if", "unless"}
 _IGNORED = {"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout", "exec_name", "log_cmd"}
@@ -160,7 +158,7 @@ class _Translation:
             self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
-            values = Item([_typed(item.entries.get("value", nothing))], item.place)
+            values = Item([typed(item.entries.get("value", nothing))], item.place)
             loop = Item({"var": item.entries.get("name", nothing), "in": values, **rest}, item.place)
             return item._replace(value={"for": loop})
         key, value = self._setting(name, item)
@@ -177,7 +175,7 @@ class _Translation:
             case "set_parameter":
                 return "params", self._pair(item, "name", "value", is_typed=True)
             case "set_use_sim_time":
-                value = _typed(item.entries.get("value", Item("", item.place)))
+                value = typed(item.entries.get("value", Item("", item.place)))
                 return "params", Item({"use_sim_time": value}, item.place)
             case "set_remap":
                 return "remap", self._pair(item, "from", "to")
@@ -199,7 +197,7 @@ class _Translation:
             self._complain(item.at, f"the attribute {key!r} is missing")
             return Item({}, item.place)
         found = item.entries.get(value, Item("", item.place))
-        return Item({name.value: (_typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
+        return Item({name.value: (typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
 
     # actions
 
@@ -230,14 +228,14 @@ class _Translation:
             return
         spec: dict[str, Item] = {}
         if "default" in item.entries:
-            spec["default"] = _typed(item.entries["default"])
+            spec["default"] = typed(item.entries["default"])
         if "description" in item.entries and item.entries["description"].value:
             spec["doc"] = item.entries["description"]
         if "choice" in item.entries:
             choices = [
                 choice.entries["value"] for choice in _items(item.entries["choice"]) if "value" in choice.entries
             ]
-            spec["choices"] = Item([_typed(choice) for choice in choices], item.entries["choice"].place)
+            spec["choices"] = Item([typed(choice) for choice in choices], item.entries["choice"].place)
         self._args[name.value] = item._replace(value=spec)
 
     def _include(self, item: Item) -> Item:
@@ -257,7 +255,7 @@ class _Translation:
             self._complain(item.at, "timer: the attribute 'period' is missing")
             return
         step = f"timer_{self._next('timer')}"
-        delay = item._replace(value={"delay": _typed(period), **self._conditions(item)})
+        delay = item._replace(value={"delay": typed(period), **self._conditions(item)})
         _put(body, "steps", step, delay)
         inner = self._block(_children(item))
         after = Item(step, item.place, item.place)
@@ -337,7 +335,7 @@ class _Translation:
                     pair = self._pair(param, "name", "value")
                     kind = param.entries.get("type")
                     is_text = kind is not None and kind.value == "str"
-                    into.update({key: value if is_text else _typed(value) for key, value in pair.entries.items()})
+                    into.update({key: value if is_text else typed(value) for key, value in pair.entries.items()})
 
         take(_items(item.entries.get("param")), values)
         if files:
@@ -368,7 +366,7 @@ class _Translation:
         except ValueError as error:
             self._complain(command.place, f"cmd: {error}")
             return
-        step = self._step(words, command)
+        step = step_of(words, command, self._complain)
         if step is not None:
             name = f"{words[2]}_{self._next('step')}"
             before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
@@ -387,32 +385,6 @@ class _Translation:
         key = str(own.value) if own is not None else f"{base}_{self._next(base)}"
         self._add_node(body, key, item._replace(value=entries))
 
-    def _step(self, words: list[str], command: Item) -> dict[str, Item] | None:
-        """A step in place of a command line of ROS's."""
-        match words:
-            case ["ros2", "service", "call", name, type_, *values]:
-                return self._sent("call", name, type_, values, command)
-            case ["ros2", "action", "send_goal", name, type_, *values]:
-                return self._sent("goal", name, type_, [v for v in values if not v.startswith("-")], command)
-            case ["ros2", "param", "set", node, parameter, value]:
-                params = Item({parameter: _typed(Item(value, command.place))}, command.place)
-                return {"set": Item(node, command.place), "params": params}
-        return None
-
-    def _sent(self, deed: str, name: str, type_: str, values: list[str], command: Item) -> dict[str, Item]:
-        found = {deed: Item(name, command.place), "type": Item(type_, command.place)}
-        text = " ".join(values)
-        if text:
-            try:
-                data = source.read(text, command.place.file).data
-                if isinstance(data, str):  # it had quotes for a shell around it
-                    data = source.read(data, command.place.file).data
-            except GraphFileError as error:
-                self._complain(command.place, f"the request {text[:60]!r}: {error.problems[0].message}")
-                return found
-            found["request"] = located(data, command.place)
-        return found
-
     def _common(self, item: Item) -> dict[str, Item]:
         """What nodes and programs share."""
         entries = self._conditions(item)
@@ -426,7 +398,7 @@ class _Translation:
             for key, ours in (("respawn_delay", "delay"), ("respawn_max_retries", "max_restarts")):
                 value = get(key)
                 if value is not None and not str(value.value).startswith(("-", "0")):
-                    settings[ours] = _typed(value)
+                    settings[ours] = typed(value)
             entries["restart"] = Item(settings, respawn.place, respawn.key)
         if "on_exit" in item.entries:
             entries["on_exit"] = item.entries["on_exit"]
@@ -476,19 +448,6 @@ def _split(item: Item | None) -> list[str]:
         return shlex.split(str(item.value))
     except ValueError:  # a quote that is not closed
         return str(item.value).split()
-
-
-def _typed(item: Item) -> Item:
-    """A text as what it reads as in YAML: launch files have nothing but texts."""
-    if not isinstance(item.value, str) or "$(" in item.value:
-        return item
-    try:
-        read = tree(source.read(item.value, item.place.file))
-    except GraphFileError:
-        return item
-    if isinstance(read.value, dict) or read.value is None:
-        return item
-    return located(read.plain(), item.place)._replace(key=item.key)
 
 
 def _put(body: dict[str, Item], section: str, key: str, item: Item) -> None:

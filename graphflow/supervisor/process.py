@@ -31,6 +31,10 @@ class Process:
         """When the process entered its state, in seconds since 1970."""
         self.ready_since: float | None = None
         """When it was ready, on the monotonic clock."""
+        self.heard: float | None = None
+        """When its event loop last said that it goes round, on the monotonic clock; None for never."""
+        self.silent_since: float | None = None
+        """Since when it has said nothing, if that is too long."""
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
         self.error = ""
@@ -62,6 +66,8 @@ class Process:
         """Its state, as `ps` has it."""
         if self.state is State.ENDED and self.given_up:
             return "given_up"
+        if self.state is State.READY and self.silent_since is not None:
+            return "unresponsive"
         return "failed" if self.state is State.ENDED and self.failed else self.state.value
 
     @property
@@ -74,6 +80,8 @@ class Process:
             return f"{self.error or self.exit}; given up: {self.given_up}"
         if self.error:
             return self.error
+        if self.word == "unresponsive" and self.silent_since is not None:
+            return f"its event loop has said nothing for {time.monotonic() - self.silent_since:.0f} s"
         if self.exit is not None and self.exit.failed:
             return str(self.exit)
         return f"its log is not written whole: {self.log_error}" if self.log_error else ""
@@ -100,6 +108,7 @@ class Process:
         """Forget what became of the process before this one."""
         self.starts += 1
         self.pid, self.exit, self.ready_since = None, None, None
+        self.heard = self.silent_since = None
         self.error = self.log_error = self.given_up = ""
         self.stop_asked = self.failed = False
         self.waiting_for = {n.name for n in self.nodes}

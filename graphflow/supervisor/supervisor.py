@@ -18,6 +18,7 @@ from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
 from graphflow.supervisor.doors import Doors
+from graphflow.supervisor.health import Health
 from graphflow.supervisor.process import Process
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
@@ -178,7 +179,9 @@ class Supervisor:
                 "pass through the rendezvous; nodes that share a `process:` need fewer",
             )
         self._start_ready_ones()
+        health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
         await self.ended.wait()
+        health.cancel()
         for task in self._step_tasks.values():
             task.cancel()
         await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
@@ -200,6 +203,8 @@ class Supervisor:
                 self._is_ready(process, process.name)
         elif what == "ready":
             self._is_ready(process, event["node"])
+        elif what == "beat":
+            process.heard = time.monotonic()
         elif what == "failed":
             process.error = event["error"]
         elif what == "log_lost":

@@ -6,6 +6,7 @@ import asyncio
 import faulthandler
 import json
 import os
+import select
 import signal
 import socket
 import sys
@@ -36,6 +37,8 @@ PIPE_BUF = 4096
 """Bytes that a pipe accepts atomically on Linux (PIPE_BUF of pipe(7))."""
 CONNECT_LIMIT = 5.0
 """Seconds that reaching the supervisor may take, over loopback."""
+BEAT_EVERY = 0.5
+"""Seconds between two words of the event loop."""
 EXIT_ERROR = 70
 """Exit code: a node failed while it ran."""
 EXIT_CONFIGURATION = 78
@@ -80,6 +83,9 @@ class Reporter(Protocol):
 
     def tell(self, **event: Any) -> None: ...
 
+    def is_open(self) -> bool:
+        """Whether something can be told without waiting for a supervisor that does not read."""
+
     def on_stop(self, stop: Callable[[], object]) -> None:
         """Call `stop`, on any thread, when the supervisor asks for the end over this line."""
 
@@ -95,6 +101,9 @@ class PipeReporter:
         while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
             event["error"] = event["error"][: len(event["error"]) // 2]
         os.write(self._pipe, line + b"\n")
+
+    def is_open(self) -> bool:
+        return bool(select.select([], [self._pipe], [], 0)[1])
 
     def on_stop(self, stop: Callable[[], object]) -> None:
         """Does nothing: signals stop this worker."""
@@ -113,6 +122,9 @@ class SocketReporter:
 
     def tell(self, **event: Any) -> None:
         self._socket.sendall(json.dumps(event).encode() + b"\n")
+
+    def is_open(self) -> bool:
+        return bool(select.select([], [self._socket], [], 0)[1])
 
     def on_stop(self, stop: Callable[[], object]) -> None:
         self._stop = stop
@@ -182,6 +194,7 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         report.tell(event="ready", process=job["process"], node=node.full_name)
 
     context = None
+    beating = asyncio.create_task(_beat(report, job["process"]))
     try:
         rules = {"deadlock": job["deadlock"], "call_timeout": job["call_timeout"]}
         context = await Context.open(job["domain"], mode=job["mode"], checked=True, **rules)
@@ -193,9 +206,21 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         report.tell(event="failed", process=job["process"], error=_one_line(error))
         return EXIT_CONFIGURATION if at_start and isinstance(error, GraphflowError) else EXIT_ERROR
     finally:
+        beating.cancel()
         if context is not None:
             await context.close()
     return 0
+
+
+async def _beat(report: Reporter, process: str) -> None:
+    """Say that the loop goes round, as long as it does."""
+    while True:
+        try:
+            if report.is_open():
+                report.tell(event="beat", process=process)
+        except OSError:  # the supervisor has gone, and this process will
+            return
+        await asyncio.sleep(BEAT_EVERY)
 
 
 def _log_failure(error: Exception) -> None:

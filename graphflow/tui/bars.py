@@ -32,6 +32,7 @@ MARKS = {
     "ready": StateMark("●", "good"),
     "starting": StateMark("◐", "warn"),
     "restarting": StateMark("◐", "warn"),
+    "unresponsive": StateMark("◍", "bad"),
     "resetting": StateMark("◐", "warn"),
     "waiting": StateMark("◷", "warn"),
     "stopping": StateMark("◑", "warn"),

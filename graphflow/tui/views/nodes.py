@@ -80,7 +80,7 @@ class Nodes(TableView):
             row = known.get(name)
             state = row["state"] if row is not None else "foreign"
             pid = row["pid"] if row is not None else pids.get(name)
-            is_up = row is None or state in ("ready", "starting", "stopping", "restarting")
+            is_up = row is None or state in ("ready", "unresponsive", "starting", "stopping", "restarting")
             cost = costs.get(pid) if pid is not None and is_up else None
             mark = MARKS["failed" if name in dead else state]
             word = "deadlock" if name in dead else WORDS.get(state, state)

@@ -1,0 +1,60 @@
+"""Command lines of ROS in launch files, as steps: `ros2 service call`, `ros2 action send_goal`, `ros2 param set`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from graphflow.errors import GraphFileError, Place
+from graphflow.graph import source
+from graphflow.graph.tree import Item, located, tree
+
+Complain = Callable[[Place, str], None]
+
+
+def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str, Item] | None:
+    """A step in place of a command line; None if it is another program's.
+
+    Args:
+        command: Where the line is written.
+        complain: Called with what is wrong with a request.
+    """
+    match words:
+        case ["ros2", "service", "call", name, type_, *values]:
+            return _sent("call", name, type_, values, command, complain)
+        case ["ros2", "action", "send_goal", name, type_, *values]:
+            fields = [value for value in values if not value.startswith("-")]
+            return _sent("goal", name, type_, fields, command, complain)
+        case ["ros2", "param", "set", node, parameter, value]:
+            params = Item({parameter: typed(Item(value, command.place))}, command.place)
+            return {"set": Item(node, command.place), "params": params}
+    return None
+
+
+def _sent(
+    deed: str, name: str, type_: str, values: Sequence[str], command: Item, complain: Complain
+) -> dict[str, Item]:
+    found = {deed: Item(name, command.place), "type": Item(type_, command.place)}
+    text = " ".join(values)
+    if text:
+        try:
+            data = source.read(text, command.place.file).data
+            if isinstance(data, str):  # it had quotes for a shell around it
+                data = source.read(data, command.place.file).data
+        except GraphFileError as error:
+            complain(command.place, f"the request {text[:60]!r}: {error.problems[0].message}")
+            return found
+        found["request"] = located(data, command.place)
+    return found
+
+
+def typed(item: Item) -> Item:
+    """A text as what it reads as in YAML: launch files have nothing but texts."""
+    if not isinstance(item.value, str) or "$(" in item.value:
+        return item
+    try:
+        read = tree(source.read(item.value, item.place.file))
+    except GraphFileError:
+        return item
+    if isinstance(read.value, dict) or read.value is None:
+        return item
+    return located(read.plain(), item.place)._replace(key=item.key)
