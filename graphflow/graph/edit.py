@@ -38,6 +38,11 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
         if node.name in nodes:
             file = (folder / node.place.file).resolve()
             key = _key_at(file, node.place)
+            if file != top and not isinstance(_load(top.read_text(encoding="utf-8"), plan.file).get("include"), str):
+                text = (
+                    f"{node.name} comes from here, which {plan.file} includes in a block; write it under that override:"
+                )
+                raise GraphFileError([Problem(node.place, text)])
             found[node.name] = ("nodes" if file == top else "override", key)
     return found
 
@@ -51,9 +56,19 @@ def _key_at(file: Path, place: Place) -> str:
             for key in nodes:
                 if nodes.lc.key(key)[0] + 1 == place.line:
                     return str(key)
-    raise GraphFileError(
-        [Problem(place, "the node is not on this line any more; was the file changed? Restart the graph")]
-    )
+    text = "the node is not on this line any more; was the file changed? Restart the graph"
+    if place.line in _key_lines([data.get("group"), data.get("for")]):
+        text = "the node is written in a group or loop, where it is changed by hand"
+    raise GraphFileError([Problem(place, text)])
+
+
+def _key_lines(data: Any) -> set[int]:
+    """The lines on which a file has keys."""
+    if isinstance(data, list):
+        return {line for item in data for line in _key_lines(item)}
+    if not isinstance(data, CommentedMap):
+        return set()
+    return {data.lc.key(key)[0] + 1 for key in data} | {n for item in data.values() for n in _key_lines(item)}
 
 
 def with_group(

@@ -44,6 +44,8 @@ INHERITED = ("restart", "on_exit", "critical", "log_level")
 MAX_ROUNDS = 10_000
 """Of all loops of a graph together."""
 MAX_FILES = 200
+MAX_MADE = 500_000
+"""Values that a graph has once all is taken apart."""
 
 _SPAN = re.compile(r"(-?\d{1,9})\.\.(-?\d{1,9})\Z")
 
@@ -90,7 +92,7 @@ class Expansion:
         self._env, self._problems = env, problems
         self._root = Path()
         """The project's folder."""
-        self._rounds = 0
+        self._rounds = self._made = 0
         self._relative = 0
         """Names so far that depend on a namespace."""
 
@@ -462,7 +464,19 @@ class Expansion:
         if isinstance(item.value, list):
             return item._replace(value=[self._substituted(inner, scope) for inner in item.value])
         value = self._one(item.value, item.place, scope)
+        self._count(value, item.place)
         return located(value, item.place)._replace(key=item.key)
+
+    def _count(self, value: Any, place: Place) -> None:
+        """Count what loops and arguments make of a file, which could be more than any memory holds."""
+        todo = [value]
+        while todo:
+            value = todo.pop()
+            self._made += 1
+            if self._made > MAX_MADE:
+                raise GraphFileError([Problem(place, f"loops and arguments make more than {MAX_MADE:,} values of it")])
+            if isinstance(value, (list, dict)):
+                todo += value.values() if isinstance(value, dict) else value
 
     def _checked(self, model: type[BaseModel], block: Item, whole: Item | None = None) -> Any:
         """The model of a block; None, with problems added, where its keys or types are wrong."""

@@ -19,6 +19,8 @@ MAX_BITS = 4096
 """Of a power."""
 MAX_LIST = 10_000
 """Elements of a list."""
+MAX_TEXT = 100_000
+"""Characters of a text."""
 
 
 class ExpressionError(ValueError):
@@ -48,7 +50,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     evaluator.nodes[ast.Attribute] = lambda node: _entry(evaluator._eval(node.value), node.attr)
     try:
         ast.parse(text.strip(), mode="eval")  # simpleeval would take a statement, too
-        return evaluator.eval(text.strip())
+        return _bounded(evaluator.eval(text.strip()))
     except simpleeval.NameNotDefined as error:
         raise ExpressionError(f"{error.name!r} is no argument{did_you_mean(error.name, names)}") from None
     except simpleeval.FunctionNotDefined as error:
@@ -61,6 +63,15 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError("nested too deep") from None
     except (simpleeval.InvalidExpression, ArithmeticError, TypeError, ValueError, LookupError) as error:
         raise ExpressionError(str(error) or type(error).__name__) from None
+
+
+def _bounded(value: Any) -> Any:
+    """A value that is no larger than what others may be made of: arguments could double it again and again."""
+    if isinstance(value, (list, tuple, dict, set)) and len(value) > MAX_LIST:
+        raise ExpressionError(f"a list has at most {MAX_LIST} elements")
+    if isinstance(value, str) and len(value) > MAX_TEXT:
+        raise ExpressionError(f"a text has at most {MAX_TEXT:,} characters")
+    return value
 
 
 def _entry(value: Any, name: str) -> Any:

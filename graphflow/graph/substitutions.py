@@ -20,8 +20,8 @@ from graphflow.graph.expressions import ExpressionError, evaluate
 from graphflow.names import did_you_mean
 
 MAX_DEPTH = 20
-MAX_FILE = 100_000
-"""Bytes of a file that `$(file-content ...)` takes in."""
+MAX_TEXT = 100_000
+"""Characters of a text, and bytes of a file that `$(file-content ...)` takes in."""
 
 
 class SubstitutionError(ValueError):
@@ -61,7 +61,10 @@ class Substitutions:
         parts = self._parts(value, 1)
         if len(parts) == 1:
             return parts[0]
-        return "".join(_text(part) for part in parts)
+        texts = [_text(part) for part in parts]
+        if sum(map(len, texts)) > MAX_TEXT:  # arguments made of arguments could grow without end
+            raise SubstitutionError(f"the text has more than {MAX_TEXT:,} characters")
+        return "".join(texts)
 
     def _parts(self, text: str, depth: int) -> list[Any]:
         if depth > MAX_DEPTH:
@@ -152,12 +155,12 @@ class Substitutions:
         path = Path(self._folder) / text
         try:
             with path.open("rb") as file:
-                data = file.read(MAX_FILE + 1)
+                data = file.read(MAX_TEXT + 1)
             content = data.decode()
         except (OSError, ValueError) as error:
             raise SubstitutionError(f"$(file-content {text}): {error}") from None
-        if len(data) > MAX_FILE:
-            raise SubstitutionError(f"$(file-content {text}): the file is larger than {MAX_FILE:,} bytes")
+        if len(data) > MAX_TEXT:
+            raise SubstitutionError(f"$(file-content {text}): the file is larger than {MAX_TEXT:,} bytes")
         return content
 
     def _anonymous(self, text: str) -> str:

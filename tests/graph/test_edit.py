@@ -56,6 +56,23 @@ def test_an_included_node_is_changed_under_override(file: Path, tmp_path: Path) 
     assert right.params["rate"].value == 9.0
 
 
+def test_nodes_of_blocks(tmp_path: Path) -> None:
+    """Where a group, a loop, or an include with arguments has them, they are changed by hand; it is said where."""
+    (tmp_path / "base.yaml").write_text("nodes: {/b: {class: x:Y}}\n")
+    file = tmp_path / "g.yaml"
+    file.write_text(
+        "group:\n  nodes:\n    /a: {class: x:Y}\ninclude:\n  - {file: base.yaml}\nnodes:\n  /c: {class: x:Y}\n"
+    )
+    plan = load(file)
+    assert node_paths(plan, {"/c"}, tmp_path) == {"/c": ("nodes", "/c")}
+    with pytest.raises(
+        GraphFileError, match=r"g.yaml:3:5: the node is written in a group or loop, where it is changed"
+    ):
+        node_paths(plan, {"/a"}, tmp_path)
+    with pytest.raises(GraphFileError, match=r"/b comes from here, which .*g.yaml includes in a block"):
+        node_paths(plan, {"/b"}, tmp_path)
+
+
 def test_parameters() -> None:
     """Changed in place, added where they are missing."""
     changed = with_params(TEXT, LEFT, {"rate": 5.0, "list": [1, 2]})

@@ -132,6 +132,31 @@ def test_no_loop_is_endless(monkeypatch: pytest.MonkeyPatch) -> None:
     assert problems(f"for: {loop}\nnodes: {{a: {{class: x:Y}}}}\n") == ["1:44: the loops have more than 50 rounds"]
 
 
+GROWING = "args:\n" + "".join(
+    f"  a{i}: {{default: {what}}}\n"
+    for i, what in enumerate(["[1, 2]", *(f"[{', '.join([f'$(var a{i})'] * 10)}]" for i in range(12))])
+)
+TEXTS = "args:\n" + "".join(
+    f"  a{i}: {{default: '{what}'}}\n" for i, what in enumerate(["x" * 10, *(f"$(var a{i})" * 10 for i in range(12))])
+)
+SUMS = "args:\n" + "".join(
+    f"  a{i}: {{default: {what}}}\n" for i, what in enumerate(["[1, 2]", *(f"$(eval a{i} + a{i})" for i in range(40))])
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (GROWING, "loops and arguments make more than 500,000 values of it"),
+        (TEXTS, "the text has more than 100,000 characters"),
+        (SUMS, "a list has at most 10000 elements"),
+    ],
+)
+def test_arguments_do_not_grow_without_end(text: str, said: str) -> None:
+    """Each made of those before it ten times over: it is refused before it costs much."""
+    assert any(said in problem for problem in problems(f"{text}nodes: {{a: {{class: x:Y}}}}\n"))
+
+
 # conditions
 
 
