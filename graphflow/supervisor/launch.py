@@ -61,7 +61,9 @@ class Launched(NamedTuple):
         os.close(self.lifeline)
 
 
-def launch(file: Path, given: list[str], domain: int | None, only: Sequence[str] = ()) -> tuple[Report, Launched]:
+def launch(
+    file: Path, given: list[str], domain: int | None, only: Sequence[str] = (), *, watch: bool = False
+) -> tuple[Report, Launched]:
     """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
 
     Args:
@@ -69,12 +71,13 @@ def launch(file: Path, given: list[str], domain: int | None, only: Sequence[str]
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
         only: Nodes that are wanted, if not all are.
+        watch: Start nodes again when their source changes.
 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
     begin = _begin_portable if is_portable() else _begin_forked
-    begun = begin({"file": str(file), "given": given, "domain": domain, "only": list(only)})
+    begun = begin({"file": str(file), "given": given, "domain": domain, "only": list(only), "watch": watch})
     data = b""
     try:
         while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
@@ -173,6 +176,7 @@ class _Launch:
 
     def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1) -> None:
         self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
+        self._is_watching = bool(job["watch"])
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._starter: Starter
 
@@ -306,6 +310,7 @@ class _Launch:
         linked = asyncio.create_task(context.wait_linked())
         kept = asyncio.create_task(_keep_reachable(supervisor, control, directory, run))
         warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
+        watching = asyncio.create_task(_watch(supervisor, plan, interfaces)) if self._is_watching else None
         try:
             code = await supervisor.run()
             await control.wait_followed()
@@ -314,6 +319,8 @@ class _Launch:
             linked.cancel()
             kept.cancel()
             warned.cancel()
+            if watching is not None:
+                watching.cancel()
             await control.close()
             await self._starter.close()
 
@@ -370,6 +377,20 @@ async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> N
         ways = await asyncio.to_thread(findings, plan, interfaces)
         for text in warnings(ways, plan.file):
             supervisor.note(text)
+
+
+async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
+    """Once the graph is up, start nodes again when their source changes."""
+    from graphflow.interface import Interface
+    from graphflow.supervisor.watching import Watch
+
+    nodes: dict[Path, list[str]] = {}
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if isinstance(interface, Interface):
+            nodes.setdefault(Path(interface.place.file).resolve(), []).append(node.name)
+    await supervisor.up.wait()
+    await Watch(Path(plan.root), nodes, partial(supervisor.restart, by="--watch"), supervisor.note).run()
 
 
 def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:

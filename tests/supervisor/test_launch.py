@@ -149,7 +149,7 @@ def test_a_supervisor_that_reports(monkeypatch: pytest.MonkeyPatch) -> None:
     begun = Begun(monkeypatch, data[:5], data[5:])
     told, launched = launch(Path("g.yaml"), ["a:=1"], 7)
     assert told == report
-    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "only": []}
+    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "only": [], "watch": False}
     assert not begun.is_reaped
     launched.let_go()
     assert os.read(begun.lifeline, 2) == LET_GO
