@@ -130,19 +130,27 @@ class Expansion:
         overridden = entries.get("override")
         if overridden is not None and "include" not in entries:
             self._problems.add(overridden.at, "override: goes with include:, whose nodes it changes")
+        elif overridden is not None and isinstance(entries["include"].value, list):
+            self._problems.add(
+                overridden.at, "override: with several files, write it at the one whose nodes it changes"
+            )
         scope = self._body(entries, scope, overridden)
-        for key, item in entries.items():
-            if key == "name" and len(scope.files) > 1:  # the graph is called as its own file says
-                continue
-            if scope.is_top and key in TOP_KEYS and key not in (*BLOCKS, "templates", "override"):
-                old = self.settings.get(key)
-                keeps = key == "args" and old is not None
-                item = merged(old, item) if keeps and old is not None else item
-                self.settings[key] = item if key == "args" else self._substituted(item, scope)
+        if scope.is_top:
+            self._take_settings(entries, scope)
         for key in ("nodes", "steps"):
             if key in entries and not isinstance(entries[key].value, (dict, type(None))):
                 self.settings[key] = entries[key]  # its type is reported with those of the others
         return scope.templates
+
+    def _take_settings(self, entries: Mapping[str, Item], scope: _Scope) -> None:
+        """Keep what a file says of the whole graph, over what those that it includes say."""
+        for key, item in entries.items():
+            if key == "args" and isinstance(item.value, dict):
+                self.settings[key] = merged(self.settings.get(key, Item({}, item.place)), item)
+            elif key == "name" and len(scope.files) > 1:  # the graph is called as its own file says
+                continue
+            elif key in TOP_KEYS and key not in (*BLOCKS, "templates", "override"):
+                self.settings[key] = item if key == "args" else self._substituted(item, scope)
 
     def _include(self, item: Item, scope: _Scope, overridden: Item | None = None) -> _Scope:
         """Take in other files; returns the scope with their templates."""
@@ -166,10 +174,13 @@ class Expansion:
         if top is None:
             return scope
         before = set(self.nodes)
-        inner = replace(scope, files=(*scope.files, path.resolve()), templates={})
-        if model.namespace or not isinstance(item.value, str):
-            inner = replace(inner, is_top=inner.is_top and not block.entries.keys() & {"args", "namespace"})
-        inner = replace(inner, namespace=self._namespace(block, scope))
+        inner = replace(
+            scope,
+            files=(*scope.files, path.resolve()),
+            templates={},
+            namespace=self._namespace(block, scope),
+            is_top=scope.is_top and not block.entries.keys() & {"args", "namespace"},
+        )
         templates = self._file(top, path, inner, block.entries["args"].entries if model.args else {})
         changes = [o for o in (block.entries.get("override"), overridden) if o is not None]
         for change in changes:

@@ -312,6 +312,10 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
             "templates: {t: 3}\ngroup: {nodes: {b: {template: t}}}",
             "2:16: templates.t: expected a mapping, as",
         ),
+        (
+            "include: [{file: a.yaml, if: false}]\noverride: {}",
+            "3:1: override: with several files, write it at the one whose",
+        ),
         ("include: {fil: x}", "2:11: unknown key 'fil'; did you mean 'file'?"),
         ("include: {file: 3}", "2:17: file: expected text, got 3"),
         (
