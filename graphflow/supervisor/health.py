@@ -1,4 +1,4 @@
-"""Whether the nodes answer: each worker's event loop says so twice a second, and one that does not is told.
+"""Whether the nodes answer: each worker's event loop says so once a second, and one that does not is told.
 
 A process is *unresponsive* when its loop has said nothing for `SILENCE` seconds: it is blocked, held in C code, or has
 been stopped. That is reported, with the line in which it is blocked; nobody is killed for it. A supervisor that was
@@ -20,7 +20,7 @@ from graphflow.supervisor.process import Process
 
 LOOK_EVERY = 0.5
 """Seconds between two looks."""
-SILENCE = 2.0
+SILENCE = 3.0
 """Seconds without a word after which a process is unresponsive."""
 
 

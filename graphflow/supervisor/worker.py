@@ -37,7 +37,7 @@ PIPE_BUF = 4096
 """Bytes that a pipe accepts atomically on Linux (PIPE_BUF of pipe(7))."""
 CONNECT_LIMIT = 5.0
 """Seconds that reaching the supervisor may take, over loopback."""
-BEAT_EVERY = 0.5
+BEAT_EVERY = 1.0
 """Seconds between two words of the event loop."""
 EXIT_ERROR = 70
 """Exit code: a node failed while it ran."""

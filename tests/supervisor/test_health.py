@@ -49,7 +49,7 @@ def test_silence_and_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     ward.looks(SILENCE, speaks=False)
     assert (ward.told, ward.process.word) == ([], "ready")
     ward.looks(5.0, speaks=False)
-    assert ward.told == ["/a has not answered for 2 s: it is blocked"]
+    assert ward.told == ["/a has not answered for 4 s: it is blocked"]
     assert ward.process.word == "unresponsive"
     assert ward.process.detail.startswith("its event loop has said nothing for ")
     ward.looks(1.0, speaks=True)
