@@ -44,6 +44,6 @@ slow = pytest.mark.skipif(_WANTED == "few", reason="one of several slow ones; CI
 """For a test that takes seconds and guards what seldom changes: it runs with `--cases full`, as in CI."""
 
 
-def some(names: Iterable[str], *always: str) -> list[Any]:
+def some(names: Iterable[Any], *always: Any) -> list[Any]:
     """Parameters of a slow test: `always` these, the others with `--cases full`, as in CI."""
     return [pytest.param(name, marks=() if name in always else slow) for name in names]

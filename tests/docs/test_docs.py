@@ -284,6 +284,7 @@ def test_definitions(page: Path, project: Path) -> None:
 
 
 LONG = {"README", "running", "groups", "actions", "parameters", "graphs", "testing", "names", "interfaces", "console"}
+LONG |= {"topics", "services"}
 """Pages whose commands take seconds: they run with `--cases full`, as in CI."""
 
 

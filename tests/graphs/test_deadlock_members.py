@@ -183,6 +183,7 @@ def test_an_interpreter_that_is_held(lab: Lab) -> None:
     assert reports(up.text) == []
 
 
+@slow
 def test_a_ring_through_the_result_of_an_action(lab: Lab) -> None:
     """It is told, and to cancel the goal still ends it (row 26)."""
     nodes = {"/a": "class: nodes.ring:Customer", "/b": "class: nodes.ring:Courier, remap: {position: /a/answer}"}

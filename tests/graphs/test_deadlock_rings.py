@@ -34,7 +34,7 @@ pytestmark = pytest.mark.real
 logger = logging.getLogger(__name__)
 
 
-@pytest.mark.parametrize(("names", "policy"), [("ab", "raise"), ("abc", "report")])
+@pytest.mark.parametrize(("names", "policy"), [("ab", "raise"), pytest.param("abc", "report", marks=slow)])
 def test_a_ring_of_processes(lab: Lab, names: str, policy: str) -> None:
     """One of them reports it, no call is failed for it, and moving a handler lets all go on (rows 3, 4, 6, 29)."""
     up = lab.ring(names, policy=policy)

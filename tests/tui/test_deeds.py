@@ -79,6 +79,7 @@ async def test_the_palette_does_everything() -> None:
         assert "prompt" in [p.content.view for p in s.console.window.panes()]
 
 
+@slow
 async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -> None:
     """Views in the menu; parameters among what is found; and what is called by no name of the graph says so."""
     await graph.start(Talker())

@@ -66,7 +66,7 @@ async def test_panes(focused: str) -> None:
         assert s.asked == [], "closing panes stops no node"
 
 
-@pytest.mark.parametrize("focused", some(["topics", "prompt"], "prompt"))
+@pytest.mark.parametrize("focused", some(["topics", "prompt"]))
 async def test_windows(focused: str) -> None:
     """Going about, opening, renaming, closing."""
     async with stage(Content("nodes"), Content(focused), Content("log")) as s:

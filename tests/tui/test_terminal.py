@@ -58,6 +58,7 @@ def consoles(machine: Machine) -> list[str]:
     return found
 
 
+@slow
 def test_leaving_and_coming_back(machine: Machine, terminal: Open, counting: str) -> None:
     """Split, run a verb, detach; the nodes run on; attach: same panes, and each line of the log once."""
     t = terminal(f"up {counting}")
