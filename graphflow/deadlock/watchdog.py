@@ -116,6 +116,11 @@ class Watchdog:
             f"run.\nAwait what takes long, or move it to a thread: thread=True, or await self.offload(...){stack}"
         )
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether it has been told to stop watching."""
+        return self._ended.is_set()
+
     def close(self) -> None:
         """Stop watching."""
         self._ended.set()

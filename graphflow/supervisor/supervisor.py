@@ -158,6 +158,10 @@ class Supervisor:
                 task.cancel()
             living = [p.name for p in self._processes.values() if p.state is not State.ENDED]
             self._layers = self._order.stop_layers(living)
+            for process in self._processes.values():
+                if process.state in (State.PENDING, State.WAITING, State.RESTARTING, State.RESETTING):
+                    process.stop_asked = True  # at once, whatever its layer: it would be started meanwhile
+                    self._happen(process, Event.STOP)
         if now:
             for process in self._processes.values():
                 process.stop_asked = True
@@ -200,9 +204,9 @@ class Supervisor:
             if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # asked to before it had a pid
                 self._act(process, Do.TERMINATE)
             elif process.command:  # nobody knows when a foreign program is ready
-                self._is_ready(process, process.name)
+                self._has_become_ready(process, process.name)
         elif what == "ready":
-            self._is_ready(process, event["node"])
+            self._has_become_ready(process, event["node"])
         elif what == "beat":
             process.heard = time.monotonic()
         elif what == "failed":
@@ -229,7 +233,7 @@ class Supervisor:
                 self._happen(process, Event.EXIT if process.state is State.STARTING else Event.STOP)
         self._end_if_all_have()
 
-    def _is_ready(self, process: Process, node: str) -> None:
+    def _has_become_ready(self, process: Process, node: str) -> None:
         process.waiting_for.discard(node)
         self._tell(event="ready", node=node, pid=process.pid)
         if not process.waiting_for:

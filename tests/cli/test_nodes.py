@@ -72,3 +72,10 @@ def test_waiting_for_nothing(machine: Machine) -> None:
     """Where no graph is running, it is waited for one to begin; all nodes have ended already."""
     assert "after 0.1 s no graph is running" in machine.look("wait", "--timeout", "0.1", code=4)
     machine.look("wait", "--ended")
+
+
+def test_some_lines_of_logs(standing: Machine) -> None:
+    """By level and time, of logs named either way; what is no time is told."""
+    assert "[INFO]" in standing.look("logs", "tutorial", "--since", "1h", "--level", "info")
+    assert "[INFO]" not in standing.look("logs", "--node", "tutorial", "--level", "fatal")
+    assert "write 30s, 5m or 2h for so long ago" in standing.look("logs", "tutorial", "--since", "soon", code=2)

@@ -94,3 +94,12 @@ def test_an_error_of_the_work_is_raised_and_the_node_is_gone(standing: Machine) 
     with pytest.raises(LookupError, match="no such thing"):
         visit(work, "visitor")
     assert "/visitor" not in standing.look("node", "list")
+
+
+def test_late_imports_are_nobodys_business() -> None:
+    """Nobody watches whether a verb's own loop is held up, as by what it imports late."""
+
+    async def work(node: Node) -> int:
+        return int(node.context.search.watchdog.is_closed)
+
+    assert visit(work) == 1

@@ -20,6 +20,7 @@ from graphflow.machines.wait_graph import FREE, ActivityView, All, AnyOf, Call, 
 from graphflow.testing.clock import settle
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
+from tests.deadlock.conftest import Written
 from tests.deadlock.stage import Actor, Stage, begin
 
 GID = b"\1" * 16
@@ -460,3 +461,40 @@ async def test_a_loop_that_is_blocked(graphflow_runner: asyncio.Runner, monkeypa
     assert graph.blocked == {scene.zid: view.id}
     assert (view.label, view.wait, view.age, view.is_async) == ("subscription on_go", ADD, 3.0, False)
     assert (view.place.file, view.function) == (__file__, "blocks")
+
+
+SHARED = """
+import asyncio
+
+import numpy as np
+
+OCCUPIED = np.zeros(3)
+
+
+class N:
+    async def on_go(self):
+        while not OCCUPIED.any():
+            await asyncio.sleep(60)
+
+    def on_arrive(self):
+        OCCUPIED[0] = 1.0
+"""
+
+
+async def test_a_polled_array_of_the_module(graphflow_runner: asyncio.Runner, written: Written) -> None:
+    """The node's own handlers end the wait, until there is another node whose methods are in that module."""
+    module = written(SHARED)
+    scene = Scene(module.N())
+    scene.own("on_arrive")
+    node = scene.actor.instance
+    await begin(scene.stage.handler(scene.actor, "on_go", lambda _: node.on_go()), "message")  # type: ignore[attr-defined]
+
+    def wait() -> Condition:
+        views = Snapshot(scene.stage, scene.watchdog).take().activities.values()
+        return next((view.wait for view in views if view.wait is not FREE), FREE)
+
+    assert isinstance(wait(), SetBy)
+    scene.stage.actor(object(), "/stranger")
+    assert isinstance(wait(), SetBy)
+    scene.stage.actor(module.N(), "/another")
+    assert wait() is FREE

@@ -99,3 +99,27 @@ def test_a_part_of_a_plan() -> None:
     assert [n.name for n in whole.only(["/c"]).nodes] == ["/c"]
     with pytest.raises(GraphFileError, match="the graph has no node /bb; did you mean '/b'"):
         whole.only(["bb"])
+
+
+def test_policies_are_shown() -> None:
+    """What follows an end, and what is logged, where it is not the usual; what comes after what, and how."""
+    text = (
+        "strategy: one_for_all\n"
+        "nodes:\n  a: {class: x:Y, restart: {policy: always, delay: 2}, critical: true, log_level: warn}\n"
+        "  b: {command: [ls, a b], on_exit: shutdown, after: {a: done, s: done}}\nsteps: {s: {delay: 1}}\n"
+    )
+    lines = list(resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"), [], {}).lines())[1:]
+    assert lines == [
+        "strategy one_for_all",
+        "/a",
+        "  class    x:Y",
+        "  restart  always, after 2 to 10 s, up to 5 times in 30 s",
+        "  critical",
+        "  logs     from warn",
+        "/b",
+        "  command  ls 'a b'",
+        "  after    /a (done), s",
+        "  on_exit  shutdown",
+        "step s",
+        "  delay    1 s",
+    ]

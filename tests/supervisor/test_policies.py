@@ -29,6 +29,8 @@ class Workers:
         self.asked: list[str] = []
         self.heard: Callable[[dict[str, Any]], None] = lambda event: None
         self.unready: set[str] = set()
+        self.stubborn: set[str] = set()
+        """Those that do not end when they are asked to."""
         self._pid = 1000
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None: ...
@@ -53,6 +55,8 @@ class Workers:
 
     def terminate(self, process: str, pid: int) -> None:
         self.asked.append(process)
+        if process in self.stubborn:
+            return
         asyncio.get_running_loop().call_soon(self.end, process, -15)
 
     def kill(self, process: str, pid: int) -> None:
@@ -259,3 +263,25 @@ async def test_nothing_is_started_again_while_the_graph_stops(tmp_path: Path) ->
         stage.supervisor.begin_stop(now=False, reason="down")
         assert await stage.ended() == 0
         assert stage.workers.spawned.count("/a") == stage.workers.spawned.count("/b") == 1
+
+
+@pytest.mark.parametrize("how", ["waiting", "restarting"])
+async def test_nothing_is_started_while_others_take_long_to_stop(tmp_path: Path, how: str) -> None:
+    """What is about to be started again is stopped first, though what comes after it has not ended yet."""
+    text = "nodes: {a: {class: x:Y, restart: {policy: always, delay: 0.01}}, b: {class: x:Y, after: a}}"
+    async with graph(text, tmp_path) as stage:
+        await stage.until(a="ready", b="ready")
+        stage.workers.stubborn.update(["/a", "/b"])
+        if how == "waiting":
+            stage.workers.end("/a", 1)
+        else:
+            stage.supervisor.restart("/a", "a test")
+        assert stage.states()["/a"] == how
+        stage.supervisor.begin_stop(now=False, reason="down")
+        if how == "restarting":
+            stage.workers.end("/a", -15)
+        await asyncio.sleep(0.05)  # more than the delay
+        assert stage.states() == {"/a": "failed" if how == "waiting" else "ended", "/b": "stopping"}
+        assert stage.workers.spawned.count("/a") == 1
+        stage.workers.end("/b", -15)
+        assert await stage.ended() == 0

@@ -10,9 +10,18 @@ from typing import Any
 
 import pytest
 
-from graphflow import Node, service
-from graphflow.errors import CallTimeout, EncodeError, Place, RemoteError, ServiceUnavailable
-from graphflow.graph.plan import PlannedStep
+from graphflow import Abort, Node, Param, Publisher, action, service
+from graphflow.errors import (
+    CallTimeout,
+    EncodeError,
+    GoalAborted,
+    ParameterError,
+    Place,
+    RemoteError,
+    ServiceUnavailable,
+)
+from graphflow.graph.plan import Deed, PlannedStep
+from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.supervisor.steps import StepRunner
 from graphflow.testing import Graph
@@ -50,6 +59,25 @@ class Adder(Node):
         if request.a:
             await self.clock.sleep(request.a)
         return AddTwoInts.Response(sum=request.a + request.b)
+
+
+class Robot(Node):
+    """Has what steps can do something to."""
+
+    rate = Param(1.0, gt=0.0)
+    limits = Param([1.0, 2.0])
+    pose = Publisher(AddTwoInts.Request, "/pose")
+
+    @action(Fibonacci, "/count")
+    async def count(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+        if goal.request.order < 0:
+            raise Abort("no such number")
+        return Fibonacci.Result(sequence=list(range(goal.request.order)))
+
+
+def deed(do: Deed, target: str, timeout: float = 10.0, **request: Any) -> PlannedStep:
+    place = Place("graph.yaml", 1, 1)
+    return PlannedStep("ask", do, target, place, place, place, request, timeout=timeout)
 
 
 def step(call: str = "/add", timeout: float = 10.0, **request: Any) -> PlannedStep:
@@ -131,3 +159,58 @@ async def test_it_is_hidden_and_leaves(graph: Graph) -> None:
         assert cache.nodes(hidden=False) == ["/adder"]
     await graph.settle()
     assert cache.nodes() == before
+
+
+async def test_parameters_are_set(graph: Graph) -> None:
+    """All of them or none; a whole number will do for a parameter that is not one, also in a list."""
+    await graph.start(robot := Robot())
+    async with runner(graph, {}) as steps:
+        assert await steps.run(deed("set", "/robot", rate=3, limits=[1, 2.5])) == "rate = 3, limits = [1, 2.5]"
+        assert (robot.rate, list(robot.limits)) == (3.0, [1.0, 2.5])
+        with pytest.raises(ParameterError, match="rate"):
+            await steps.run(deed("set", "/robot", limits=[9.0, 9.0], rate=-1.0))
+        assert (robot.rate, list(robot.limits)) == (3.0, [1.0, 2.5])
+
+
+@pytest.mark.parametrize("types", [{"ask": "example_interfaces/Fibonacci"}, {}], ids=["told by the plan", "found"])
+async def test_a_goal_to_its_end(graph: Graph, types: dict[str, str]) -> None:
+    """Its result, or why there is none; an action that nobody serves is waited for."""
+    async with runner(graph, types) as steps:
+        running = asyncio.ensure_future(steps.run(deed("goal", "/count", order=3)))
+        await graph.clock.advance(2.0)
+        await graph.start(Robot())
+        assert list((await running).sequence) == [0, 1, 2]
+        with pytest.raises(GoalAborted, match="no such number"):
+            await steps.run(deed("goal", "/count", order=-1))
+        running = asyncio.ensure_future(steps.run(deed("goal", "/nobodys", timeout=1.0)))
+        await graph.clock.advance(1.1)
+        with pytest.raises(ServiceUnavailable, match="/nobodys"):
+            await running
+
+
+@pytest.mark.parametrize(
+    ("target", "what"),
+    [("/robot", "node"), ("/pose", "topic"), ("/count", "action"), ("/robot/get_parameters", "service")],
+)
+async def test_a_wait(graph: Graph, target: str, what: str) -> None:
+    """Until it is there, whatever it is; not longer than the step says, and then with the nearest name."""
+    async with runner(graph, {}) as steps:
+        running = asyncio.ensure_future(steps.run(deed("wait", target)))
+        await graph.clock.advance(2.0)
+        assert not running.done()
+        await graph.start(Robot())
+        assert await running == f"the {what} is there"
+        running = asyncio.ensure_future(steps.run(deed("wait", "/robt", timeout=1.0)))
+        await graph.clock.advance(1.1)
+        with pytest.raises(ServiceUnavailable, match="/robt after 1 s; did you mean '/robot'"):
+            await running
+
+
+async def test_a_delay(graph: Graph) -> None:
+    """So many seconds, and nothing else."""
+    async with runner(graph, {}) as steps:
+        running = asyncio.ensure_future(steps.run(deed("delay", "2 s", timeout=2.0)))
+        await graph.clock.advance(1.9)
+        assert not running.done()
+        await graph.clock.advance(0.2)
+        assert await running == "over"

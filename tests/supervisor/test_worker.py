@@ -15,6 +15,7 @@ import pytest
 from graphflow.errors import GraphflowError, Place
 from graphflow.graph.plan import PlannedNode, Rule, Setting
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.core import core_of
 from graphflow.supervisor import worker
 from graphflow.supervisor.worker import PIPE_BUF, PipeReporter, SocketReporter, _one_line, make_node
 from graphflow.testing import Graph
@@ -82,6 +83,13 @@ async def test_a_node_as_planned(graph: Graph) -> None:
     await graph.start(node)
     await graph.clock.advance(0.4)
     assert [m.data for m in heard] == ["Hi: 1", "Hi: 2"]
+
+
+@pytest.mark.parametrize(("level", "number"), [("debug", 10), ("error", 40), ("", 0)])
+def test_the_level_of_its_log(level: str, number: int) -> None:
+    """As the plan says, and the process's own where it says nothing."""
+    node = make_node(planned(name=f"/logs_{number}", log_level=level), PLACE.file)
+    assert core_of(node).log.level == number
 
 
 @pytest.mark.parametrize(
