@@ -267,6 +267,21 @@ def test_a_file_in_a_group_and_in_a_loop(folder: Path) -> None:
     assert found.deadlock == "report"
 
 
+@pytest.mark.parametrize(
+    ("text", "deadlock"),
+    [
+        ("include: robot.yaml\n", "report"),
+        ("include: {file: robot.yaml}\n", "report"),
+        ("include: {file: robot.yaml, namespace: n}\n", "raise"),
+        ("group: {include: robot.yaml}\n", "raise"),
+        ("for: {var: i, in: [1], include: robot.yaml}\n", "raise"),
+    ],
+)
+def test_whose_settings_count(folder: Path, text: str, deadlock: str) -> None:
+    """A file that is included whole speaks for the graph; one that is a part of it does not."""
+    assert loaded(folder, text).deadlock == deadlock
+
+
 def test_a_node_can_be_taken_out(folder: Path) -> None:
     """An override with a condition that does not hold leaves a node of the included file out."""
     text = "include: robot.yaml\noverride: {driver: {if: false}}\nnodes: {b: {class: x:Y, after: /leo/driver}}\n"

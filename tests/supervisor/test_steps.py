@@ -23,6 +23,8 @@ from graphflow.errors import (
 from graphflow.graph.plan import Deed, PlannedStep
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, SetParametersAtomically
 from graphflow.supervisor.steps import StepRunner
 from graphflow.testing import Graph
 from tests.cases import slow
@@ -170,6 +172,34 @@ async def test_parameters_are_set(graph: Graph) -> None:
         with pytest.raises(ParameterError, match="rate"):
             await steps.run(deed("set", "/robot", limits=[9.0, 9.0], rate=-1.0))
         assert (robot.rate, list(robot.limits)) == (3.0, [1.0, 2.5])
+
+
+class Strict(Node):
+    """Answers for parameters as a node of ROS's does, which takes no whole number for one that is not."""
+
+    def __init__(self) -> None:
+        super().__init__("strict", start_parameter_services=False)
+        self.types: list[int] = []
+
+    @service(DescribeParameters, "~/describe_parameters")
+    def describe(self, request: DescribeParameters.Request) -> DescribeParameters.Response:
+        known = {"rate": 3, "limits": 8, "count": 2, "names": 9}
+        return DescribeParameters.Response(
+            descriptors=[ParameterDescriptor(name=n, type=known[n]) for n in request.names]
+        )
+
+    @service(SetParametersAtomically, "~/set_parameters_atomically")
+    def set(self, request: SetParametersAtomically.Request) -> SetParametersAtomically.Response:
+        self.types = [parameter.value.type for parameter in request.parameters]
+        return SetParametersAtomically.Response(result=SetParametersResult(successful=True))
+
+
+async def test_parameters_of_a_strict_node(graph: Graph) -> None:
+    """Values are sent as the types that the node has declared; an empty list shows none of its own."""
+    await graph.start(strict := Strict())
+    async with runner(graph, {}) as steps:
+        await steps.run(deed("set", "/strict", rate=3, limits=[1, 2.5], count=3, names=[]))
+    assert strict.types == [3, 8, 2, 9]
 
 
 @pytest.mark.parametrize("types", [{"ask": "example_interfaces/Fibonacci"}, {}], ids=["told by the plan", "found"])
