@@ -8,11 +8,11 @@ from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import ros_launch, source, xml_source
 from graphflow.graph.project import project_root
 from graphflow.graph.ros_commands import Complain
-from graphflow.graph.ros_launch import nothing
+from graphflow.graph.ros_launch import ignore
 from graphflow.graph.tree import Item, tree
 
 
-def read(path: Path, name: str, complain: Complain, note: Complain = nothing) -> Item:
+def read(path: Path, name: str, complain: Complain, note: Complain = ignore) -> Item:
     """A graph file, or a launch file in YAML or XML.
 
     Args:

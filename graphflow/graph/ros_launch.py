@@ -67,7 +67,7 @@ def is_launch_file(top: Item) -> bool:
     return "launch" in top.entries and isinstance(top.entries["launch"].value, list)
 
 
-def nothing(place: Place, text: str) -> None:
+def ignore(place: Place, text: str) -> None:
     """Nobody wants to know."""
 
 
@@ -87,7 +87,7 @@ def recorded(actions: list[dict[str, Any]], file: str) -> Item:
     return Item({"launch": Item([action(said) for said in actions], top)}, top)
 
 
-def native(top: Item, root: Path, complain: Complain, note: Complain = nothing) -> Item:
+def native(top: Item, root: Path, complain: Complain, note: Complain = ignore) -> Item:
     """A launch file as a graph file.
 
     Args:
@@ -106,6 +106,8 @@ class _Translation:
         self._count: dict[str, int] = {}
         self._numbered: dict[int, str] = {}
         """The names of actions that others come after."""
+        self._shared: list[tuple[str, Item]] = []
+        """What is set for the actions at hand: keys of the groups around them, and their values."""
 
     def file(self, top: Item) -> Item:
         body = self._block(top.entries["launch"].value)
@@ -130,9 +132,15 @@ class _Translation:
                 item = item._replace(value={"children": item})
             if not self._is_known(name, item):
                 continue
+            after = actions[i + 1 :]
             if name in _SCOPING:
-                rest = self._block(actions[i + 1 :])
-                _add(body, "group", self._around(name, item, rest))
+                _add(body, "group", self._around(name, item, after))
+                break
+            if name == "group" and _says(item, "scoped", "false", "0"):  # what it sets holds for what comes after, too
+                if self._conditions(item):
+                    self._complain(item.at, "group: scoped: false with a condition has no words in a graph file")
+                for key, more in self._block([*_children(item), *after]).items():
+                    _extend(body, key, more)
                 break
             self._act(name, item, body)
         return body
@@ -152,16 +160,19 @@ class _Translation:
                 self._complain(value.at, f"{name}: unknown attribute {key!r}{did_you_mean(key, known)}")
         return True
 
-    def _around(self, name: str, item: Item, rest: dict[str, Item]) -> Item:
+    def _around(self, name: str, item: Item, after: list[Item]) -> Item:
         """A group around the actions that come after one which sets something for them."""
-        if item.entries.keys() & _ANY:
+        if self._conditions(item):
             self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
             values = Item([typed(item.entries.get("value", nothing))], item.place)
-            loop = Item({"var": item.entries.get("name", nothing), "in": values, **rest}, item.place)
-            return item._replace(value={"for": loop})
+            loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
+            return item._replace(value={"for": Item(loop, item.place)})
         key, value = self._setting(name, item)
+        self._shared.append((key, value))
+        rest = self._block(after)
+        self._shared.pop()
         inner = rest.get("group")
         only = inner is not None and len(rest) == 1 and isinstance(inner.value, dict) and key not in inner.value
         body = inner.value if inner is not None and only else rest
@@ -182,7 +193,7 @@ class _Translation:
             case "append_env":
                 pair, get = self._pair(item, "name", "value"), item.entries.get
                 separator = str(get("separator", Item(":", item.place)).value)
-                is_first = str(get("prepend", Item("", item.place)).value).lower() in ("true", "1")
+                is_first = _says(item, "prepend", "true", "1")
                 found = {}
                 for name, value in pair.entries.items():
                     parts = [f"$(optenv {name})", str(value.value)]
@@ -212,7 +223,7 @@ class _Translation:
             _add(body, "include", self._include(item))
         elif name == "group":
             inner = self._block(_children(item))
-            conditions = {key: item.entries[key] for key in _ANY if key in item.entries}
+            conditions = self._conditions(item)
             only = inner.get("group")
             if only is not None and len(inner) == 1 and isinstance(only.value, dict) and not conditions:
                 inner = only.value  # a group that only has a namespace pushed is that group
@@ -261,12 +272,7 @@ class _Translation:
         after = Item(step, item.place, item.place)
         for section in ("nodes", "steps"):
             for name, entry in inner.get(section, Item({}, item.place)).entries.items():
-                _put(
-                    body,
-                    section,
-                    name,
-                    entry._replace(value={**entry.entries, "after": entry.entries.get("after", after)}),
-                )
+                _put(body, section, name, entry._replace(value={"after": after, **entry.entries}))
         if set(inner) - {"nodes", "steps"}:
             self._complain(
                 item.at, "timer: only nodes and programs can be delayed; put the timer into the group or file"
@@ -306,16 +312,22 @@ class _Translation:
         self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
         words = ["ros2", "run", package, name]
         words += _split(item.entries.get("args"))
-        ros = [f"{old}:={new.value}" for old, new in given.get("remap", Item({}, place)).entries.items()]
+        own = [(key, given[key]) for key in ("namespace", "remap", "params") if key in given]
+        around = [*self._shared, *own]  # a group gives a program nothing: it is passed what it would have got
+        rules = {old: new.value for key, value in around if key == "remap" for old, new in value.entries.items()}
+        ros = [f"{old}:={new}" for old, new in rules.items()]
         ros += [f"__node:={item.entries['name'].value}"] if "name" in item.entries else []
-        ros += [f"__ns:=/{str(given['namespace'].value).strip('/')}"] if "namespace" in given else []
-        rules = [word for rule in ros for word in ("-r", rule)]
-        values = {key: value.plain() for key, value in given.get("params", Item({}, place)).entries.items()}
-        rules += [word for key, value in values.items() for word in ("-p", f"{key}:={json.dumps(value)}")]
-        rules += [
+        namespace = ""
+        for pushed in (str(value.value) for key, value in around if key == "namespace"):
+            namespace = pushed if pushed.startswith("/") else f"{namespace}/{pushed}"
+        ros += [f"__ns:={namespace}"] if namespace else []
+        options = [word for rule in ros for word in ("-r", rule)]
+        values = {k: v.plain() for key, value in around if key == "params" for k, v in value.entries.items()}
+        options += [word for key, value in values.items() for word in ("-p", f"{key}:={json.dumps(value)}")]
+        options += [
             w for file in given.get("params_file", Item([], place)).value for w in ("--params-file", str(file.value))
         ]
-        words += ["--ros-args", *rules] if rules else []
+        words += ["--ros-args", *options] if options else []
         kept = {key: given[key] for key in ("namespace",) if key in given}
         return {"command": Item([Item(word, place) for word in words], place, item.at), **kept}
 
@@ -372,8 +384,7 @@ class _Translation:
             before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
             _put(body, "steps", name, item._replace(value={**step, **before}))
             return
-        shell = item.entries.get("shell")
-        if shell is not None and str(shell.value).lower() in ("true", "1"):
+        if _says(item, "shell", "true", "1"):
             words = ["sh", "-c", " ".join(words) if isinstance(command.value, list) else str(command.value)]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
@@ -393,7 +404,7 @@ class _Translation:
             pairs = [self._pair(variable, "name", "value") for variable in _items(item.entries["env"])]
             entries["env"] = Item({k: v for pair in pairs for k, v in pair.entries.items()}, item.entries["env"].place)
         respawn = get("respawn")
-        if respawn is not None and str(respawn.value).lower() in ("true", "1"):
+        if respawn is not None and _says(item, "respawn", "true", "1"):
             settings = {"policy": Item("always", respawn.place)}
             for key, ours in (("respawn_delay", "delay"), ("respawn_max_retries", "max_restarts")):
                 value = get(key)
@@ -415,11 +426,7 @@ class _Translation:
         number, item = item.entries.get("number"), item.without(*_RECORDED)
         if number is not None:
             self._numbered[number.value] = key
-        nodes = body.get("nodes")
-        if nodes is not None and key in nodes.value:  # the same name in another namespace, or twice: reported later
-            _add(body, "group", Item({"nodes": Item({key: item}, item.place)}, item.place))
-        else:
-            _put(body, "nodes", key, item)
+        _put(body, "nodes", key, item)
 
     def _next(self, word: str) -> int:
         self._count[word] = self._count.get(word, 0) + 1
@@ -450,10 +457,29 @@ def _split(item: Item | None) -> list[str]:
         return str(item.value).split()
 
 
+def _says(item: Item, key: str, *words: str) -> bool:
+    """Whether an attribute is there and one of some words, in any case."""
+    value = item.entries.get(key)
+    return value is not None and str(value.value).lower() in words
+
+
+def _extend(body: dict[str, Item], key: str, more: Item) -> None:
+    """Add what another body has under a key."""
+    if key in ("nodes", "steps"):
+        for name, entry in more.entries.items():
+            _put(body, key, name, entry)
+    else:
+        for block in more.value if isinstance(more.value, list) else [more]:
+            _add(body, key, block)
+
+
 def _put(body: dict[str, Item], section: str, key: str, item: Item) -> None:
-    """Add an entry to a section of a body."""
+    """Add an entry to a section of a body; one whose key is there already in a group of its own."""
     old = body.get(section, Item({}, item.place, item.at))
-    body[section] = old._replace(value={**old.value, key: item})
+    if key in old.value:  # whether it is there twice is reported when all names are whole
+        _add(body, "group", Item({section: Item({key: item}, item.place)}, item.place))
+    else:
+        body[section] = old._replace(value={**old.value, key: item})
 
 
 def _add(body: dict[str, Item], key: str, item: Item) -> None:

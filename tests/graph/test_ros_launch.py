@@ -229,6 +229,39 @@ def test_a_node_that_only_ros_has() -> None:
     assert made["nodes"]["p"] == {"command": words.split(), "namespace": "n", "restart": {"policy": "always"}}
 
 
+def test_what_a_program_of_ros_gets_from_its_groups() -> None:
+    """Nothing of a group reaches a foreign program by itself: it is passed on as words, the node's own last."""
+    made, complaints, _ = native(
+        "launch: [{push_ros_namespace: {namespace: a}}, {set_remap: {from: x, to: y}}, {set_parameter: {name: p, "
+        "value: '1'}}, {group: [{push_ros_namespace: {namespace: b}}, {node: {pkg: nav2, exec: planner, namespace: c, "
+        "remap: [{from: x, to: z}], param: [{name: p, value: '2'}]}}]}, {node: {pkg: nav2, exec: other}}]\n"
+    )
+    assert complaints == []
+    group = made["group"]
+    assert (group["namespace"], group["remap"], group["params"]) == ("a", {"x": "y"}, {"p": 1})
+    words = "ros2 run nav2 planner --ros-args -r x:=z -r __ns:=/a/b/c -p p:=2"
+    assert group["group"]["nodes"]["planner"]["command"] == words.split()
+    words = "ros2 run nav2 other --ros-args -r x:=y -r __ns:=/a -p p:=1"
+    assert group["nodes"]["other"]["command"] == words.split()
+
+
+def test_a_group_without_a_scope() -> None:
+    """What it sets holds for what comes after it, too; with a condition that has no words."""
+    inner = "children: [{push_ros_namespace: {namespace: a}}]"
+    made, complaints, _ = native(f"launch: [{{{TURTLE}}}, {{group: {{scoped: 'false', {inner}}}}}, {{{TURTLE}}}]\n")
+    turtle = {"nodes": {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}}
+    assert (made, complaints) == ({**turtle, "group": {"namespace": "a", **turtle}}, [])
+    _, complaints, _ = native(f"launch: [{{group: {{scoped: False, if: 'true', {inner}}}}}, {{{TURTLE}}}]\n")
+    assert complaints == ["f.yaml:1:11: group: scoped: false with a condition has no words in a graph file"]
+
+
+def test_what_is_delayed_replaces_nothing() -> None:
+    """A node of the same key that is there at once stays."""
+    made, _, _ = native(f"launch: [{{{TURTLE}}}, {{timer: {{period: 1.0, children: [{{{TURTLE}}}]}}}}]\n")
+    assert made["nodes"] == {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}
+    assert made["group"]["nodes"]["turtlesim"]["after"] == "timer_1"
+
+
 def test_what_was_recorded_of_python() -> None:
     """Actions with their lines; those that come after a process know it by its number."""
     actions = [
