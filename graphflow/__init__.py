@@ -26,16 +26,20 @@ if TYPE_CHECKING:
         ParameterError,
         RemoteError,
         ServerBusy,
+        ServerInactive,
         ServerLost,
         ServiceUnavailable,
         SupervisorError,
         TooManyErrors,
+        TransitionFailed,
+        TransitionRefused,
         TransportError,
         UnknownInterface,
     )
     from graphflow.executor.clock import Clock
     from graphflow.executor.groups import HandlerGroup
     from graphflow.machines.goal import GoalStatus
+    from graphflow.machines.lifecycle import LifecycleState
     from graphflow.msgs.base import ServerGoalHandle
     from graphflow.qos import (
         Durability,
@@ -64,12 +68,14 @@ if TYPE_CHECKING:
         task,
         timer,
     )
+    from graphflow.runtime.lifecycle import LifecycleNode
     from graphflow.runtime.node import Node
+    from graphflow.runtime.publishers import TopicPublisher
     from graphflow.runtime.run import run, running
     from graphflow.runtime.service_client import ServiceClient
     from graphflow.runtime.services import ServiceServer
+    from graphflow.runtime.subscriptions import TopicSubscription
     from graphflow.runtime.timer import Timer, TimerInfo
-    from graphflow.runtime.topics import TopicPublisher, TopicSubscription
     from graphflow.times import Duration, Time
     from graphflow.wire.attachment import MessageInfo
 
@@ -99,16 +105,20 @@ _HOMES = {
         "ParameterError",
         "RemoteError",
         "ServerBusy",
+        "ServerInactive",
         "ServerLost",
         "ServiceUnavailable",
         "SupervisorError",
         "TooManyErrors",
+        "TransitionFailed",
+        "TransitionRefused",
         "TransportError",
         "UnknownInterface",
     ),
     "graphflow.executor.clock": ("Clock",),
     "graphflow.executor.groups": ("HandlerGroup",),
     "graphflow.machines.goal": ("GoalStatus",),
+    "graphflow.machines.lifecycle": ("LifecycleState",),
     "graphflow.msgs.base": ("ServerGoalHandle",),
     "graphflow.qos": (
         "Durability",
@@ -140,7 +150,9 @@ _HOMES = {
         "task",
         "timer",
     ),
+    "graphflow.runtime.lifecycle": ("LifecycleNode",),
     "graphflow.runtime.node": ("Node",),
+    "graphflow.runtime.publishers": ("TopicPublisher",),
     "graphflow.runtime.run": (
         "run",
         "running",
@@ -151,10 +163,7 @@ _HOMES = {
         "Timer",
         "TimerInfo",
     ),
-    "graphflow.runtime.topics": (
-        "TopicPublisher",
-        "TopicSubscription",
-    ),
+    "graphflow.runtime.subscriptions": ("TopicSubscription",),
     "graphflow.times": (
         "Duration",
         "Time",
@@ -194,6 +203,8 @@ __all__ = [
     "History",
     "InterfaceError",
     "InvalidName",
+    "LifecycleNode",
+    "LifecycleState",
     "Liveliness",
     "LoopBlockedError",
     "MessageInfo",
@@ -207,6 +218,7 @@ __all__ = [
     "RemoteError",
     "ServerBusy",
     "ServerGoalHandle",
+    "ServerInactive",
     "ServerLost",
     "ServiceClient",
     "ServiceServer",
@@ -219,6 +231,8 @@ __all__ = [
     "TooManyErrors",
     "TopicPublisher",
     "TopicSubscription",
+    "TransitionFailed",
+    "TransitionRefused",
     "TransportError",
     "UnknownInterface",
     "action",

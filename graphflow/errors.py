@@ -21,12 +21,15 @@ GraphflowError
 |   |-- GoalAborted           the server gave up on it; carries its result
 |   |-- GoalCanceled          a client cancelled it; carries its partial result
 |   `-- GoalLost              the server went away: how it ended is unknown
+|-- TransitionRefused         what a lifecycle hook raises to stay where the node was
+|-- TransitionFailed          a lifecycle transition was refused, failed, or is not possible now
 |-- LoopBlockedError          a blocking call was made on the event loop
 `-- CallError                 a call ended without a response
     |-- ServiceUnavailable    no node offers that name
     |-- ServerLost            the server went away during the call
     |-- CallTimeout           the deadline passed
     |-- ServerBusy            the server's queue is full
+    |-- ServerInactive        the server's node has a life cycle, and is not active
     |-- RemoteError           the handler raised; carries the remote type and message
     `-- DeadlockError         the call can never be answered
 """
@@ -121,6 +124,10 @@ class Place(NamedTuple):
         return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)])
 
 
+NOWHERE = Place("")
+"""Stands for a place that is not known."""
+
+
 class Problem(NamedTuple):
     """One mistake in a graph file or in what it names."""
 
@@ -195,6 +202,14 @@ class GoalLost(GoalError):
     """The server went away; what became of the goal is not known."""
 
 
+class TransitionRefused(GraphflowError):
+    """Raised by a hook of a `LifecycleNode` that cannot do its part now: the node goes back to where it was."""
+
+
+class TransitionFailed(GraphflowError):
+    """A lifecycle transition was asked for and did not succeed."""
+
+
 class LoopBlockedError(GraphflowError):
     """A blocking call was made on the event loop, which would stop the whole process; await it instead."""
 
@@ -217,6 +232,10 @@ class CallTimeout(CallError, TimeoutError):
 
 class ServerBusy(CallError):
     """The server refused the request because its queue is full."""
+
+
+class ServerInactive(CallError):
+    """The server belongs to a lifecycle node that is not active."""
 
 
 class RemoteError(CallError):

@@ -248,6 +248,8 @@ class Interface:
     """Names made at run time: True for any, else patterns such as `*/cmd_vel`."""
     unread: tuple[Place, ...] = ()
     """Where something is made whose name the source does not show."""
+    is_managed: bool = False
+    """Whether it is a `LifecycleNode`."""
 
     def param(self, name: str) -> Parameter | None:
         """A parameter that nodes of the class have, by its name."""
@@ -265,7 +267,7 @@ class Interface:
     def from_json(cls, data: dict[str, Any]) -> Interface:
         dynamic = data["dynamic_names"]
         return cls(
-            **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc")},
+            **{k: v for k, v in data.items() if k in ("class_path", "node_name", "doc", "is_managed")},
             place=Place(*data["place"]),
             endpoints=tuple(EndpointInfo(**{**e, "place": Place(*e["place"])}) for e in data["endpoints"]),
             params=tuple(_parameter(p) for p in data["params"]),

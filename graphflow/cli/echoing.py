@@ -15,7 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime.events import QosEvent
 from graphflow.runtime.node import Node
-from graphflow.runtime.topics import TopicSubscription
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind

@@ -201,7 +201,8 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
         (
             row["graph"],
             row["node"],
-            row["state"] + (f" ({shorten(row['detail'], DETAIL, placeholder=' ...')})" if row["detail"] else ""),
+            (row["lifecycle"] or row["state"])
+            + (f" ({shorten(row['detail'], DETAIL, placeholder=' ...')})" if row["detail"] else ""),
             str(row["pid"] or "-"),
             ago(now - row["since"]),
             row["class"],

@@ -70,8 +70,9 @@ def status(node: str, name: str | None, as_json: bool) -> int:
     if as_json:
         output.as_json({"graph": run.graph, **row, "last_lines": last})
         return exits.FAILED if is_bad else exits.OK
+    state = f"{row['state']}, {row['lifecycle']}" if row["lifecycle"] else row["state"]
     process = f", process {row['pid']}" if row["pid"] and row["state"] not in (*OVER, "waiting", "pending") else ""
-    output.data(f"{row['node']}: {row['state']} for {ago(time.time() - row['since'])}{process}")
+    output.data(f"{row['node']}: {state} for {ago(time.time() - row['since'])}{process}")
     facts = {
         "": row["detail"],
         "class": row["class"],

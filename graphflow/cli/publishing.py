@@ -11,7 +11,7 @@ from graphflow.msgs.base import Message
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.node import Node
-from graphflow.runtime.topics import TopicPublisher
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
 

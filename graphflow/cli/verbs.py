@@ -10,7 +10,6 @@ NOT_YET = {
     "bag": "`graphflow topic echo TOPIC > FILE` keeps messages as text; `ros2 bag` records a graph over rmw_zenoh",
     "component": "nodes that share a `process:` in a graph file run in one process",
     "daemon": "none is needed: there is no daemon",
-    "lifecycle": "`on_start` and `on_shutdown` of a node, and `graphflow restart NODE`",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     "pkg": "`graphflow init NAME` makes a project; a node is a .py file",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",

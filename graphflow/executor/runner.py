@@ -330,6 +330,15 @@ class Runner:
         self._look_idle()
         return self._idle
 
+    def reopen(self) -> None:
+        """Begin runs again after `cancel`."""
+        if not self._closed:
+            return
+        self._closed, self._idle = False, None
+        if self.group is not None:
+            self.group.members.append(self)
+        self.wake()
+
     def _look_idle(self) -> None:
         if self._idle is not None and not self.active and not self._idle.done():
             self._idle.set_result(None)

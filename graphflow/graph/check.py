@@ -22,6 +22,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     problems: list[Problem] = []
     for node in plan.nodes:
         problems += _check_program(node) if node.command else _check_node(node, interfaces)
+    problems += _check_lifecycle(plan, interfaces)
     problems += _check_optional(plan, interfaces)
     problems += _check_shared_rules(plan, interfaces)
     problems += _check_types(plan, interfaces)
@@ -48,6 +49,18 @@ def _check_node(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
     yield from _check_params(node, interface)
     yield from _check_remaps(node, interface)
     yield from _check_groups(node, interface)
+
+
+def _check_lifecycle(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Each `lifecycle:` must fit at least one of the nodes that it is written for."""
+    fits: dict[Place, str] = {}
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if node.lifecycle and isinstance(interface, Interface) and fits.get(node.lifecycle_place) != "":
+            fits[node.lifecycle_place] = "" if interface.is_managed else _class(interface)
+    for place, cls in fits.items():
+        if cls:
+            yield Problem(place, f"{cls} has no life cycle: derive it from LifecycleNode, or leave `lifecycle:` out")
 
 
 def _check_groups(node: PlannedNode, interface: Interface) -> Iterator[Problem]:

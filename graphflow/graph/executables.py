@@ -15,9 +15,15 @@ EXECUTABLES = {
     ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
     ("demo_nodes_py", "talker"): "nodes.talker:Talker",
     ("demo_nodes_py", "listener"): "nodes.listener:Listener",
+    ("lifecycle", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
+    ("lifecycle", "lifecycle_listener"): "nodes.lifecycle_listener:LifecycleListener",
+    ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
 }
 """Executables of ROS 2's packages whose nodes come with graphflow."""
-_NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle"}
+_NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle"} | {
+    "lifecycle_talker": "lc_talker",
+    "lifecycle_listener": "lc_listener",
+}
 """Names of nodes that are not those of their executables."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _SEARCH_DEPTH = 4

@@ -39,7 +39,7 @@ from graphflow.names import check_full_name, check_namespace, did_you_mean, expa
 
 BY_ENTRY = ("params", "remap", "env")
 """Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
-INHERITED = ("restart", "on_exit", "critical", "log_level")
+INHERITED = ("restart", "on_exit", "critical", "log_level", "lifecycle")
 """Keys of a group that a node has unless it says otherwise."""
 MAX_ROUNDS = 10_000
 """Of all loops of a graph together."""

@@ -103,6 +103,8 @@ AFTER = ("ready", "exited", "done")
 """What can be waited for: a node that is ready, one that has ended in any way, one that has ended well."""
 ON_EXIT = ("ignore", "restart", "shutdown")
 STRATEGIES = ("one_for_one", "rest_for_one", "one_for_all")
+LIFECYCLE = ("unconfigured", "inactive", "active")
+"""The states that a lifecycle node can be brought to when it starts."""
 LOG_LEVELS = ("debug", "info", "warn", "error", "fatal")
 After = Annotated[Any, AfterValidator(_after)]
 
@@ -174,11 +176,12 @@ class _Settings(_Model):
     on_exit: Annotated[StrictStr, AfterValidator(_one_of("on_exit", ON_EXIT)), _enum(ON_EXIT)] | None = None
     critical: StrictBool | None = None
     log_level: Annotated[StrictStr, AfterValidator(_one_of("log_level", LOG_LEVELS)), _enum(LOG_LEVELS)] | None = None
+    lifecycle: Annotated[StrictStr, AfterValidator(_one_of("lifecycle", LIFECYCLE)), _enum(LIFECYCLE)] | None = None
     if_: Condition = Field(None, alias="if")
     unless: Condition = None
 
 
-OF_NODES = ("class", "params", "params_file", "remap", "concurrency", "process", "log_level")
+OF_NODES = ("class", "params", "params_file", "remap", "concurrency", "process", "log_level", "lifecycle")
 """Keys that a foreign program cannot have."""
 _HELP = {
     "class": "write class: or command:, not both",

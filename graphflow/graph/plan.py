@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.errors import NOWHERE, GraphFileError, Place, Problem
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy, GroupChange
 from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.restarts import BACKOFF, Backoff
@@ -86,6 +86,9 @@ class PlannedNode:
     critical: bool = False
     """Whether the graph goes down with it when it fails."""
     log_level: str = ""
+    lifecycle: str = ""
+    """The state that a lifecycle node is brought to before it counts as ready; empty to leave it alone."""
+    lifecycle_place: Place = NOWHERE
 
     def regrouping(self, file: str) -> Regrouping:
         """What the graph file says of the node's groups, and where.
@@ -212,6 +215,8 @@ class Plan:
                 yield "  critical"
             if node.log_level:
                 yield f"  logs     from {node.log_level}"
+            if node.lifecycle:
+                yield f"  becomes  {node.lifecycle}"
             for name, setting in node.params.items():
                 yield f"  param    {name} = {setting.value!r}  # {setting.place}"
             for rule in node.remaps:
@@ -233,12 +238,16 @@ def _after_line(after: Mapping[str, str]) -> Iterator[str]:
         yield f"  after    {', '.join(names)}"
 
 
+_PLAIN = ("name", "class_path", "process", "env", "after", "on_exit", "critical", "log_level", "lifecycle")
+
+
 def node_from_json(data: dict[str, Any]) -> PlannedNode:
     """A node from its part of `Plan.to_json`."""
     return PlannedNode(
-        **{k: data[k] for k in ("name", "class_path", "process", "env", "after", "on_exit", "critical", "log_level")},
+        **{k: data[k] for k in _PLAIN},
         place=Place(*data["place"]),
         class_place=Place(*data["class_place"]),
+        lifecycle_place=Place(*data["lifecycle_place"]),
         params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
         remaps=tuple(Rule(**{**rule, "place": Place(*rule["place"])}) for rule in data["remaps"]),
         command=tuple(data["command"]),

@@ -146,6 +146,8 @@ def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: Problem
             on_exit=spec.on_exit or "ignore",
             critical=bool(spec.critical),
             log_level=spec.log_level or "",
+            lifecycle=spec.lifecycle or "",
+            lifecycle_place=src.place((*base, "lifecycle")),
         )
     if not model.nodes and not problems:
         problems.add(src.place(("nodes",)), f"there is no node{example('nodes')}")

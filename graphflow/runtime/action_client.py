@@ -34,7 +34,7 @@ from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.service_client import DISCOVERY_GRACE, ServiceClient
-from graphflow.runtime.topics import TopicSubscription
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.times import to_ns
 
 CANCEL_TIMEOUT = 2.0

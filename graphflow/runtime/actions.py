@@ -30,8 +30,8 @@ from graphflow.msgs.base import Action, Feedback, Goal, Result, ServerGoalHandle
 from graphflow.qos import ACTION_STATUS, SERVICES, Qos
 from graphflow.runtime.dictionary import MadeByNodes, SpeaksRos
 from graphflow.runtime.host import Host, Part
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.services import ServiceServer
-from graphflow.runtime.topics import TopicPublisher
 from graphflow.times import NANOSECONDS, to_ns
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity
@@ -201,6 +201,17 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
             self._step(goal, GoalEvent.STOPPING)
         return self.runner
 
+    def pause(self, why: str) -> Runner | None:
+        """Reject goals; those under way are aborted."""
+        super().pause(why)
+        return self.begin_to_stop()
+
+    def resume(self) -> Runner | None:
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+        return self.runner
+
     def close(self) -> None:
         """Withdraw the server; goals under way are cancelled."""
         self.begin_to_stop()
@@ -228,6 +239,8 @@ class ActionServer(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
 
     def _why_full(self) -> str:
         """Why no goal can be taken now; empty if one can."""
+        if self.idle_because:
+            return self.idle_because
         if self.runner is None or self.runner.closed:
             return "the server stops"
         if self.book.has_room():

@@ -7,7 +7,7 @@ import concurrent.futures
 import inspect
 from asyncio import CancelledError
 from collections import deque
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from contextlib import AsyncExitStack
 from functools import cache
 from typing import Any, ClassVar, Protocol, TypeVar
@@ -15,22 +15,21 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from graphflow.deadlock import races
 from graphflow.deadlock.openings import place_of
 from graphflow.deadlock.protocols import Unopened
-from graphflow.deadlock.user_code import place_in, users_part
-from graphflow.errors import ClosedError, DeadlockError, DeclarationError, GraphflowError, ParameterError
-from graphflow.executor.clock import Clock
+from graphflow.errors import ClosedError, DeclarationError, ParameterError
+from graphflow.executor.clock import Alarm, Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
-from graphflow.interface import OnError, may_make
+from graphflow.interface import OnError
 from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs import registry
-from graphflow.names import Resolver, did_you_mean
+from graphflow.names import Resolver
 from graphflow.qos import PARAMETERS, SERVICES, Qos
 from graphflow.runtime import declared
 from graphflow.runtime.binding import Binding, Creator
 from graphflow.runtime.context import Context
 from graphflow.runtime.declare import Group
 from graphflow.runtime.endpoints import Endpoint
-from graphflow.runtime.failures import ErrorBudget, Failures
+from graphflow.runtime.failures import ErrorBudget, Failures, report
 from graphflow.runtime.host import Part
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node_clock import NodeClock
@@ -39,6 +38,7 @@ from graphflow.runtime.parameter_services import ParameterEvents, ParameterServi
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.surroundings import unused_remaps
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -97,7 +97,7 @@ class NodeCore:
         """What `Node.__init__` has set on the instance."""
         self._context: Context | None = None
         self._ended: asyncio.Future[None] | None = None
-        self._parts: list[Part] = []
+        self.parts: list[Part] = []
         self._late: list[Part] | None = []
         """What is opened once `on_start` has returned; None from then on."""
         self._binding = Binding(instance, self, self.parameters)
@@ -125,6 +125,11 @@ class NodeCore:
     @property
     def is_running(self) -> bool:
         return self._context is not None
+
+    @property
+    def has_started(self) -> bool:
+        """Whether `on_start` has returned."""
+        return self._late is None
 
     @property
     def context(self) -> Context:
@@ -155,7 +160,7 @@ class NodeCore:
     @property
     def endpoints(self) -> list[Endpoint]:
         """Everything the node has on the network; for actions, the services and topics that they consist of."""
-        return [endpoint for part in self._parts for endpoint in part.endpoints]
+        return [endpoint for part in self.parts for endpoint in part.endpoints]
 
     @property
     def unopened(self) -> list[Unopened]:
@@ -169,7 +174,7 @@ class NodeCore:
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Numbers since the start, by the name of each handler, endpoint and group."""
         found = {f"group {name}": group.statistics() for name, group in self.groups.by_name.items()}
-        return found | {part.title: part.statistics() for part in self._parts if part.title}
+        return found | {part.title: part.statistics() for part in self.parts if part.title}
 
     # how it is made
 
@@ -182,19 +187,19 @@ class NodeCore:
             self._rosout = self.add(Rosout(self))
         if parameter_services:
             for name, type_name, callback in ParameterServices(self.parameters).handlers():
-                self._serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
+                self.serve(name, f"rcl_interfaces/srv/{type_name}", callback, PARAMETERS)
             self._parameter_events = self.add(ParameterEvents(self, self.parameters))
             if self.parameters.get("start_type_description_service"):
                 descriptions = TypeDescriptions(lambda: self.endpoints)
                 type_name = "type_description_interfaces/srv/GetTypeDescription"
-                self._serve("get_type_description", type_name, descriptions.get, SERVICES)
+                self.serve("get_type_description", type_name, descriptions.get, SERVICES)
         if logger_service:
             levels = LoggerLevels(self.log)
-            self._serve("get_logger_levels", "rcl_interfaces/srv/GetLoggerLevels", levels.get, SERVICES)
-            self._serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
+            self.serve("get_logger_levels", "rcl_interfaces/srv/GetLoggerLevels", levels.get, SERVICES)
+            self.serve("set_logger_levels", "rcl_interfaces/srv/SetLoggerLevels", levels.set, SERVICES)
         self._binding.bind()
 
-    def _serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
+    def serve(self, name: str, type_name: str, callback: Callable[[Any], Any], qos: Qos) -> None:
         """Make one of the services that every node has; they exist before `on_start` runs."""
         type_: Any = registry.interface_class(type_name)
         self._own_services.add(f"~/{name}")
@@ -203,7 +208,7 @@ class NodeCore:
 
     def add(self, part: P, *, late: bool = False) -> P:
         """Add a part, and open it if the time has come: `late` ones wait for `on_start`."""
-        self._parts.append(part)
+        self.parts.append(part)
         if late and self._late is not None:
             self._late.append(part)
         elif self._context is not None:
@@ -211,8 +216,8 @@ class NodeCore:
         return part
 
     def forget(self, part: Part) -> None:
-        if part in self._parts:
-            self._parts.remove(part)
+        if part in self.parts:
+            self.parts.remove(part)
         if self._late and part in self._late:
             self._late.remove(part)
 
@@ -286,10 +291,14 @@ class NodeCore:
             races.watch(self.instance, self.full_name, self.log, frozenset(self._made))
         try:
             await self._open(context)
+            self.warn_unused_remaps()
+            await self._begin()
         except BaseException:  # cancellation included: nothing stays open
             await self.stop()
             raise
-        self.warn_unused_remaps()
+
+    async def _begin(self) -> None:
+        """Start what the class declares as `@task`."""
         for attribute, handler in declared.handlers(type(self.instance)).items():
             if handler.kind == "task":
                 self.spawn(getattr(self.instance, attribute))
@@ -299,11 +308,11 @@ class NodeCore:
         node = Entity(context.domain, zid, self.id, self.id, Kind.NODE, self.namespace, self.name)
         self._token = context.session.announce(node.token)
         assert self._late is not None
-        for part in [part for part in self._parts if part not in self._late]:
+        for part in [part for part in self.parts if part not in self._late]:
             part.open()
         if self.parameters.get("use_sim_time"):
             self._follow_sim_time()
-        slow = context.clock.call_at(context.clock.monotonic_ns() + to_ns(SLOW_START), self._say_slow_start)
+        slow = self.when_slow("on_start")
         self.starting = asyncio.current_task()
         context.search.arm()
         try:
@@ -321,25 +330,23 @@ class NodeCore:
         for part in sorted(late, key=lambda part: part.opens_last):
             part.open()
 
-    def _say_slow_start(self) -> None:
-        self.log.warning(
-            "on_start has not returned for %.0f s %s; this node's handlers start when it has: what waits for them, or "
-            "for nodes that wait for this one, belongs in a @task",
-            SLOW_START,
-            place_of(self.starting),
+    def when_slow(self, hook: str) -> Alarm:
+        """Say where a hook that this task runs waits if it has not returned in a while; the caller cancels that."""
+        task, clock = asyncio.current_task(), self.context.clock
+        text = (
+            "%s has not returned for %.0f s %s; this node's handlers start when it has: what waits for them, or for "
+            "nodes that wait for this one, belongs in a @task"
         )
+
+        def say() -> None:
+            self.log.warning(text, hook, SLOW_START, place_of(task))
+
+        return clock.call_at(clock.monotonic_ns() + to_ns(SLOW_START), say)
 
     def warn_unused_remaps(self) -> None:
         """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later."""
-        known = {r.given for r in self.names.derivations.values()} - self._own_services
-        for rule in self.names.unused():
-            if may_make(self.instance.dynamic_names, self.names.full(rule.match)):
-                continue
-            if rule.match in self.parameters:
-                hint = f"; to set the parameter write -p {rule}"
-            else:
-                hint = did_you_mean(rule.match, known)
-            self.log.warning("the remap %s matches no name of this node%s", rule, hint)
+        for problem in unused_remaps(self.names, self._own_services, self.instance.dynamic_names, self.parameters):
+            self.log.warning("%s", problem)
 
     def shutdown(self) -> None:
         """End the node from within: the code that runs it will stop it."""
@@ -365,17 +372,15 @@ class NodeCore:
         if context is None:
             return
         try:
-            await self._end_handlers()
-            if self._late is None:
-                await self._limited("on_shutdown", self.instance.on_shutdown)
-            await self._limited("leaving what was entered", self.entered.aclose)
+            await self.end([*(part.begin_to_stop() for part in self.parts), *self._binding.runners()], self.tasks)
+            await self._finish()
         finally:
             self.log.say_gathered()
             # Even when this wait is cancelled: nothing stays open.
             if self._rosout is not None:
                 self._rosout.detach()
             if withdraw:
-                for part in list(reversed(self._parts)):
+                for part in list(reversed(self.parts)):
                     part.close()
                 if self._token is not None:
                     self._token.close()
@@ -385,13 +390,10 @@ class NodeCore:
                 context.nodes.remove(self)
             self._context = None
 
-    async def _end_handlers(self) -> None:
+    async def end(self, runners: Iterable[Runner | None], tasks: Iterable[asyncio.Task[Any]]) -> None:
         """Cancel what runs and give it time to clean up."""
-        ending: dict[asyncio.Future[Any], str] = {}
-        for runner in [*(part.begin_to_stop() for part in self._parts), *self._binding.runners()]:
-            if runner is not None:
-                ending[runner.cancel()] = runner.name
-        for task in self.tasks - {asyncio.current_task()}:
+        ending: dict[asyncio.Future[Any], str] = {r.cancel(): r.name for r in runners if r is not None}
+        for task in {*tasks} - {asyncio.current_task()}:
             task.cancel()
             ending[task] = task.get_name()
         if ending:
@@ -400,7 +402,12 @@ class NodeCore:
                 names = ", ".join(ending[future] for future in stuck)
                 self.log.warning("still running %.0f s after it was cancelled: %s", STOP_LIMIT, names)
 
-    async def _limited(self, what: str, work: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    async def _finish(self) -> None:
+        if self.has_started:
+            await self.limited("on_shutdown", self.instance.on_shutdown)
+        await self.limited("leaving what was entered", self.entered.aclose)
+
+    async def limited(self, what: str, work: Callable[[], Coroutine[Any, Any, Any]]) -> None:
         """Do one part of stopping: if it fails or takes too long, the rest is done all the same."""
         try:
             async with asyncio.timeout(STOP_LIMIT):
@@ -412,12 +419,13 @@ class NodeCore:
 
     # tasks and errors
 
-    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
+    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
         """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""
         task = self.context.loop.create_task(fn(*args), name=f"{self.full_name}.{getattr(fn, '__name__', 'task')}")
         self.tasks.add(task)
         task.add_done_callback(self._task_done)
         self.context.search.arm()
+        return task
 
     def _task_done(self, task: asyncio.Task[Any]) -> None:
         self.tasks.discard(task)
@@ -436,16 +444,7 @@ class NodeCore:
             self._failures.failed(label, error, on_error)
 
     def report_error(self, label: str, error: BaseException) -> None:
-        if isinstance(error, DeadlockError):
-            self.log.error("%s", error)  # which says what it is, and where
-        elif isinstance(error, GraphflowError):
-            place = place_in(error)
-            self.log.error("%s: %s%s", label, error, place and f" ({place})")
-        elif not place_in(error):  # it was raised about the user's code, not in it
-            self.log.error("%s: %s: %s", label, type(error).__name__, error)
-        else:
-            trace = (type(error), error, users_part(error))
-            self.log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
+        report(self.log, label, error)
 
     def _fail(self, error: BaseException) -> None:
         """End the node with an error."""
@@ -467,7 +466,7 @@ class NodeCore:
     def _follow_sim_time(self) -> None:
         """Follow /clock, or the context's clock, as the parameter `use_sim_time` says."""
         self._clock.follow(is_simulated=bool(self.parameters.get("use_sim_time")))
-        for part in self._parts:
+        for part in self.parts:
             part.clock_changed()
             for endpoint in part.endpoints:
                 if endpoint is not part:

@@ -24,8 +24,9 @@ from graphflow.runtime.service_events import Introspection
 
 if TYPE_CHECKING:
     from graphflow.runtime.action_client import GoalClient
+    from graphflow.runtime.publishers import TopicPublisher
     from graphflow.runtime.service_client import ServiceClient
-    from graphflow.runtime.topics import TopicPublisher, TopicSubscription
+from graphflow.runtime.subscriptions import TopicSubscription
 
 M = TypeVar("M", bound=Message)
 V = TypeVar("V", bool, int, float, str, bytes, list[bool], list[int], list[float], list[str])

@@ -30,6 +30,7 @@ class NodeClass(Protocol):
     node_name: ClassVar[str]
     dynamic_names: ClassVar[bool | Sequence[str]]
     default_group: ClassVar[Group | None]
+    is_managed: ClassVar[bool]
 
 
 def snake_case(class_name: str) -> str:
@@ -90,7 +91,13 @@ def hooks(cls: type) -> frozenset[str]:
     return frozenset(found | {hook.__name__ for hook in called if inspect.isfunction(hook)})
 
 
-_REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on_start", "on_shutdown", "group"}
+_REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on_start", "on_shutdown", "group"} | {
+    "on_configure",
+    "on_activate",
+    "on_deactivate",
+    "on_cleanup",
+    "on_error",
+}
 """What subclasses may say anew. A group that is running can also be released by its own name."""
 
 
@@ -207,6 +214,7 @@ def interface_of(cls: type[NodeClass]) -> Interface:
         handlers=tuple(_handler(cls, name, handler) for name, handler in methods.items()),
         groups={name: GroupInfo(g.limit, g.when_full, g.thread) for name, g in groups(cls).items()},
         dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
+        is_managed=cls.is_managed,
     )
 
 

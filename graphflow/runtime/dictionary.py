@@ -208,7 +208,17 @@ WORDS = (
     Word("`goal_handle.succeed()`", "return the result", "succeed"),
     Word("`goal_handle.abort()`", "`raise Abort(reason)`", "abort"),
     Word("`goal_handle.canceled()`", "let `CancelledError` pass; `goal.partial` is the result", "canceled"),
-    Word("`LifecycleNode`", "not yet"),
+    Word(
+        "`LifecycleNode`, `on_configure(self, state)`",
+        "`LifecycleNode`, `async def on_configure(self)`; it succeeds by returning nothing",
+        names="TransitionCallbackReturn LifecyclePublisher",
+    ),
+    Word("`return TransitionCallbackReturn.FAILURE`", '`raise TransitionRefused("why")`; any other error is `ERROR`'),
+    Word(
+        "`create_lifecycle_publisher(...)`",
+        "`create_publisher(...)`, or a declared `Publisher`: in a `LifecycleNode` all are silent until it is active",
+        "create_lifecycle_publisher destroy_lifecycle_publisher add_managed_entity",
+    ),
     Word("`tf2_ros`", "not yet"),
     Word("`use_sim_time`, `/clock`", "the same"),
     Word(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from graphflow.deadlock.user_code import place_in
-from graphflow.errors import TooManyErrors
+from graphflow.deadlock.user_code import place_in, users_part
+from graphflow.errors import DeadlockError, GraphflowError, TooManyErrors
 from graphflow.interface import OnError
 from graphflow.runtime.host import Host
 from graphflow.times import NANOSECONDS, to_ns
@@ -18,6 +19,20 @@ class ErrorBudget(NamedTuple):
 
     errors: int
     per: float
+
+
+def report(log: logging.Logger, label: str, error: BaseException) -> None:
+    """Log an error: graphflow's own as a sentence, any other with its traceback."""
+    if isinstance(error, DeadlockError):
+        log.error("%s", error)  # which says what it is, and where
+    elif isinstance(error, GraphflowError):
+        place = place_in(error)
+        log.error("%s: %s%s", label, error, place and f" ({place})")
+    elif not place_in(error):  # it was raised about the user's code, not in it
+        log.error("%s: %s: %s", label, type(error).__name__, error)
+    else:
+        trace = (type(error), error, users_part(error))
+        log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
 
 
 class Failures:

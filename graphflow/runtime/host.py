@@ -67,6 +67,10 @@ class Part(SpeaksRos, ABC):
 
     opens_last = False
     """Whether the part must open after everything else, because it begins work by itself."""
+    is_inner = False
+    """Whether the part belongs to graphflow, as every node's parameter services do."""
+    idle_because = ""
+    """Why the part does no work though it is on the network; empty while it does."""
 
     @property
     def title(self) -> str:
@@ -93,6 +97,16 @@ class Part(SpeaksRos, ABC):
 
     def begin_to_stop(self) -> Runner | None:
         """Begin no more work; returns the runner of its handler, whose runs are then cancelled and waited for."""
+        return None
+
+    def pause(self, why: str) -> Runner | None:
+        """Stay on the network, but do nothing until `resume`; returns the runner whose runs are to be cancelled."""
+        self.idle_because = why
+        return None
+
+    def resume(self) -> Runner | None:
+        """Do again what the part is for; returns its runner, which begins runs again."""
+        self.idle_because = ""
         return None
 
     @abstractmethod

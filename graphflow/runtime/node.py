@@ -37,11 +37,12 @@ from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.made import with_made
 from graphflow.runtime.place import here
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.service_events import Introspection
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.runtime.timer import Timer
-from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.runtime.twice import check_names
 from graphflow.wire.attachment import MessageInfo
 
@@ -76,7 +77,10 @@ class Node(SpeaksRos):
     """The name of nodes that are given none; empty for the class's name in snake case."""
     dynamic_names: ClassVar[bool | Sequence[str]] = False
     """Names the class makes at run time, unknown to checks: True, or patterns such as `*/cmd_vel`."""
+    is_managed: ClassVar[bool] = False
+    """Whether nodes of the class have a life cycle."""
     __firstlineno__: ClassVar[int]
+    _core_class: ClassVar[type[NodeCore]] = NodeCore
 
     def __init__(
         self,
@@ -97,7 +101,9 @@ class Node(SpeaksRos):
         names = Resolver(own_name, namespace if given.namespace is None else given.namespace, rules)
         values = {**(overrides or {}), **{k: (v, "argument") for k, v in params.items()}, **given.overrides}
         around = given.concurrency
-        self._core = NodeCore(self, names, values, replace(around, groups={**(concurrency or {}), **around.groups}))
+        self._core = self._core_class(
+            self, names, values, replace(around, groups={**(concurrency or {}), **around.groups})
+        )
         self.log = self._core.log
         """The node's logger; its records go to the console and to /rosout."""
         self.parameters = self._core.parameters

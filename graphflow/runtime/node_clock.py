@@ -9,7 +9,7 @@ from graphflow.executor.clock import Clock
 from graphflow.executor.sim_time import SimClock
 from graphflow.qos import CLOCK
 from graphflow.runtime.host import Host
-from graphflow.runtime.topics import TopicSubscription
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.times import NANOSECONDS
 
 
@@ -47,6 +47,7 @@ class NodeClock:
                 clock.set_time(message.clock.sec * NANOSECONDS + message.clock.nanosec)
 
             heard = TopicSubscription(self._host, ClockMessage, self._resolve("/clock"), CLOCK, told)
+            heard.is_inner = True
             self._simulated = (clock, self._add(heard))
         elif not is_simulated and former is not None:
             self._simulated = None

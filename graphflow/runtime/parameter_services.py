@@ -15,7 +15,7 @@ from graphflow.interface import TYPE_IDS, Parameter, type_id
 from graphflow.qos import PARAMETER_EVENTS
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.params import ParameterChange, Parameters
-from graphflow.runtime.topics import TopicPublisher
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.values import from_message, to_message
 
 if TYPE_CHECKING:

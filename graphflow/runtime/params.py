@@ -80,7 +80,7 @@ class Parameters:
             if name not in self._declared
         ]
 
-    def __contains__(self, name: str) -> bool:
+    def __contains__(self, name: object) -> bool:
         return name in self._declared
 
     def names(self) -> list[str]:

@@ -16,7 +16,7 @@ from graphflow.qos import ROSOUT
 from graphflow.runtime import unawaited
 from graphflow.runtime.host import Host, Part
 from graphflow.runtime.logger import ROOT
-from graphflow.runtime.topics import TopicPublisher
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.times import Time
 
 if TYPE_CHECKING:

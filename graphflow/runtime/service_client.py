@@ -21,6 +21,7 @@ from graphflow.errors import (
     LoopBlockedError,
     RemoteError,
     ServerBusy,
+    ServerInactive,
     ServerLost,
     ServiceUnavailable,
 )
@@ -339,9 +340,8 @@ def _error_of(payload: bytes, service: str) -> CallError:
     error = RemoteError.from_payload(payload, service)
     if error.type == STOPPING.type:
         return ServerLost(f"the server of {service} stopped before it answered")
-    if error.type == DeadlockError.__name__:
-        return DeadlockError(error.message)
-    return ServerBusy(error.message) if error.type == ServerBusy.__name__ else error
+    named = {known.__name__: known for known in (DeadlockError, ServerBusy, ServerInactive)}
+    return named[error.type](error.message) if error.type in named else error
 
 
 def _sequence_of(answer: Answer) -> int | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.host import Host
-from graphflow.runtime.topics import TopicPublisher
+from graphflow.runtime.publishers import TopicPublisher
 
 if TYPE_CHECKING:
     from graphflow.msgs.base import Message, Service

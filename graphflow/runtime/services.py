@@ -12,6 +12,7 @@ from graphflow.errors import (
     EncodeError,
     RemoteError,
     ServerBusy,
+    ServerInactive,
 )
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec, title_of
@@ -61,7 +62,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     ) -> None:
         super().__init__(host, type_.NAME, name, qos)
         self.type = type_
-        self._is_inner = is_inner
+        self.is_inner = is_inner
         self._callback = callback
         self._takes_response, self._place = takes_response, place
         self._label = label or f"service {name}"
@@ -88,7 +89,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
         session = self.host.context.session
         self._inbox = Inbox(session.bell, None, self._arrived)
         tell = (self._invoke, self._finished, self.host.full_name)
-        spec = RunnerSpec(self._label, *tell, "service", self._refuse, is_inner=self._is_inner)
+        spec = RunnerSpec(self._label, *tell, "service", self._refuse, is_inner=self.is_inner)
         self.runner = self.host.runner(spec, self._inbox.items, self._group)
         self._declared.append(session.open_server(key, self._inbox))
         self._lines = ServerLines(self.host.context.switchboard, self._announced(), self.runner, self._asked)
@@ -106,7 +107,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def _arrived(self) -> None:
         assert self._inbox is not None
         assert self.runner is not None
-        if not self.is_open:
+        if not self.is_open or self.idle_because:
             self._answer_no_more()
             return
         self.runner.wake()
@@ -154,7 +155,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
                 error = wrong
         if error is not None:
             if isinstance(error, CancelledError) and self.runner is not None and self.runner.closed:
-                request.reply_error(STOPPING.to_payload())
+                request.reply_error(self._why_ended().to_payload())
                 return
             if not isinstance(error, DecodeError):
                 self.host.handler_failed(self._label, error)
@@ -182,6 +183,18 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
     def begin_to_stop(self) -> Runner | None:
         return self.runner
 
+    def pause(self, why: str) -> Runner | None:
+        """Answer requests with an error that says why."""
+        super().pause(why)
+        self._answer_no_more()
+        return self.runner
+
+    def resume(self) -> Runner | None:
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+        return self.runner
+
     def close(self) -> None:
         self._service_events.close()
         if self.runner is not None:
@@ -193,4 +206,7 @@ class ServiceServer(Endpoint, Generic[Request, Response]):
 
     def _answer_no_more(self) -> None:
         while self._inbox is not None and self._inbox.items:
-            self._inbox.items.popleft().reply_error(STOPPING.to_payload())
+            self._inbox.items.popleft().reply_error(self._why_ended().to_payload())
+
+    def _why_ended(self) -> RemoteError:
+        return RemoteError(ServerInactive.__name__, self.idle_because) if self.idle_because else STOPPING

@@ -7,14 +7,15 @@ surroundings say wins over what is written in the class.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from graphflow.errors import DeclarationError
+from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
-from graphflow.names import Remap
+from graphflow.names import Remap, Resolver, did_you_mean
 
 T = TypeVar("T")
 
@@ -100,3 +101,22 @@ def _required(cls: type) -> list[str]:
     parameters = list(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc]
     kinds = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
     return [p.name for p in parameters if p.default is p.empty and p.kind not in kinds]
+
+
+def unused_remaps(
+    names: Resolver, own: Container[str], dynamic: bool | Sequence[str], parameters: Container[str]
+) -> Iterator[str]:
+    """What is wrong with the remap rules of a node that have matched nothing, a sentence for each.
+
+    Args:
+        own: Names that every node has, which no rule is suspected to mean.
+        dynamic: Names that the class makes at run time, and may use later.
+        parameters: Those of the node, which a rule may have been meant to set.
+    """
+    known = [r.given for r in names.derivations.values() if r.given not in own]
+    for rule in names.unused():
+        if may_make(dynamic, names.full(rule.match)):
+            continue
+        is_param = rule.match in parameters
+        hint = f"; to set the parameter write -p {rule}" if is_param else did_you_mean(rule.match, known)
+        yield f"the remap {rule} matches no name of this node{hint}"

@@ -54,6 +54,7 @@ class Timer(Part):
         self._due: deque[TimerInfo] = deque()
         self.runner: Runner | None = None
         self._missed = 0
+        self._was_armed = False
 
     def __repr__(self) -> str:
         return f"<Timer {self._label} {self._period_ns / 1e9:g} s>"
@@ -145,6 +146,20 @@ class Timer(Part):
 
     def begin_to_stop(self) -> Runner | None:
         self.cancel()
+        return self.runner
+
+    def pause(self, why: str) -> Runner | None:
+        super().pause(why)
+        self._was_armed = self._handle is not None
+        return self.begin_to_stop()
+
+    def resume(self) -> Runner | None:
+        """Begin a new period, unless the timer had been cancelled."""
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+            if self._was_armed:
+                self.reset()
         return self.runner
 
     def close(self) -> None:

@@ -37,6 +37,8 @@ class Process:
         """Since when it has said nothing, if that is too long."""
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
+        self.lifecycle: dict[str, str] = {}
+        """The states of its lifecycle nodes."""
         self.error = ""
         self.log_error = ""
         """Why lines of its log were lost."""
@@ -92,6 +94,7 @@ class Process:
             {
                 "node": node.name,
                 "state": self.word,
+                "lifecycle": self.lifecycle.get(node.name, "") if self.state is State.READY else "",
                 "pid": self.pid,
                 "since": self.since,
                 "process": node.process,
@@ -109,6 +112,7 @@ class Process:
         self.starts += 1
         self.pid, self.exit, self.ready_since = None, None, None
         self.heard = self.silent_since = None
+        self.lifecycle = {}
         self.error = self.log_error = self.given_up = ""
         self.stop_asked = self.failed = False
         self.waiting_for = {n.name for n in self.nodes}

@@ -11,6 +11,7 @@ Heard = Callable[[dict[str, Any]], None]
 
     {"event": "spawned", "process": ..., "pid": ...}
     {"event": "ready", "process": ..., "node": ...}
+    {"event": "lifecycle", "process": ..., "node": ..., "state": ...}   of a lifecycle node that runs
     {"event": "beat", "process": ...}                      its event loop goes round
     {"event": "failed", "process": ..., "error": ...}
     {"event": "log_lost", "process": ..., "why": ...}

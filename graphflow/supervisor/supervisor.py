@@ -209,6 +209,8 @@ class Supervisor:
             self._has_become_ready(process, event["node"])
         elif what == "beat":
             process.heard = time.monotonic()
+        elif what == "lifecycle":
+            process.lifecycle[event["node"]] = event["state"]
         elif what == "failed":
             process.error = event["error"]
         elif what == "log_lost":

@@ -13,15 +13,18 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from typing import Any, Protocol
 
 from graphflow.deadlock.user_code import place_in, users_part
-from graphflow.errors import GraphflowError
+from graphflow.errors import GraphflowError, TransitionFailed
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
+from graphflow.machines.lifecycle import LifecycleState
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.logger import node_logger
+from graphflow.runtime.managed import ManagedCore
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.run import catch_signals, serve
@@ -74,7 +77,9 @@ def make_node(planned: PlannedNode, file: str) -> Node:
     node = make_within(cls, given, names.name)
     if not isinstance(node, Node):
         raise GraphflowError(f"{planned.class_path} made a {type(node).__name__}, not a node")
-    core_of(node)  # which needs its __init__ to have called ours
+    core = core_of(node)  # which needs its __init__ to have called ours
+    if isinstance(core, ManagedCore) and planned.lifecycle:
+        core.target = LifecycleState[planned.lifecycle.upper()]
     return node
 
 
@@ -193,6 +198,11 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         ready.append(node)
         report.tell(event="ready", process=job["process"], node=node.full_name)
 
+    for node in nodes:
+        core = core_of(node)
+        if isinstance(core, ManagedCore):
+            core.on_state = partial(_tell_state, report, job["process"], node.full_name)
+
     context = None
     beating = asyncio.create_task(_beat(report, job["process"]))
     try:
@@ -204,12 +214,18 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         if at_start and not any(core_of(node).failure is error for node in nodes):  # which has logged it
             _log_failure(error)
         report.tell(event="failed", process=job["process"], error=_one_line(error))
-        return EXIT_CONFIGURATION if at_start and isinstance(error, GraphflowError) else EXIT_ERROR
+        is_for_good = isinstance(error, GraphflowError) and not isinstance(error, TransitionFailed)
+        return EXIT_CONFIGURATION if at_start and is_for_good else EXIT_ERROR
     finally:
         beating.cancel()
         if context is not None:
             await context.close()
     return 0
+
+
+def _tell_state(report: Reporter, process: str, node: str, state: LifecycleState) -> None:
+    if report.is_open():
+        report.tell(event="lifecycle", process=process, node=node, state=state.label)
 
 
 async def _beat(report: Reporter, process: str) -> None:

@@ -14,7 +14,7 @@ from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
-from graphflow.runtime.topics import TopicPublisher
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 

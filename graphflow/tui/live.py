@@ -27,7 +27,7 @@ from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
-from graphflow.runtime.topics import TopicSubscription
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.tui.logs import plain_text
 from graphflow.wire import process
 from graphflow.wire.process import NUMBERS, WAITS, ProcessToken, answer_key

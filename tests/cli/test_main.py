@@ -15,7 +15,8 @@ from graphflow.cli.main import cli
 
 VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
 VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
-VERBS += ("demo", "node", "topic", "service", "action", "param", "waits", "groups", "doctor", "console", "interface")
+VERBS += ("demo", "node", "topic", "service", "action", "param", "lifecycle", "waits", "groups", "doctor", "console")
+VERBS += ("interface",)
 
 
 @pytest.fixture(autouse=True)

@@ -85,7 +85,7 @@ async def test_a_server_that_dies_loses_its_goals(graph: Graph) -> None:
     server, asker = await pair(graph)
     goal = await asker.order(50)
     await graph.settle()
-    for endpoint in core_of(server)._parts[-1].endpoints:
+    for endpoint in core_of(server).parts[-1].endpoints:
         endpoint.close()
     await graph.clock.advance(1.0)
 

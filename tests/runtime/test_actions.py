@@ -26,7 +26,7 @@ PREEMPTIONS = count(few=250, full=1000)
 
 
 def at_work(server: Node) -> ActionServer[Any, Any, Any]:
-    [found] = [part for part in core_of(server)._parts if isinstance(part, ActionServer)]
+    [found] = [part for part in core_of(server).parts if isinstance(part, ActionServer)]
     return found
 
 

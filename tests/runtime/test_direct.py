@@ -169,7 +169,7 @@ async def test_a_client_that_goes_takes_its_line_along(graph: Graph) -> None:
     adder = Adder()
     await graph.start(adder)
     node, client, _ = await asker(graph)
-    (server,) = [e for e in core_of(adder)._parts if getattr(e, "name", "") == "/add"]
+    (server,) = [e for e in core_of(adder).parts if getattr(e, "name", "") == "/add"]
     lines: Any = getattr(server, "_lines")  # noqa: B009
     assert len(lines._senders) == 1
     adder.gate.clear()

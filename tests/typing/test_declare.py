@@ -23,10 +23,11 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts, AddTwoInts_Request
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.runtime.core import core_of
+from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import ServiceClient
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.runtime.timer import Timer
-from graphflow.runtime.topics import TopicPublisher, TopicSubscription
 from graphflow.testing import Graph, Tap
 from graphflow.wire.attachment import MessageInfo
 

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 from graphflow import (
-    EncodeError,
     Node,
     Qos,
     subscription,
@@ -22,8 +21,8 @@ from graphflow.executor.runner import BURST
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import Durability, History
-from graphflow.runtime import topics
-from graphflow.runtime.topics import TopicSubscription
+from graphflow.runtime import subscriptions
+from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.testing import Graph
 from tests.runtime.cast import Log, Speaker, nothing
 
@@ -260,7 +259,7 @@ async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
 
 async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """KEEP_ALL is not without end: beyond its bound messages are lost and counted."""
-    monkeypatch.setattr(topics, "KEEP_ALL_BOUND", 50)
+    monkeypatch.setattr(subscriptions, "KEEP_ALL_BOUND", 50)
     node = Node("n")
     subscribed = node.create_subscription(Int32, "x", None, Qos(depth=1, history=History.KEEP_ALL))
     await graph.start(node)
@@ -340,57 +339,6 @@ async def test_an_error_in_a_handler_is_logged_and_the_next_message_handled(
     assert record.getMessage() == "check: ValueError: I do not like 1"
     assert record.name == "graphflow.node.fussy"
     assert record.exc_info is not None
-
-
-@pytest.mark.parametrize(
-    ("message", "text"),
-    [
-        (Int32(), r"/chatter carries std_msgs/msg/String, not std_msgs\.msg\.Int32"),
-        ("hello", "/chatter carries std_msgs/msg/String, not 'hello'"),
-        (None, "/chatter carries std_msgs/msg/String, not None"),
-    ],
-)
-async def test_publishing_another_type_is_an_error(graph: Graph, message: Any, text: str) -> None:
-    """EncodeError names the topic, its type and what was given; nothing is sent."""
-    node = Speaker()
-    await graph.start(node)
-
-    with pytest.raises(EncodeError, match=text):
-        node.chatter.publish(message)
-
-    assert node.chatter.published == 0
-
-
-async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
-    """EncodeError names the field; nothing is sent, and the next good message is."""
-    node = Speaker()
-    await graph.start(node)
-    wrong = String()
-    wrong.data = 5  # type: ignore[assignment]
-
-    with pytest.raises(EncodeError, match="data"):
-        node.chatter.publish(wrong)
-    node.chatter.publish(String(data="good"))
-    await graph.settle()
-
-    assert node.chatter.published == 1
-    assert node.heard.received == 1
-
-
-async def test_publishing_needs_a_running_node(graph: Graph) -> None:
-    """Before its start and after its stop a node cannot publish, says so, and counts nothing."""
-    node = Speaker()
-    with pytest.raises(ClosedError, match="/chatter: node /speaker is not running; use this from its handlers"):
-        node.chatter.publish(String())
-    await graph.start(node)
-    node.chatter.publish(String())
-    await graph.stop(node)
-    with pytest.raises(ClosedError, match="not running"):
-        node.chatter.publish(String())
-
-    assert node.chatter.published == 1
-    with pytest.raises(ClosedError):
-        node.chatter.get_subscription_count()
 
 
 async def test_a_closed_endpoint_is_gone(graph: Graph) -> None:

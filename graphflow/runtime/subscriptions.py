@@ -1,4 +1,4 @@
-"""Publishers and subscriptions."""
+"""Subscriptions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from asyncio import Future
 from collections.abc import AsyncIterator, Callable
 from typing import Any, Generic, TypeVar
 
-from graphflow.errors import ClosedError, DecodeError, EncodeError
+from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.groups import HandlerGroup
 from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
@@ -17,9 +17,10 @@ from graphflow.qos import DEFAULT, INFINITE_NS, History, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.host import Host
-from graphflow.transport.base import Closable, Inbox, Payload, Sender
+from graphflow.runtime.publishers import alive_key
+from graphflow.transport.base import Closable, Inbox
 from graphflow.wire import attachment
-from graphflow.wire.attachment import MessageInfo, pack
+from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
@@ -30,121 +31,6 @@ LOSS_TOLD = 100
 """Messages dropped from the queue from which on the loss of most is told."""
 SOURCES_BOUND = 4096
 """Publishers that a subscription keeps track of."""
-
-
-class TopicPublisher(Endpoint, Generic[M]):
-    """A publisher as it runs."""
-
-    kind = Kind.PUBLISHER
-
-    def __init__(self, host: Host, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
-        super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
-        self.type = type_
-        self.published = 0
-        """Messages sent since the start; also the last sequence number."""
-        self._codec = registry.codec(self.type_name)
-        self._sender: Sender = _NOT_OPEN
-        self._gid = bytes(16)
-        self._now_ns: Callable[[], int] = int
-        self._deadline: SilenceTimer | None = None
-        self._lease: SilenceTimer | None = None
-        self._alive: Sender | None = None
-
-    def _open(self, key: str) -> None:
-        session = self.host.context.session
-        self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
-        self._sender = session.open_sender(key, self.qos)
-        self._declared.append(self._sender)
-        if self.qos.deadline_ns != INFINITE_NS:
-            self._deadline = self._silence_timer(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
-        if self.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and self.qos.lease_ns != INFINITE_NS:
-            self._lease = self._silence_timer(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
-            self._alive = session.open_sender(_alive_key(self._announced()), DEFAULT)
-            self._declared.append(self._alive)
-
-    def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
-        timer = SilenceTimer(self.host.clock, period_ns, silent)
-        timer.start()
-        return timer
-
-    @property
-    def is_wanted(self) -> bool:
-        """Whether a message published now would reach a subscription or be kept: check before you build a large one."""
-        return self._sender.is_wanted
-
-    def publish(self, message: M) -> None:
-        """Send a message. Never waits: a subscriber that cannot keep up loses messages.
-
-        Raises:
-            EncodeError: A field does not fit its type, or the message is of another type. A message without
-                listeners is not encoded, and its fields are not looked at.
-            ClosedError: The node is not running.
-        """
-        if message.__class__ is not self.type:
-            raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
-        sender = self._sender
-        if sender.is_wanted:
-            payload = self._codec.encode(message)
-            self.published += 1
-            sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
-        else:
-            self._announced()
-            self.published += 1
-        if self._deadline is not None:
-            self._deadline.touch()
-        if self._lease is not None:
-            self._lease.touch()
-
-    def assert_liveliness(self) -> None:
-        """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
-
-        Raises:
-            ClosedError: The node is not running.
-        """
-        self._announced()
-        if self._lease is not None and self._alive is not None:
-            self._lease.touch()
-            self._alive.put(b"", attachment=b"")
-
-    def clock_changed(self) -> None:
-        for timer in (self._deadline, self._lease):
-            if timer is not None:
-                timer.move(self.host.clock)
-
-    def statistics(self) -> dict[str, Any]:
-        return {"published": self.published, **super().statistics()}
-
-    def get_subscription_count(self) -> int:
-        """Number of subscriptions in the graph that get these messages."""
-        self._announced()
-        return len(self.matched)
-
-    def close(self) -> None:
-        for timer in (self._deadline, self._lease):
-            if timer is not None:
-                timer.stop()
-        self._sender = _NOT_OPEN
-        super().close()
-
-
-class _NotOpen:
-    """What a publisher sends with before and after it is on the network."""
-
-    is_wanted = False
-
-    def put(self, payload: Payload, *, attachment: bytes) -> None:
-        """Nothing is sent."""
-
-    def close(self) -> None:
-        """Nothing is held."""
-
-
-_NOT_OPEN = _NotOpen()
-
-
-def _alive_key(publisher: Entity) -> str:
-    """Where a publisher with manual liveliness asserts that it is alive. rmw_zenoh has no equivalent."""
-    return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"
 
 
 _NO_INFO = (0, 0, bytes(16))
@@ -210,6 +96,8 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._gaps = 0
         self._has_told_loss = False
         self._deadline: SilenceTimer | None = None
+        self._wake: Callable[[], None] = _nothing
+        """What a message has called when the subscription is not paused."""
 
     @property
     def handler_title(self) -> str:
@@ -314,7 +202,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         source.lease = SilenceTimer(self.host.clock, other.qos.lease_ns, silent)
         source.lease.start()
         inbox = Inbox(session.bell, 1, lambda: self._revive(other.gid))
-        source.alive = session.open_receiver(_alive_key(other), DEFAULT, inbox)
+        source.alive = session.open_receiver(alive_key(other), DEFAULT, inbox)
 
     def _revive(self, gid: bytes) -> None:
         """A publisher with manual liveliness was heard."""
@@ -449,6 +337,29 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def begin_to_stop(self) -> Runner | None:
         return self.runner
+
+    def pause(self, why: str) -> Runner | None:
+        """Leave out what arrives."""
+        if self._inbox is not None and not self.idle_because:
+            self._wake, self._inbox.ready = self._inbox.ready, self._leave_out
+            self._leave_out()
+        super().pause(why)
+        return self.runner
+
+    def resume(self) -> Runner | None:
+        if self._inbox is not None and self.idle_because:
+            self._leave_out()
+            self._inbox.ready = self._wake
+        super().resume()
+        if self.runner is not None:
+            self.runner.reopen()
+        return self.runner
+
+    def _leave_out(self) -> None:
+        assert self._inbox is not None
+        self._inbox.items.clear()
+        if self._deadline is not None:
+            self._deadline.touch()  # the publisher has met it
 
     def close(self) -> None:
         if self.runner is not None:

@@ -1,0 +1,155 @@
+"""`graphflow lifecycle`: nodes, get, list and set."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.verbs import Verbs
+from graphflow.domain import domain_id
+from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.view import View
+from graphflow.names import did_you_mean, is_hidden
+from graphflow.wire.liveliness import Kind
+
+_CHANGE = "lifecycle_msgs/srv/ChangeState"
+_TRANSITIONS = "lifecycle_msgs/srv/GetAvailableTransitions"
+
+
+@click.group(cls=Verbs)
+def lifecycle() -> None:
+    """Bring lifecycle nodes from state to state."""
+
+
+_hidden = click.option("-a", "--all", "--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
+_timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
+
+
+@lifecycle.command()
+@_hidden
+@click.option("-c", "--count-nodes", is_flag=True, help="Only the count.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def nodes(hidden: bool, count_nodes: bool, as_json: bool) -> None:
+    """List the nodes that have a life cycle."""
+    with View(domain_id()) as view:
+        found = _managed(view, hidden=hidden)
+    if as_json:
+        output.as_json(found)
+    elif count_nodes:
+        output.data(str(len(found)))
+    else:
+        output.lines(found)
+        if not found:
+            output.talk(nothing_here("no lifecycle nodes"))
+
+
+@lifecycle.command()
+@click.argument("name", metavar="[NODE]", required=False)
+@_hidden
+@_timeout
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
+    """Show the state of one node or of all."""
+    found: dict[str, Any] = {}
+    with View(domain_id()) as view:
+        for node in [_node(view, name)] if name else _managed(view, hidden=hidden):
+            try:
+                found[node] = _state(view, node, timeout)
+            except CallError as error:
+                if name:
+                    raise
+                output.talk(f"{node}: {error}")
+    if as_json:
+        output.as_json({node: {"id": state.id, "label": state.label} for node, state in found.items()})
+        return
+    for node, state in found.items():
+        output.data(f"{'' if name else f'{node}: '}{state.label} [{state.id}]")
+
+
+@lifecycle.command(name="list")
+@click.argument("name", metavar="NODE")
+@click.option("-a", "--all", "everything", is_flag=True, help="Those of all states, not only of the present one.")
+@_timeout
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
+    """List the transitions that a node can make now."""
+    with View(domain_id()) as view:
+        service = "get_transition_graph" if everything else "get_available_transitions"
+        found = _transitions(view, _node(view, name), service, timeout)
+    if as_json:
+        rows = [(t.transition, t.start_state.label, t.goal_state.label) for t in found]
+        output.as_json([{"id": t.id, "label": t.label, "start": start, "goal": goal} for t, start, goal in rows])
+        return
+    for t in found:
+        output.data(f"- {t.transition.label} [{t.transition.id}]")
+        output.data(f"\tStart: {t.start_state.label}\n\tGoal: {t.goal_state.label}")
+
+
+@lifecycle.command(name="set")
+@click.argument("name", metavar="NODE")
+@click.argument("transition", metavar="TRANSITION")
+@click.option("--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds.")
+def set_(name: str, transition: str, timeout: float) -> int:
+    """Make a transition: configure, activate, deactivate, cleanup or shutdown, or its number."""
+    from graphflow.msgs.lifecycle_msgs.srv import ChangeState
+
+    with View(domain_id()) as view:
+        node = _node(view, name)
+        ways = {
+            t.transition.label: t.transition for t in _transitions(view, node, "get_available_transitions", timeout)
+        }
+        wanted = ways.get(transition) or next((t for t in ways.values() if str(t.id) == transition), None)
+        if wanted is None:
+            state = _state(view, node, timeout)
+            output.error(
+                f"{node} is {state.label}, and there is no transition {transition!r} from there"
+                f"{did_you_mean(transition, ways)}"
+            )
+            output.talk("Unknown transition requested, available ones are:")
+            for t in ways.values():
+                output.talk(f"- {t.label} [{t.id}]")
+            return exits.FAILED
+        response = view.call(f"{node}/change_state", _CHANGE, ChangeState.Request(transition=wanted), timeout)
+        if response.success:
+            output.data("Transitioning successful")
+            return exits.OK
+        output.talk("Transitioning failed")
+        output.error(f"{node} is {_state(view, node, timeout).label}; its log says why: graphflow logs --node {node}")
+        return exits.FAILED
+
+
+def _managed(view: View, *, hidden: bool) -> list[str]:
+    """The nodes with a life cycle, by full name."""
+    servers = view.cache.endpoints(Kind.SERVICE)
+    found = {e.node_name for e in servers if e.type == _CHANGE and e.name == f"{e.node_name}/change_state"}
+    return sorted(node for node in found if hidden or not is_hidden(node))
+
+
+def _node(view: View, name: str) -> str:
+    """The full name of a node with a life cycle.
+
+    Raises:
+        CallError: There is no such node.
+        UsageFault: It has no life cycle.
+    """
+    node, managed = view.node(name), _managed(view, hidden=True)
+    if node not in managed:
+        have = f"; those that do: {', '.join(managed)}" if managed else "; no node here does"
+        raise UsageFault(f"{node} has no life cycle{have}")
+    return node
+
+
+def _state(view: View, node: str, timeout: float) -> Any:
+    from graphflow.msgs.lifecycle_msgs.srv import GetState
+
+    return view.call(f"{node}/get_state", "lifecycle_msgs/srv/GetState", GetState.Request(), timeout).current_state
+
+
+def _transitions(view: View, node: str, service: str, timeout: float) -> Any:
+    from graphflow.msgs.lifecycle_msgs.srv import GetAvailableTransitions
+
+    request = GetAvailableTransitions.Request()
+    return view.call(f"{node}/{service}", _TRANSITIONS, request, timeout).available_transitions

@@ -1,0 +1,346 @@
+"""The workings of a managed node: `machines.lifecycle` carried out, with a level of resources for every step up."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from contextlib import AsyncExitStack
+from functools import partial
+from typing import Any, TypeVar
+
+from graphflow.errors import TransitionFailed, TransitionRefused
+from graphflow.executor.runner import Runner
+from graphflow.machines.lifecycle import (
+    TRANSITIONS,
+    LifecycleState,
+    Outcome,
+    Transition,
+    after,
+    asked,
+    available,
+    path,
+)
+from graphflow.msgs import registry
+from graphflow.qos import SERVICES, Qos
+from graphflow.runtime.core import NodeCore
+from graphflow.runtime.host import Part
+from graphflow.runtime.publishers import TopicPublisher
+
+P = TypeVar("P", bound=Part)
+
+
+class _Level:
+    """What was entered, made and started on the way up to one state; left on the way down."""
+
+    def __init__(self, below: AsyncExitStack) -> None:
+        self.below = below
+        """Where things were entered before."""
+        self.parts: list[Part] = []
+        self.tasks: list[asyncio.Task[Any]] = []
+
+
+class ManagedCore(NodeCore):
+    """The workings of a `LifecycleNode`."""
+
+    state = LifecycleState.UNCONFIGURED
+    target: LifecycleState | None = None
+    """The state that the node is brought to when it starts; None to leave that to others."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self._levels: list[_Level] = []
+        self._muted = False
+        self._rests = False
+        """Whether handlers do not run."""
+        self._event: TopicPublisher[Any] | None = None
+        self.on_state: Callable[[LifecycleState], None] = _nothing
+        """Called with each state that the node comes to rest in."""
+
+    def bind(self, **services: bool) -> None:
+        event: Any = registry.interface_class("lifecycle_msgs/msg/TransitionEvent")
+        self._event = TopicPublisher(self, event, self.names.resolve("~/transition_event"), Qos())
+        self._event.is_inner = True
+        self._own_services.add(self._event.name)
+        self.add(self._event)
+        for name, type_name, answer in (
+            ("change_state", "ChangeState", self._change_state),
+            ("get_state", "GetState", self._get_state),
+            ("get_available_states", "GetAvailableStates", self._get_states),
+            ("get_available_transitions", "GetAvailableTransitions", self._get_transitions),
+            ("get_transition_graph", "GetAvailableTransitions", self._get_graph),
+        ):
+            self.serve(name, f"lifecycle_msgs/srv/{type_name}", answer, SERVICES)
+        super().bind(**services)
+
+    # levels
+
+    def add(self, part: P, *, late: bool = False) -> P:
+        added = super().add(part, late=late)
+        if self._levels:
+            self._levels[-1].parts.append(part)
+        if self._rests and not isinstance(part, TopicPublisher):
+            self._hold(part)
+        if self._muted and isinstance(part, TopicPublisher):
+            part.pause(self._why())
+        return added
+
+    def forget(self, part: Part) -> None:
+        super().forget(part)
+        for level in self._levels:
+            if part in level.parts:
+                level.parts.remove(part)
+
+    def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
+        task = super().spawn(fn, *args)
+        if self._levels:
+            tasks = self._levels[-1].tasks
+            tasks[:] = [*(t for t in tasks if not t.done()), task]
+        return task
+
+    def _enter_level(self) -> None:
+        self._levels.append(_Level(self.entered))
+        self.entered = AsyncExitStack()
+
+    async def _leave_level(self) -> None:
+        """Undo what was done since the level was entered. Raises what leaving something raises."""
+        level = self._levels[-1]
+        try:
+            await self.end([part.begin_to_stop() for part in level.parts], level.tasks)
+            await self.entered.aclose()
+        finally:
+            for part in reversed(level.parts):
+                part.close()
+            self._levels.remove(level)
+            self.entered = level.below
+
+    # work and rest
+
+    def _why(self) -> str:
+        steps = path(self.state, LifecycleState.ACTIVE) if self.state.is_primary else []
+        hint = f"; graphflow lifecycle set {self.full_name} {steps[0]}" if steps else ""
+        return f"{self.full_name} is {self.state.label}, not active{hint}"
+
+    def _hold(self, part: Part) -> Runner | None:
+        return None if part.is_inner else part.pause(self._why())
+
+    async def _rest(self) -> None:
+        """End what runs, and begin nothing."""
+        if self._rests:
+            return
+        self._rests = True
+        runners = [self._hold(part) for part in self.parts if not isinstance(part, TopicPublisher)]
+        await self.end(runners, self._levels[-1].tasks if self._levels else ())
+
+    async def _work(self) -> None:
+        self._rests = False
+        for part in [part for part in self.parts if part.idle_because and not isinstance(part, TopicPublisher)]:
+            runner = part.resume()
+            if runner is not None and runner not in self.runners:
+                self.runners.append(runner)
+        await super()._begin()
+
+    def _mute(self, *, muted: bool) -> None:
+        self._muted = muted
+        for part in self.parts:
+            if isinstance(part, TopicPublisher) and not part.is_inner:
+                part.pause(self._why()) if muted else part.resume()
+
+    # transitions
+
+    def warn_unused_remaps(self) -> None:
+        """Wait with that until the node is configured, which may make more names."""
+        if self.state is LifecycleState.INACTIVE:
+            super().warn_unused_remaps()
+
+    async def _begin(self) -> None:
+        self._mute(muted=True)
+        await self._rest()
+        self.on_state(self.state)
+        if self.target is None:
+            self.log.info("unconfigured: graphflow lifecycle set %s configure", self.full_name)
+            return
+        for label in path(self.state, self.target):
+            await self.trigger(label)
+
+    async def trigger(self, wanted: int | str) -> None:
+        """Make a transition, named by its label or id.
+
+        Raises:
+            TransitionFailed: It is not possible from the present state, was refused, or failed.
+        """
+        transition = asked(self.state, wanted)
+        if transition is None:
+            ways = ", ".join(t.label for t in available(self.state)) if self.state.is_primary else ""
+            now = f"{self.full_name} is {self.state.label}; from there: {ways or 'nothing'}"
+            raise TransitionFailed(f"cannot {_verb(wanted)}: {now}")
+        # In a task of its own: who asks may be ended by it, or give up waiting.
+        task = super().spawn(self._make, transition)
+        task.set_name(f"{self.full_name}.{transition.goal.hook}")
+        failure = await asyncio.shield(task)
+        if failure:
+            raise TransitionFailed(
+                f"{self.full_name} could not {transition.label}: {failure}; it is {self.state.label}"
+            )
+
+    async def _make(self, transition: Transition) -> str:
+        """Make a transition; returns why it failed, empty if it did not."""
+        start = self.state
+        self._arrive(transition)
+        try:
+            outcome, why = await self._attempt(start)
+            self._arrive(after(self.state, outcome))
+            if self.state is LifecycleState.ERRORPROCESSING:
+                outcome, _ = await self._attempt(start)
+                self._arrive(after(self.state, outcome))
+                self.log.warning("after the error the node is %s", self.state.label)
+        except asyncio.CancelledError:  # the node stops
+            self._arrive(after(self.state, Outcome.FAILURE))
+            raise
+        if transition.label == "configure":
+            self.warn_unused_remaps()
+        if self.state is LifecycleState.ACTIVE:
+            await self._work()
+        return why
+
+    async def _attempt(self, start: LifecycleState) -> tuple[Outcome, str]:
+        """Run the hook of the present state and go to the level that it leads to; returns how it ended, and why."""
+        hook = self.state.hook
+        if start is LifecycleState.ACTIVE:
+            await self._rest()
+        if self.state in (LifecycleState.CONFIGURING, LifecycleState.ACTIVATING):
+            self._enter_level()
+        if self.state is LifecycleState.ACTIVATING:
+            self._mute(muted=False)
+        outcome, why = await self._run_hook(hook)
+        goal = after(self.state, outcome).goal
+        if not goal.is_primary:
+            return outcome, why
+        if goal is not LifecycleState.ACTIVE:
+            self._mute(muted=True)
+        try:
+            while len(self._levels) > goal.level:
+                await self._leave_level()
+        except Exception as error:
+            self.report_error(f"leaving what was entered, after {hook}", error)
+            return Outcome.ERROR, f"{type(error).__name__}: {error}"
+        return outcome, why
+
+    async def _run_hook(self, hook: str) -> tuple[Outcome, str]:
+        slow = self.when_slow(hook)
+        try:
+            returned = await getattr(self.instance, hook)()
+            if returned is not None:
+                raise TypeError(
+                    f"{hook} returned {returned!r}; it succeeds by returning nothing, and refuses by `raise`"
+                )
+        except TransitionRefused as error:
+            self.log.warning("%s refused: %s", hook, error)
+            return Outcome.FAILURE, f"{hook} refused: {error}"
+        except Exception as error:
+            self.report_error(hook, error)
+            return Outcome.ERROR, f"{hook} failed: {type(error).__name__}: {error}"
+        finally:
+            slow.cancel()
+        return Outcome.SUCCESS, ""
+
+    def _arrive(self, transition: Transition) -> None:
+        """Be where a transition leads, and tell it."""
+        self.state = transition.goal
+        for part in self.parts:
+            if part.idle_because:
+                part.idle_because = self._why()
+        assert self._event is not None
+        if self._event.is_wanted:
+            self._event.publish(self._told(transition))
+        if self.state.is_primary:
+            self.on_state(self.state)
+
+    async def _finish(self) -> None:
+        if self.has_started:
+            if self.state is not LifecycleState.FINALIZED:
+                last = asked(self.state, "shutdown")
+                assert last is not None
+                await self.limited("on_shutdown", partial(self._make, last))
+            while self._levels:
+                await self.limited("leaving what was entered", self._leave_level)
+        await self.limited("leaving what was entered", self.entered.aclose)
+
+    # what others ask
+
+    async def _change_state(self, request: Any) -> Any:
+        from graphflow.msgs.lifecycle_msgs.srv import ChangeState
+
+        try:
+            await self.trigger(request.transition.label or request.transition.id)
+        except TransitionFailed as error:
+            self.log.warning("%s", error)
+            return ChangeState.Response(success=False)
+        return ChangeState.Response(success=True)
+
+    def _get_state(self, request: Any) -> Any:
+        from graphflow.msgs.lifecycle_msgs.srv import GetState
+
+        return GetState.Response(current_state=_state(self.state))
+
+    def _get_states(self, request: Any) -> Any:
+        from graphflow.msgs.lifecycle_msgs.srv import GetAvailableStates
+
+        return GetAvailableStates.Response(available_states=[_state(state) for state in LifecycleState])
+
+    def _get_transitions(self, request: Any) -> Any:
+        return _described(available(self.state))
+
+    def _get_graph(self, request: Any) -> Any:
+        return _described(list(TRANSITIONS))
+
+    def _told(self, transition: Transition) -> Any:
+        from graphflow.msgs.lifecycle_msgs.msg import Transition as TransitionMessage
+
+        assert self._event is not None
+        event = self._event.type(
+            transition=TransitionMessage(id=transition.id, label=transition.label),
+            start_state=_state(transition.start),
+            goal_state=_state(transition.goal),
+        )
+        now = self.clock.now()
+        if hasattr(event, "stamp"):  # ROS 2 Lyrical's
+            event.stamp = now
+        else:
+            event.timestamp = now.nanoseconds
+        return event
+
+
+def _nothing(state: LifecycleState) -> None:
+    """Nobody is told."""
+
+
+def _state(state: LifecycleState) -> Any:
+    from graphflow.msgs.lifecycle_msgs.msg import State
+
+    return State(id=int(state), label=state.label)
+
+
+def _described(transitions: list[Transition]) -> Any:
+    from graphflow.msgs.lifecycle_msgs.msg import Transition as TransitionMessage
+    from graphflow.msgs.lifecycle_msgs.msg import TransitionDescription
+    from graphflow.msgs.lifecycle_msgs.srv import GetAvailableTransitions
+
+    return GetAvailableTransitions.Response(
+        available_transitions=[
+            TransitionDescription(
+                transition=TransitionMessage(id=t.id, label=t.label),
+                start_state=_state(t.start),
+                goal_state=_state(t.goal),
+            )
+            for t in transitions
+        ]
+    )
+
+
+def _verb(wanted: int | str) -> str:
+    """A transition for people, however a request has named it."""
+    if isinstance(wanted, str):
+        return repr(wanted) if not wanted.isidentifier() else wanted
+    return next(
+        (f"{t.label} (transition {wanted})" for t in TRANSITIONS if t.id == wanted), f"make transition {wanted}"
+    )

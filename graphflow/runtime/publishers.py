@@ -1,0 +1,151 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
+
+from graphflow.errors import EncodeError
+from graphflow.executor.runner import Runner
+from graphflow.msgs import registry
+from graphflow.msgs.base import Message
+from graphflow.qos import DEFAULT, INFINITE_NS, Liveliness, Qos
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.events import OnEvent, SilenceTimer
+from graphflow.runtime.host import Host
+from graphflow.transport.base import Payload, Sender
+from graphflow.wire.attachment import pack
+from graphflow.wire.liveliness import Entity, Kind
+
+M = TypeVar("M", bound=Message)
+
+
+class TopicPublisher(Endpoint, Generic[M]):
+    """A publisher as it runs."""
+
+    kind = Kind.PUBLISHER
+
+    def __init__(self, host: Host, type_: type[M], name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
+        super().__init__(host, type_.SCHEMA.name, name, qos, on_event)
+        self.type = type_
+        self.published = 0
+        """Messages sent since the start; also the last sequence number."""
+        self._codec = registry.codec(self.type_name)
+        self._sender: Sender = _NOT_OPEN
+        self._gid = bytes(16)
+        self._now_ns: Callable[[], int] = int
+        self._deadline: SilenceTimer | None = None
+        self._lease: SilenceTimer | None = None
+        self._alive: Sender | None = None
+        self._paused: Sender | None = None
+        """What it sends with when it is not paused; None while it is not."""
+
+    def _open(self, key: str) -> None:
+        session = self.host.context.session
+        self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
+        self._sender = session.open_sender(key, self.qos)
+        self._declared.append(self._sender)
+        if self.qos.deadline_ns != INFINITE_NS:
+            self._deadline = self._silence_timer(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
+        if self.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and self.qos.lease_ns != INFINITE_NS:
+            self._lease = self._silence_timer(self.qos.lease_ns, lambda: self._tell("liveliness_lost"))
+            self._alive = session.open_sender(alive_key(self._announced()), DEFAULT)
+            self._declared.append(self._alive)
+
+    def _silence_timer(self, period_ns: int, silent: Callable[[], None]) -> SilenceTimer:
+        timer = SilenceTimer(self.host.clock, period_ns, silent)
+        timer.start()
+        return timer
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether a message published now would reach a subscription or be kept: check before you build a large one."""
+        return self._sender.is_wanted
+
+    def publish(self, message: M) -> None:
+        """Send a message. Never waits: a subscriber that cannot keep up loses messages.
+
+        Raises:
+            EncodeError: A field does not fit its type, or the message is of another type. A message without
+                listeners is not encoded, and its fields are not looked at.
+            ClosedError: The node is not running.
+        """
+        if message.__class__ is not self.type:
+            raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
+        sender = self._sender
+        if sender.is_wanted:
+            payload = self._codec.encode(message)
+            self.published += 1
+            sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
+        elif self._paused is not None:
+            self._complain(f"what is published on {self.name} is not sent: {self.idle_because}")
+            return
+        else:
+            self._announced()
+            self.published += 1
+        if self._deadline is not None:
+            self._deadline.touch()
+        if self._lease is not None:
+            self._lease.touch()
+
+    def assert_liveliness(self) -> None:
+        """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
+
+        Raises:
+            ClosedError: The node is not running.
+        """
+        self._announced()
+        if self._lease is not None and self._alive is not None:
+            self._lease.touch()
+            self._alive.put(b"", attachment=b"")
+
+    def clock_changed(self) -> None:
+        for timer in (self._deadline, self._lease):
+            if timer is not None:
+                timer.move(self.host.clock)
+
+    def statistics(self) -> dict[str, Any]:
+        return {"published": self.published, **super().statistics()}
+
+    def get_subscription_count(self) -> int:
+        """Number of subscriptions in the graph that get these messages."""
+        self._announced()
+        return len(self.matched)
+
+    def pause(self, why: str) -> Runner | None:
+        """Send nothing; what is published meanwhile is not sent later."""
+        if self._paused is None:
+            self._paused, self._sender = self._sender, _NOT_OPEN
+        return super().pause(why)
+
+    def resume(self) -> Runner | None:
+        if self._paused is not None:
+            self._sender, self._paused = self._paused, None
+        return super().resume()
+
+    def close(self) -> None:
+        for timer in (self._deadline, self._lease):
+            if timer is not None:
+                timer.stop()
+        self._sender, self._paused = _NOT_OPEN, None
+        super().close()
+
+
+class _NotOpen:
+    """What a publisher sends with before and after it is on the network."""
+
+    is_wanted = False
+
+    def put(self, payload: Payload, *, attachment: bytes) -> None:
+        """Nothing is sent."""
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+_NOT_OPEN = _NotOpen()
+
+
+def alive_key(publisher: Entity) -> str:
+    """Where a publisher with manual liveliness asserts that it is alive. rmw_zenoh has no equivalent."""
+    return f"@graphflow/{publisher.domain}/alive/{publisher.gid.hex()}"

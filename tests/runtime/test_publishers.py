@@ -1,0 +1,80 @@
+"""Publishers at work, and how a message that cannot be sent is answered."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow import EncodeError
+from graphflow.errors import ClosedError
+from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.testing import Graph
+from tests.runtime.cast import Speaker
+
+
+@pytest.mark.parametrize(
+    ("message", "text"),
+    [
+        (Int32(), r"/chatter carries std_msgs/msg/String, not std_msgs\.msg\.Int32"),
+        ("hello", "/chatter carries std_msgs/msg/String, not 'hello'"),
+        (None, "/chatter carries std_msgs/msg/String, not None"),
+    ],
+)
+async def test_publishing_another_type_is_an_error(graph: Graph, message: Any, text: str) -> None:
+    """EncodeError names the topic, its type and what was given; nothing is sent."""
+    node = Speaker()
+    await graph.start(node)
+
+    with pytest.raises(EncodeError, match=text):
+        node.chatter.publish(message)
+
+    assert node.chatter.published == 0
+
+
+async def test_publishing_a_wrong_field_is_an_error(graph: Graph) -> None:
+    """EncodeError names the field; nothing is sent, and the next good message is."""
+    node = Speaker()
+    await graph.start(node)
+    wrong = String()
+    wrong.data = 5  # type: ignore[assignment]
+
+    with pytest.raises(EncodeError, match="data"):
+        node.chatter.publish(wrong)
+    node.chatter.publish(String(data="good"))
+    await graph.settle()
+
+    assert node.chatter.published == 1
+    assert node.heard.received == 1
+
+
+async def test_publishing_needs_a_running_node(graph: Graph) -> None:
+    """Before its start and after its stop a node cannot publish, says so, and counts nothing."""
+    node = Speaker()
+    with pytest.raises(ClosedError, match="/chatter: node /speaker is not running; use this from its handlers"):
+        node.chatter.publish(String())
+    await graph.start(node)
+    node.chatter.publish(String())
+    await graph.stop(node)
+    with pytest.raises(ClosedError, match="not running"):
+        node.chatter.publish(String())
+
+    assert node.chatter.published == 1
+    with pytest.raises(ClosedError):
+        node.chatter.get_subscription_count()
+
+
+async def test_a_publisher_that_is_paused_sends_nothing(graph: Graph) -> None:
+    """Not even later, and it says why; then it sends as before."""
+    speaker = Speaker("speaker")
+    await graph.start(speaker)
+    heard = graph.tap(String, "/chatter")
+    await graph.settle()
+    speaker.chatter.pause("it is night")
+    speaker.chatter.publish(String(data="night"))
+    assert not speaker.chatter.is_wanted
+    speaker.chatter.resume()
+    speaker.chatter.publish(String(data="day"))
+    await graph.settle()
+    assert [message.data for message in heard] == ["day"]
+    assert speaker.chatter.published == 1
