@@ -39,7 +39,7 @@ _KNOWN: dict[str, set[str]] = {
     "append_env": {"name", "value", "prepend", "separator", *_ANY},
     "group": {"children", "scoped", "forwarding", "keep", *_ANY, *_RECORDED},
     "include": {"file", "arg", "let", *_ANY, *_RECORDED},
-    "node": {"pkg", "exec", "namespace", "args", "ros_args", "remap", "param", *_RUN},
+    "node": {"pkg", "exec", "namespace", "args", "ros_args", "remap", "param", "autostart", *_RUN},
     "executable": {"cmd", "cwd", "shell", *_RUN},
     "push_ros_namespace": {"namespace", *_ANY},
     "set_parameter": {"name", "value", *_ANY},
@@ -49,7 +49,7 @@ _KNOWN: dict[str, set[str]] = {
     "log": {"message", "level", *_ANY, *_RECORDED},
 }
 """Actions that have words here, and their attributes."""
-_SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace"}
+_SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace", "lifecycle_node": "node"}
 _ELSEWHERE = {
     "node_container": "components are not built yet",
     "load_composable_node": "components are not built yet",
@@ -301,6 +301,10 @@ class _Translation:
         else:
             self._words(item, entries)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
+        if _says(item, "autostart", "true", "1"):
+            if found is None:
+                self._complain(item.entries["autostart"].place, "autostart: nobody here brings up a program of ROS")
+            entries["lifecycle"] = Item("active", item.entries["autostart"].place, item.entries["autostart"].key)
         entries |= self._common(item)
         usual = name.value if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual

@@ -81,8 +81,18 @@ class Message:
     if not TYPE_CHECKING:  # type checkers must go on seeing what is not there
 
         def __getattr__(self, name: str) -> object:
-            """Raise AttributeError: this is called for what is not there."""
-            raise _NoField(name=name, obj=self)
+            """Raise AttributeError: this is called for what is not there.
+
+            A field that was lent to receivers (see `wire.lending`) gets a copy of its own.
+            """
+            try:
+                lent = object.__getattribute__(self, "_lent")
+            except AttributeError:
+                lent = {}
+            if name not in lent:
+                raise _NoField(name=name, obj=self)
+            setattr(self, name, lent.pop(name).copy())
+            return object.__getattribute__(self, name)
 
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not self.__class__:
@@ -116,8 +126,9 @@ def name_of(cls: type[Message]) -> str:
 
 def no_field(cls: type[Message], name: str) -> str:
     """What to say of a field that a message does not have."""
-    fields = ", ".join(f"{f.type} {f.name}" for f in cls.SCHEMA.fields) or "none"
-    return f"{name_of(cls)} has no field {name!r}{did_you_mean(name, cls.__slots__) or f'; its fields: {fields}'}"
+    fields = {f.name: f"{f.type} {f.name}" for f in cls.SCHEMA.fields}
+    hint = did_you_mean(name, fields) or f"; its fields: {', '.join(fields.values()) or 'none'}"
+    return f"{name_of(cls)} has no field {name!r}{hint}"
 
 
 def _same(a: Any, b: Any) -> bool:

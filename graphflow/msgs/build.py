@@ -34,8 +34,9 @@ def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]
     """
     package, kind, name = message.name.split("/")
     nested: Nested = {f.type.base: classes(f.type.base) for f in message.fields if not f.type.is_primitive}
+    has_arrays = any(f.type.array and f.type.base in schema.NUMERIC for f in message.fields)
     namespace: dict[str, Any] = {
-        "__slots__": tuple(f.name for f in message.fields),
+        "__slots__": (*(f.name for f in message.fields), *(["_lent"] if has_arrays else [])),
         "__module__": f"graphflow.msgs.{package}.{kind}",
         "__doc__": f"{message.name}: {', '.join(f'{f.type} {f.name}' for f in message.fields) or 'no fields'}.",
         "SCHEMA": message,
@@ -118,7 +119,7 @@ def _refuse(message: base.Message, others: dict[str, Any]) -> None:
     """Raise TypeError for arguments that are no fields."""
     cls = type(message)
     if not others:
-        example = f"{cls.__slots__[0]}=..." if cls.__slots__ else ""
+        example = f"{cls.SCHEMA.fields[0].name}=..." if cls.SCHEMA.fields else ""
         raise TypeError(f"{base.name_of(cls)} takes its fields by name: {cls.__name__.rpartition('_')[2]}({example})")
     raise TypeError(base.no_field(cls, next(iter(others))))
 

@@ -21,6 +21,7 @@ from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.runtime.direct import Switchboard
+from graphflow.runtime.handover import Handover
 from graphflow.runtime.reasons import Reasons
 from graphflow.transport.base import Closable, Session
 from graphflow.wire import process
@@ -66,6 +67,8 @@ class Context:
         """The domain's nodes and endpoints, as far as their tokens have arrived."""
         self.switchboard = Switchboard(session, domain, self.loop)
         """Calls to and from other graphflow processes."""
+        self.handover = Handover()
+        """Messages between nodes of this process."""
         self.reasons = Reasons(session, domain)
         """Why goals did not come to their end."""
         self.call_timeout = call_timeout

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
 from graphflow.errors import EncodeError
@@ -12,6 +12,7 @@ from graphflow.msgs.base import Message
 from graphflow.qos import DEFAULT, INFINITE_NS, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
+from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
 from graphflow.transport.base import Payload, Sender
 from graphflow.wire.attachment import pack
@@ -37,14 +38,17 @@ class TopicPublisher(Endpoint, Generic[M]):
         self._deadline: SilenceTimer | None = None
         self._lease: SilenceTimer | None = None
         self._alive: Sender | None = None
-        self._paused: Sender | None = None
-        """What it sends with when it is not paused; None while it is not."""
+        self._here: Sequence[Receiver] = ()
+        """The subscriptions of this process that are handed what it publishes."""
+        self._paused: tuple[Sender, Sequence[Receiver]] | None = None
+        """What it reaches when it is not paused; None while it is not."""
 
     def _open(self, key: str) -> None:
         session = self.host.context.session
         self._gid, self._now_ns = self._announced().gid, self.host.context.clock.time_ns
-        self._sender = session.open_sender(key, self.qos)
+        self._sender = session.open_sender(key, self.qos, only_others=True)
         self._declared.append(self._sender)
+        self._here = self.host.context.handover.receivers(key, self.qos.durability)
         if self.qos.deadline_ns != INFINITE_NS:
             self._deadline = self._silence_timer(self.qos.deadline_ns, lambda: self._tell("deadline_missed"))
         if self.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and self.qos.lease_ns != INFINITE_NS:
@@ -60,7 +64,7 @@ class TopicPublisher(Endpoint, Generic[M]):
     @property
     def is_wanted(self) -> bool:
         """Whether a message published now would reach a subscription or be kept: check before you build a large one."""
-        return self._sender.is_wanted
+        return self._sender.is_wanted or bool(self._here)
 
     def publish(self, message: M) -> None:
         """Send a message. Never waits: a subscriber that cannot keep up loses messages.
@@ -73,7 +77,9 @@ class TopicPublisher(Endpoint, Generic[M]):
         if message.__class__ is not self.type:
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}")
         sender = self._sender
-        if sender.is_wanted:
+        if self._here:
+            self._hand_over(message, sender)
+        elif sender.is_wanted:
             payload = self._codec.encode(message)
             self.published += 1
             sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
@@ -87,6 +93,19 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._deadline.touch()
         if self._lease is not None:
             self._lease.touch()
+
+    def _hand_over(self, message: M, sender: Sender) -> None:
+        """Give a copy to the subscriptions of this process, and send it if others want it."""
+        clone, receivers = self._codec.clone, self._here
+        copy = clone(message)
+        payload = self._codec.encode(copy) if sender.is_wanted else None
+        self.published += 1
+        fields = (self.published, self._now_ns(), self._gid)
+        handed = Handed(copy, fields, len(receivers), clone)
+        for receiver in receivers:
+            receiver.hand(handed)
+        if payload is not None:
+            sender.put(payload, attachment=pack(*fields))
 
     def assert_liveliness(self) -> None:
         """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.
@@ -115,19 +134,20 @@ class TopicPublisher(Endpoint, Generic[M]):
     def pause(self, why: str) -> Runner | None:
         """Send nothing; what is published meanwhile is not sent later."""
         if self._paused is None:
-            self._paused, self._sender = self._sender, _NOT_OPEN
+            self._paused = (self._sender, self._here)
+            self._sender, self._here = _NOT_OPEN, ()
         return super().pause(why)
 
     def resume(self) -> Runner | None:
         if self._paused is not None:
-            self._sender, self._paused = self._paused, None
+            (self._sender, self._here), self._paused = self._paused, None
         return super().resume()
 
     def close(self) -> None:
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.stop()
-        self._sender, self._paused = _NOT_OPEN, None
+        self._sender, self._here, self._paused = _NOT_OPEN, (), None
         super().close()
 
 

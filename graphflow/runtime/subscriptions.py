@@ -13,9 +13,10 @@ from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
-from graphflow.qos import DEFAULT, INFINITE_NS, History, Liveliness, Qos
+from graphflow.qos import DEFAULT, INFINITE_NS, Durability, History, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
+from graphflow.runtime.handover import Handed
 from graphflow.runtime.host import Host
 from graphflow.runtime.publishers import alive_key
 from graphflow.transport.base import Closable, Inbox
@@ -117,8 +118,16 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._inbox.ready = self.runner.wake
         if self.qos.deadline_ns != INFINITE_NS:
             self._watch_deadline(self._inbox)
-        receiver = context.session.open_receiver(key, self.qos, self._inbox, ignore_local=self._ignore_local)
-        self._declared.append(receiver)
+        # What nodes of this process publish comes by hand, unless it is wanted not at all.
+        ignore_local = self._ignore_local or self.qos.durability is Durability.VOLATILE
+        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))
+        if not self._ignore_local:
+            context.handover.join(key, self)
+
+    def hand(self, handed: Handed) -> None:
+        """Take a message of a publisher of this process."""
+        if self._inbox is not None:
+            self._inbox.put(handed)
 
     def _watch_deadline(self, inbox: Inbox) -> None:
         """Count a missed deadline for every period without a message, while there is a publisher to meet it."""
@@ -190,7 +199,7 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _watch_lease(self, other: Entity, source: _Source) -> None:
         def silent() -> None:
             assert source.lease is not None
-            if any(_gid_of(beside) == other.gid for _, beside in map(read, waiting.items)):
+            if any(_gid_of(arrival, read) == other.gid for arrival in waiting.items):
                 source.lease.touch()  # it has published: the handler is late, not the publisher
                 return
             source.lease.stop()
@@ -228,6 +237,11 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _take(self, arrival: Any) -> tuple[M, tuple[int, int, bytes]] | None:
         """The arrived message and the fields of its `MessageInfo`; None when it is too old or malformed."""
+        if arrival.__class__ is Handed:
+            if self._is_fresh(*arrival.fields):
+                return arrival.take(), arrival.fields
+            self.expired += 1
+            return None
         payload, beside = self._read(arrival)
         try:
             fields = attachment.fields(beside or b"")
@@ -364,6 +378,8 @@ class TopicSubscription(Endpoint, Generic[M]):
     def close(self) -> None:
         if self.runner is not None:
             self.runner.cancel()
+        if self.entity is not None:
+            self.host.context.handover.leave(self.entity.data_key, self)
         if self._deadline is not None:
             self._deadline.stop()
         for source in self._sources.values():
@@ -373,8 +389,11 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._arrived()
 
 
-def _gid_of(beside: bytes | None) -> bytes:
-    """The sender named by an attachment; empty if there is none."""
+def _gid_of(arrival: Any, read: Callable[[Any], tuple[bytes, bytes | None]]) -> bytes:
+    """The sender of what has arrived; empty if it is not told."""
+    if isinstance(arrival, Handed):
+        return arrival.fields[2]
+    beside = read(arrival)[1]
     return beside[-16:] if beside is not None else b""
 
 

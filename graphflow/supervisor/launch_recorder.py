@@ -207,8 +207,9 @@ def _action(said: Said) -> tuple[str, Any]:
             return "", actions(_called(said))
         case "RegisterEventHandler":
             return "", _handled(said)
-        case "Node":
-            return "node", _node(said)
+        case "Node" | "LifecycleNode":
+            found = {"autostart": "true"} if get("autostart") is True else {}
+            return "node", {**_node(said), **found}
         case "ExecuteProcess" | "ExecuteLocal":
             first, *rest = get("cmd", 0, [""])
             if isinstance(first, Said) and first.name == "ExecutableInPackage":  # a node, by another way

@@ -100,9 +100,12 @@ class Session(Protocol):
     bell: Bell
     """Rung by this session's inboxes."""
 
-    def open_sender(self, key: str, qos: Qos, changed: Callable[[], None] | None = None) -> Sender:
+    def open_sender(
+        self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
+    ) -> Sender:
         """Args:
         changed: Called on the loop when `is_wanted` may have changed; not for TRANSIENT_LOCAL ones, whose never does.
+        only_others: Whether to leave out receivers of this session; not for TRANSIENT_LOCAL ones.
         """
 
     def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> Closable:
@@ -231,7 +234,7 @@ class Inbox:
         self._bell = bell
 
     def put(self, item: Any) -> None:
-        """Add an item. Callable from any one thread."""
+        """Add an item. Callable from any thread; of losses at the same moment on two, one may not be counted."""
         items = self.items
         if len(items) == items.maxlen:
             self.dropped += 1

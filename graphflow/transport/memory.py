@@ -97,18 +97,30 @@ class _Declared:
 
 class _Sender:
     def __init__(
-        self, network: Network, key: str, qos: Qos, zid: str, changed: Callable[[], None] | None = None
+        self,
+        network: Network,
+        key: str,
+        qos: Qos,
+        zid: str,
+        changed: Callable[[], None] | None = None,
+        *,
+        only_others: bool = False,
     ) -> None:
         self._network, self._key, self.zid = network, key, zid
         self._changed = changed
         self._is_closed = False
         keeps = qos.durability is Durability.TRANSIENT_LOCAL
+        self._only_others = only_others and not keeps
         self.history: deque[_Sample] = deque(maxlen=qos.depth if keeps else 0)
         network.senders.setdefault(key, []).append(self)
 
     @property
     def is_wanted(self) -> bool:
-        return bool(self.history.maxlen or self._network.receivers_of(self._key))
+        return bool(self.history.maxlen or self._receivers())
+
+    def _receivers(self) -> list[_Receiver]:
+        found = self._network.receivers_of(self._key)
+        return [r for r in found if not (r.zid == self.zid and (self._only_others or r.ignore_local))]
 
     def tell_changed(self) -> None:
         if self._changed is not None:
@@ -119,11 +131,10 @@ class _Sender:
             return
         sample = _Sample(bytes(payload), attachment, self._key)
         self.history.append(sample)
-        for receiver in self._network.receivers_of(self._key):
-            if not (receiver.ignore_local and receiver.zid == self.zid):
-                put, inbox = receiver.inbox.put, receiver.inbox
-                link = f"{self.zid}>{receiver.zid} {self._key} {id(inbox)}"
-                self._network.deliver(partial(put, sample), link, is_lossy=True)
+        for receiver in self._receivers():
+            put, inbox = receiver.inbox.put, receiver.inbox
+            link = f"{self.zid}>{receiver.zid} {self._key} {id(inbox)}"
+            self._network.deliver(partial(put, sample), link, is_lossy=True)
 
     def close(self) -> None:
         self._changed, self._is_closed = None, True
@@ -221,8 +232,10 @@ class MemorySession:
         self._declared: list[_Declared] = []
         self._served: list[Inbox] = []
 
-    def open_sender(self, key: str, qos: Qos, changed: Callable[[], None] | None = None) -> _Sender:
-        sender = _Sender(self._network, key, qos, self.zid, changed)
+    def open_sender(
+        self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
+    ) -> _Sender:
+        sender = _Sender(self._network, key, qos, self.zid, changed, only_others=only_others)
         self._keep(_Declared(sender.close))
         return sender
 

@@ -242,7 +242,7 @@ class ZenohSession:
         self.loop = loop
 
     def open_sender(
-        self, key: str, qos: Qos, changed: Callable[[], None] | None = None
+        self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
     ) -> _ZenohSender | _KeepingSender:
         reliable = qos.reliability is Reliability.RELIABLE
         # DROP even for reliable topics: with BLOCK one stopped receiver holds the sending loop for seconds.
@@ -251,7 +251,9 @@ class ZenohSession:
             "reliability": zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
         }
         if qos.durability is Durability.VOLATILE:
-            return _ZenohSender(self.raw.declare_publisher(key, **options), self.bell, changed)
+            reach = zenoh.Locality.REMOTE if only_others else zenoh.Locality.ANY
+            publisher = self.raw.declare_publisher(key, allowed_destination=reach, **options)
+            return _ZenohSender(publisher, self.bell, changed)
         ext = load_ext()
         publisher = ext.declare_advanced_publisher(
             self.raw,

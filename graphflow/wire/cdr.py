@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import Any
 
 from graphflow.errors import DecodeError
+from graphflow.wire.clone import Clone, compile_clone
 from graphflow.wire.codegen import HEADER, Types
 from graphflow.wire.decode import compile_decode
 from graphflow.wire.encode import compile_encode
@@ -45,6 +46,11 @@ class Codec:
     @cached_property
     def decode(self) -> Decode:
         return compile_decode(self._message, self._types, "<", self._decode_any_order)
+
+    @cached_property
+    def clone(self) -> Clone:
+        """Copies a message into one that a receiver in the same process may have."""
+        return compile_clone(self._message, self._types, self.encode)
 
     @cached_property
     def _decode_big(self) -> Decode:

@@ -101,7 +101,7 @@ class Encoder(Code):
         self.line(f"{a} = {expression}")
         self.line(f"if {a}.__class__ is not ndarray or {a}.dtype != {dtype} or not {a}.flags.c_contiguous:")
         self.line(f"    {a} = as_array({a}, {type_.base!r})")
-        self.check_count(type_, f"{a}.size")
+        check_count(self, type_, f"{a}.size")
         if type_.array != "fixed":
             self.number("I", f"{a}.size")
         self.go_dynamic()
@@ -124,19 +124,13 @@ class Encoder(Code):
             self.line("parts.append(s)")
             self.line("p += len(s)")
 
-    def check_count(self, type_: FieldType, count: str) -> None:
-        if type_.array == "fixed":
-            self.line(f"if {count} != {type_.size}: raise ValueError('wrong length')")
-        elif type_.array == "bounded":
-            self.line(f"if {count} > {type_.size}: raise ValueError('too long')")
-
     def object_array(self, type_: FieldType, expression: str) -> None:
         items, item = self.fresh("l"), self.fresh("i")
         self.line(f"{items} = {expression}")
         if type_.is_primitive:
             # Their characters or keys would be taken for the strings.
             self.line(f"if isinstance({items}, (str, dict)): raise TypeError('not a sequence')")
-        self.check_count(type_, f"len({items})")
+        check_count(self, type_, f"len({items})")
         if type_.array != "fixed":
             self.number("I", f"len({items})")
         self.go_dynamic()
@@ -148,6 +142,14 @@ class Encoder(Code):
             encode = self.constant("encode", compile_encode_part(self.types.schema(type_.base), self.types))
             self.line(f"p = {encode}({item}, parts, p)")
         self.depth -= 1
+
+
+def check_count(code: Code, type_: FieldType, count: str) -> None:
+    """Write what refuses an array with more or fewer elements than its type allows."""
+    if type_.array == "fixed":
+        code.line(f"if {count} != {type_.size}: raise ValueError('wrong length')")
+    elif type_.array == "bounded":
+        code.line(f"if {count} > {type_.size}: raise ValueError('too long')")
 
 
 def _widen(utf16: bytes) -> bytes:

@@ -1,0 +1,105 @@
+"""Arrays of messages that are handed to readers in the same process, without copying them where that is safe.
+
+Who has published a message may go on changing it, and receivers must not notice. So an array is shared only if nobody
+can write to it: it is read-only down to its memory, as that of every received message, or the message alone holds it.
+In the second case it is made read-only and *lent*: the message keeps it aside, and the first time that somebody touches
+the field again the message gets a copy of its own (`Message.__getattr__`). Everything else is copied.
+"""
+
+from __future__ import annotations
+
+import sys
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy import ndarray
+
+from graphflow.wire.arrays import DTYPES, as_array
+
+SMALL = 4096
+"""Bytes up to which an array is copied in any case: it costs less than finding out."""
+
+LENT = "_lent"
+"""The attribute of a message that has its lent arrays, by field."""
+
+
+def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
+    """The array in a field, read-only.
+
+    Args:
+        base: The ROS type of its elements.
+
+    Raises:
+        ValueError: An element is of another kind or does not fit.
+    """
+    try:
+        array = object.__getattribute__(message, name)
+    except AttributeError:  # lent before, and not touched since
+        lent: ndarray[Any, Any] = object.__getattribute__(message, LENT)[name].view()
+        return lent
+    if array.__class__ is not ndarray or array.dtype != DTYPES[base] or not array.flags.c_contiguous:
+        array = as_array(array, base)
+    elif array.nbytes > SMALL and hasattr(type(message), LENT):
+        holders = _holders(array)
+        if _is_held_once(array, holders):
+            _freeze(array)
+            return _set_aside(message, name, array)
+    if array.nbytes > SMALL and _is_frozen(array):
+        return array.view()
+    copy = array.copy()
+    copy.flags.writeable = False
+    return copy.view()
+
+
+def _set_aside(message: Any, name: str, array: ndarray[Any, Any]) -> ndarray[Any, Any]:
+    delattr(message, name)
+    try:
+        object.__getattribute__(message, LENT)[name] = array
+    except AttributeError:
+        setattr(message, LENT, {name: array})
+    return array.view()
+
+
+def _is_frozen(array: ndarray[Any, Any]) -> bool:
+    """Whether nobody can write to an array's memory."""
+    while array.__class__ is ndarray:
+        if array.flags.writeable:
+            return False
+        if array.base is None:
+            return True
+        array = array.base
+    return isinstance(array, bytes)
+
+
+def _freeze(array: ndarray[Any, Any]) -> None:
+    if array.base is not None:
+        array.base.flags.writeable = False
+    array.flags.writeable = False
+
+
+def _holders(array: ndarray[Any, Any]) -> tuple[int, int]:
+    """How many references there are to an array, and to the one whose memory it shares."""
+    base = array.base
+    return sys.getrefcount(array), 0 if base is None else sys.getrefcount(base)
+
+
+def _is_held_once(array: ndarray[Any, Any], holders: tuple[int, int]) -> bool:
+    """Whether only the message that the array comes from holds it, and nobody else the memory beneath."""
+    base = array.base
+    if base is None:
+        return bool(array.flags.owndata) and holders[0] <= _OWNER_ALONE[0]
+    is_owner = base.__class__ is ndarray and base.base is None and base.flags.owndata
+    return is_owner and holders[0] <= _VIEW_ALONE[0] and holders[1] <= _VIEW_ALONE[1]
+
+
+def _holders_in_a_message(array: ndarray[Any, Any]) -> tuple[int, int]:
+    """What `_holders` finds, as `lend` calls it, where only a message holds the array."""
+    message = SimpleNamespace(data=array)
+    del array
+    array = object.__getattribute__(message, "data")
+    return _holders(array)
+
+
+_OWNER_ALONE = _holders_in_a_message(np.zeros(1))
+_VIEW_ALONE = _holders_in_a_message(np.zeros(1).reshape(-1))
