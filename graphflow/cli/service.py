@@ -64,7 +64,7 @@ def call(
     wanted = registry.full_name(type_name)
     values_read = message_values(values)
     with View(domain_id()) as view:
-        if full not in view.cache.services():
+        if full not in view.cache.services(hidden=True):
             output.talk("waiting for service to become available...")
             try:
                 view.wait_for_service(full, min(timeout, 2.0))

@@ -8,7 +8,7 @@ from graphflow.names import did_you_mean
 
 NOT_YET = {
     "bag": "`graphflow topic echo TOPIC > FILE` keeps messages as text; `ros2 bag` records a graph over rmw_zenoh",
-    "component": "nodes that share a `process:` in a graph file run in one process",
+    "component standalone": "`graphflow run PACKAGE PLUGIN`",
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     "pkg": "`graphflow init NAME` makes a project; a node is a .py file",

@@ -15,6 +15,8 @@ EXECUTABLES = {
     ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
     ("demo_nodes_py", "talker"): "nodes.talker:Talker",
     ("demo_nodes_py", "listener"): "nodes.listener:Listener",
+    ("composition", "talker"): "nodes.talker:Talker",
+    ("composition", "listener"): "nodes.listener:Listener",
     ("lifecycle", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
     ("lifecycle", "lifecycle_listener"): "nodes.lifecycle_listener:LifecycleListener",
     ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",

@@ -265,11 +265,18 @@ class IncludeBlock(_Model):
         return {"file": data} if isinstance(data, str) else data
 
 
+class Net(_Model):
+    """What others may do over the network."""
+
+    allow_control: StrictBool = False
+
+
 class GraphFile(_Model):
     """A whole file."""
 
     name: Annotated[StrictStr, AfterValidator(_graph_name)] | None = None
     domain: StrictInt | None = Field(None, ge=0)
+    net: Net = Net()
     args: dict[str, Arg] = {}
     nodes: dict[str, NodeSpec] = {}
     steps: dict[str, StepSpec] = {}

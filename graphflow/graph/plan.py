@@ -90,6 +90,10 @@ class PlannedNode:
     """The state that a lifecycle node is brought to before it counts as ready; empty to leave it alone."""
     lifecycle_place: Place = NOWHERE
 
+    def to_json(self) -> dict[str, Any]:
+        """Plain data that `node_from_json` reads back."""
+        return asdict(self)
+
     def regrouping(self, file: str) -> Regrouping:
         """What the graph file says of the node's groups, and where.
 
@@ -138,6 +142,8 @@ class Plan:
     """Seconds that calls without a timeout of their own wait; None for ever."""
     strategy: str = "one_for_one"
     """What is started again with a process that has failed: it alone, `rest_for_one` or `one_for_all`."""
+    allow_control: bool = False
+    """Whether nodes may be loaded and unloaded over the network."""
     console: dict[str, Any] | None = None
     """The windows and panes that a console opens with, as `graph.console` reads them."""
 
@@ -197,6 +203,8 @@ class Plan:
             yield f"deadlock {self.deadlock}"
         if self.call_timeout != CALL_TIMEOUT:
             yield f"call_timeout {'never' if self.call_timeout is None else self.call_timeout}"
+        if self.allow_control:
+            yield "net allow_control"
         if self.strategy != "one_for_one":
             yield f"strategy {self.strategy}"
         for name, value in self.args.items():

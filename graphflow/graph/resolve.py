@@ -77,6 +77,7 @@ def _resolve(top: Item, path: Path, given: Sequence[str], env: Mapping[str, str]
         deadlock=model.deadlock,  # type: ignore[arg-type]  # its validator has looked
         call_timeout={None: CALL_TIMEOUT, "never": None}.get(model.call_timeout, model.call_timeout),
         strategy=model.strategy,
+        allow_control=model.net.allow_control,
         console=console,
     )
 

@@ -11,11 +11,11 @@ import threading
 import time
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
-from typing import Any
 
 from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import GraphflowError
 from graphflow.runtime.args import RosArgs, parse_ros_args
+from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
@@ -63,60 +63,13 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
             raise failure
 
 
-async def serve(
-    nodes: Sequence[Node],
-    context: Context,
-    stop: asyncio.Event,
-    ready: Callable[[Node], None] | None = None,
-) -> None:
+async def serve(nodes: Sequence[Node], context: Context, stop: asyncio.Event) -> None:
     """Run nodes until `stop` is set, one fails, or all have ended themselves. The caller then closes the context.
-
-    Args:
-        ready: Called with each node once it has started.
 
     Raises:
         Exception: What ended a node.
     """
-    async with AsyncExitStack() as stack:
-        asked = asyncio.create_task(stop.wait())
-        stack.callback(asked.cancel)
-        for node in nodes:
-            stack.push_async_callback(core_of(node).stop, withdraw=False)
-        if not await _start(nodes, context, asked, ready):
-            return
-        left = {asked, *(asyncio.create_task(core_of(node).wait_ended()) for node in nodes)}
-        for task in left:
-            stack.callback(task.cancel)
-        while left - {asked} and asked in left:
-            done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
-                task.result()
-
-
-async def _start(
-    nodes: Sequence[Node], context: Context, asked: asyncio.Task[bool], ready: Callable[[Node], None] | None
-) -> bool:
-    """Start nodes beside each other: one may wait for another's. Returns False when asked to stop before all are ready.
-
-    Raises:
-        Exception: One could not start; the others are cancelled then.
-    """
-    starting = {asyncio.create_task(core_of(node).start(context)): node for node in nodes}
-    left: set[asyncio.Task[Any]] = {asked, *starting}
-    try:
-        while asked in left and len(left) > 1:
-            done, left = await asyncio.wait(left, return_when=asyncio.FIRST_COMPLETED)
-            for task, node in starting.items():
-                if task in done and task.result() is None and ready is not None:
-                    ready(node)
-    finally:
-        for task in starting:
-            task.cancel()  # has no effect on one that is done
-        await asyncio.gather(*starting, return_exceptions=True)
-    for task in starting:
-        if not task.cancelled():
-            task.result()
-    return asked in left
+    await Company(context, stop).run(nodes)
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:

@@ -11,6 +11,8 @@ A door sends one request and reads lines until the supervisor closes the connect
     {"do": "down", "now": false}        -> events until the end, the last of them {"event": "end", "exit_code": n}
     {"do": "restart", "node": name}     -> {"event": "done"}, or {"event": "error", "message": text}
                                            likewise "start", "stop"
+    {"do": "load", "container": process, "node": {...}}    -> {"event": "loaded", "number": n, "node": name}
+    {"do": "unload", "container": process, "number": n}    -> the same: a node that has left the process
     {"do": "follow"}                    -> {"event": "hello", ...}, what has happened so far, then events as they come
 
 A `follow` with `"console": name` counts as a console. Whoever follows may send more requests: these, `announce` and
@@ -32,7 +34,8 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from graphflow.errors import GraphflowError, SupervisorError
-from graphflow.graph.plan import Plan
+from graphflow.graph.plan import Plan, node_from_json
+from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.system import is_portable, user_id
 
@@ -59,6 +62,9 @@ class Commands(Protocol):
     def restart(self, node: str, by: str, *, only_ended: bool = False) -> None: ...
 
     def stop(self, node: str, by: str) -> None: ...
+
+    @property
+    def components(self) -> Components: ...
 
     @property
     def doors(self) -> Doors: ...
@@ -137,9 +143,26 @@ class ControlServer:
             await self._down(writer, now=bool(request.get("now")))
         elif what == "follow":
             await self._follow(reader, writer, request)
+        elif what in ("load", "unload"):
+            _write(writer, await self._compose(request))
         else:
             _write(writer, self._do(request))
         await writer.drain()
+
+    async def _compose(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Load a node into a process, or unload one; returns the answer."""
+        components, container = self._commands.components, str(request.get("container"))
+        try:
+            if request["do"] == "load":
+                number, node = await components.load(container, node_from_json(request["node"]))
+            else:
+                number = int(request["number"])
+                node = await components.unload(container, number)
+        except SupervisorError as error:
+            return {"event": "error", "message": str(error)}
+        except (ValueError, KeyError, TypeError) as error:
+            return {"event": "error", "message": f"not a request: {error}"}
+        return {"event": "loaded", "number": number, "node": node}
 
     def _do(self, request: Any) -> dict[str, Any]:
         """Carry out a request that is done at once; returns the answer."""

@@ -134,6 +134,9 @@ class ForkingStarter:
             self._programs.add(process)
         self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
 
+    def tell(self, process: str, order: dict[str, Any]) -> None:
+        self._lines[0].send(do="tell", process=process, order=order)
+
     def terminate(self, process: str, pid: int) -> None:
         family.kill_group(pid, signal.SIGTERM)
 

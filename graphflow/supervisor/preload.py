@@ -9,6 +9,7 @@ The supervisor sends requests as lines of JSON over a socket pair and gets lines
     {"do": "log", "path": ...}                               (where its own errors go from now on)
     {"do": "spawn", "process": ..., "job": {...}, "log": ..., "env": {...}}
                                                              -> {"event": "spawned", "process": ..., "pid": ...}
+    {"do": "tell", "process": ..., "order": {...}}           (passed on to the worker, over a pipe of its own)
                                               and, at its end, {"event": "exited", "process": ..., "status": ...}
 """
 
@@ -30,6 +31,8 @@ from graphflow.supervisor.guardian import GRACE
 
 PROCESS_VARIABLE = "GRAPHFLOW_PROCESS"
 """What the programs that a worker starts inherit: the name of its process."""
+ORDER_BOUND = 1 << 16
+"""Bytes of an order to a worker: so many fit into an empty pipe (pipe(7))."""
 PROBE_LIMIT = 20.0
 """Seconds that importing all classes of a project may take."""
 _FRESH = ("PYTHON", "LD_", "MALLOC_")
@@ -78,6 +81,8 @@ class _Worker(NamedTuple):
     process: str
     log: str
     """The file to which its output goes, and that of what it starts."""
+    orders: int
+    """The descriptor by which it is told what to do; -1 for a foreign program."""
 
 
 class _Preload:
@@ -152,6 +157,8 @@ class _Preload:
                 self._answer({"event": "probed", "interfaces": self._probe_classes(request)})
             elif request["do"] == "log":
                 self._speak_to(request["path"])
+            elif request["do"] == "tell":
+                self._tell(request)
             else:
                 self._spawn(request)
 
@@ -197,14 +204,31 @@ class _Preload:
             import numpy  # noqa: F401 - once, for all workers
         return result
 
+    def _tell(self, request: dict[str, Any]) -> None:
+        """Pass an order on; a worker that reads none, stopped perhaps, gets none."""
+        line = json.dumps(request["order"]).encode() + b"\n"
+        for worker in self._workers.values():
+            if worker.process == request["process"] and worker.orders >= 0:
+                if len(line) > ORDER_BOUND:
+                    error = f"it is {len(line)} bytes long, and a process takes {ORDER_BOUND}"
+                elif _write_whole(worker.orders, line):
+                    return
+                else:
+                    error = "the process does not read what it is told"
+                order = {"order": request["order"]["order"], "node": "", "error": error}
+                self._answer({"event": "obeyed", "process": worker.process, **order})
+
     def _spawn(self, request: dict[str, Any]) -> None:
         fresh = any(name.startswith(_FRESH) for name in request["env"])
         parent = os.getpid()
+        orders = write = -1
         try:
             if "command" in request["job"]:
                 pid = _spawn_program(request)
             else:
-                pid = self._spawn_fresh(request) if fresh else os.fork()
+                orders, write = os.pipe()
+                os.set_blocking(write, False)
+                pid = self._spawn_fresh(request, orders) if fresh else os.fork()
         except (OSError, ValueError) as error:  # no memory, no free process, an impossible environment
             self._answer({"event": "failed", "process": request["process"], "error": f"cannot be started: {error}"})
             self._answer({"event": "exited", "process": request["process"], "pid": None, "status": 1})
@@ -212,34 +236,38 @@ class _Preload:
         if pid == 0:
             try:
                 self._channel.close()
-                self._be_worker(request, parent)
+                for fd in (write, *(worker.orders for worker in self._workers.values() if worker.orders >= 0)):
+                    os.close(fd)
+                self._be_worker(request, parent, orders)
             except BaseException:  # a forked child must not unwind into its parent's code
                 import traceback
 
                 traceback.print_exc()
             finally:
                 os._exit(70)
-        self._workers[pid] = _Worker(request["process"], request["log"])
+        if orders >= 0:
+            os.close(orders)
+        self._workers[pid] = _Worker(request["process"], request["log"], write)
         self._answer({"event": "spawned", "process": request["process"], "pid": pid})
 
-    def _be_worker(self, request: dict[str, Any], parent: int) -> None:
+    def _be_worker(self, request: dict[str, Any], parent: int, orders: int) -> None:
         from graphflow.supervisor import worker
 
         worker.become(request["log"], {**request["env"], PROCESS_VARIABLE: request["process"]}, parent)
         _reseed()
-        worker.main(request["job"], worker.PipeReporter(self._status))
+        worker.main(request["job"], worker.PipeReporter(self._status, orders))
 
-    def _spawn_fresh(self, request: dict[str, Any]) -> int:
+    def _spawn_fresh(self, request: dict[str, Any], orders: int) -> int:
         """A worker in a new interpreter, for environments that a running one cannot adopt."""
         log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with open(log, "ab") as out:
             child = subprocess.Popen(
-                [*_WORKER, str(self._status), str(os.getpid())],
+                [*_WORKER, str(self._status), str(orders), str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
                 env={**os.environ, **request["env"], PROCESS_VARIABLE: request["process"]},
-                pass_fds=[self._status],
+                pass_fds=[self._status, orders],
                 start_new_session=True,
             )
         assert child.stdin is not None
@@ -251,8 +279,10 @@ class _Preload:
 
     def _reap(self) -> None:
         ended = [(pid, self._workers.pop(pid), code) for pid, code in family.reaped() if pid in self._workers]
-        for pid, _, _ in ended:
+        for pid, worker, _ in ended:
             sweep(pid)
+            if worker.orders >= 0:
+                os.close(worker.orders)
         if ended:
             self._end_orphans()
         for pid, worker, code in ended:
@@ -320,6 +350,18 @@ def probe_result(data: bytes, done: bool, classes: list[str]) -> dict[str, Any]:
         return {path: {"problem": "the process that imported it died"} for path in classes}
     result: dict[str, Any] = json.loads(data)
     return result
+
+
+def _write_whole(fd: int, line: bytes) -> bool:
+    """Write a line to a pipe that is empty, so that all of it has room; returns whether it was."""
+    import fcntl  # which other systems do not have
+    import termios
+
+    unread = fcntl.ioctl(fd, termios.FIONREAD, bytes(4))
+    try:
+        return not any(unread) and os.write(fd, line) == len(line)
+    except BrokenPipeError:
+        return False
 
 
 def _nothing() -> None:

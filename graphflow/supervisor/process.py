@@ -37,6 +37,8 @@ class Process:
         """Since when it has said nothing, if that is too long."""
         self.waiting_for = {n.name for n in nodes}
         """Nodes that are not ready yet."""
+        self.numbers = {node.name: number for number, node in enumerate(nodes, 1)}
+        """The numbers by which nodes of the process are unloaded."""
         self.lifecycle: dict[str, str] = {}
         """The states of its lifecycle nodes."""
         self.error = ""
@@ -98,6 +100,7 @@ class Process:
                 "pid": self.pid,
                 "since": self.since,
                 "process": node.process,
+                "number": self.numbers[node.name],
                 "class": node.class_path or " ".join(node.command),
                 "log": self.log,
                 "restarts": max(0, self.starts - 1),
@@ -113,6 +116,7 @@ class Process:
         self.pid, self.exit, self.ready_since = None, None, None
         self.heard = self.silent_since = None
         self.lifecycle = {}
+        self.numbers = {node.name: number for number, node in enumerate(self.nodes, 1)}
         self.error = self.log_error = self.given_up = ""
         self.stop_asked = self.failed = False
         self.waiting_for = {n.name for n in self.nodes}

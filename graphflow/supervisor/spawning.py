@@ -126,6 +126,11 @@ class SpawningStarter:
                 logger.debug("%s has ended, its connection has not", process)
         self._heard({"event": "exited", "process": process, "status": status})
 
+    def tell(self, process: str, order: dict[str, Any]) -> None:
+        voice = self._voices.get(process)
+        if voice is not None:
+            voice.write(json.dumps(order).encode() + b"\n")
+
     def terminate(self, process: str, pid: int) -> None:
         voice = self._voices.get(process)
         if voice is not None:

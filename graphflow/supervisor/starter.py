@@ -13,6 +13,8 @@ Heard = Callable[[dict[str, Any]], None]
     {"event": "ready", "process": ..., "node": ...}
     {"event": "lifecycle", "process": ..., "node": ..., "state": ...}   of a lifecycle node that runs
     {"event": "beat", "process": ...}                      its event loop goes round
+    {"event": "obeyed", "process": ..., "order": ..., "node": ..., "number": ..., "error": ...}   see `orders`
+    {"event": "joined", "process": ..., "node": {...}, "number": ...}   and "left": see `container`
     {"event": "failed", "process": ..., "error": ...}
     {"event": "log_lost", "process": ..., "why": ...}
     {"event": "exited", "process": ..., "status": ...}     as subprocess gives it: negative for a signal; None: unknown
@@ -51,6 +53,9 @@ class Starter(Protocol):
             log: The file that its output is appended to.
             env: Variables it gets besides the supervisor's own.
         """
+
+    def tell(self, process: str, order: dict[str, Any]) -> None:
+        """Give a worker that is ready an order: see `orders`."""
 
     def terminate(self, process: str, pid: int) -> None:
         """Ask a worker to end."""

@@ -12,11 +12,12 @@ from typing import Any
 
 from graphflow import __version__
 from graphflow.errors import GraphflowError, SupervisorError
-from graphflow.graph.plan import Plan, PlannedStep
+from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
 from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, Order, State, step
 from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
+from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
 from graphflow.supervisor.process import Process
@@ -49,6 +50,7 @@ class Supervisor:
         self._processes = {
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
         }
+        self.components = Components(starter, list(self._processes.values()), self._member_changed)
         self._process_of = {n.name: p for p in self._processes.values() for n in p.nodes}
         self._met: set[Need] = set()
         """What has become of processes and steps."""
@@ -211,6 +213,8 @@ class Supervisor:
             process.heard = time.monotonic()
         elif what == "lifecycle":
             process.lifecycle[event["node"]] = event["state"]
+        elif what in ("obeyed", "joined", "left"):
+            self.components.heard(event)
         elif what == "failed":
             process.error = event["error"]
         elif what == "log_lost":
@@ -331,6 +335,7 @@ class Supervisor:
             "mode": self._mode,
             "deadlock": self.plan.deadlock,
             "call_timeout": self.plan.call_timeout,
+            "allow_control": self.plan.allow_control,
         }
         if process.command:
             job = {"command": list(process.command)}
@@ -338,7 +343,18 @@ class Supervisor:
         self._tell(event="starting", process=process.name, again=process.starts > 1)
         self._starter.spawn(process.name, job, process.log, env)
 
+    def _member_changed(self, process: Process, node: PlannedNode, joined: bool) -> None:
+        """A node was loaded into a process that runs, or unloaded: so it will be when that is started again."""
+        if joined:
+            self._process_of[node.name] = process
+            self._planned[node.name] = node.to_json()
+            self._tell(event="ready", node=node.name, pid=process.pid)
+        else:
+            del self._process_of[node.name], self._planned[node.name]
+            process.lifecycle.pop(node.name, None)
+
     def _process_ended(self, process: Process, was: State) -> None:
+        self.components.lost(process)
         asked = process.stop_asked or was in (State.STOPPING, State.PENDING, State.WAITING)
         early = was is State.STARTING and not asked
         if early and not process.error:

@@ -6,6 +6,7 @@ import asyncio
 import faulthandler
 import json
 import os
+import queue
 import select
 import signal
 import socket
@@ -21,16 +22,19 @@ from graphflow.errors import GraphflowError, TransitionFailed
 from graphflow.graph.check import resolver
 from graphflow.graph.plan import PlannedNode, node_from_json
 from graphflow.machines.lifecycle import LifecycleState
+from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.managed import ManagedCore
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
-from graphflow.runtime.run import catch_signals, serve
+from graphflow.runtime.run import catch_signals
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor import family, logfile
 from graphflow.supervisor.classes import add_root, import_class
+from graphflow.supervisor.container import Container
+from graphflow.supervisor.orders import Orders
 from graphflow.system import end_with_parent
 from graphflow.transport import loop
 
@@ -91,15 +95,19 @@ class Reporter(Protocol):
     def is_open(self) -> bool:
         """Whether something can be told without waiting for a supervisor that does not read."""
 
-    def on_stop(self, stop: Callable[[], object]) -> None:
-        """Call `stop`, on any thread, when the supervisor asks for the end over this line."""
+    def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
+        """Call `stop` when the supervisor asks for the end over this line, and `order` with each line that is an order.
+
+        They are called on the loop, which must run.
+        """
 
 
 class PipeReporter:
-    """Events go into a pipe that all workers share; to be stopped takes a signal."""
+    """Events go into a pipe that all workers share, orders come out of another; to be stopped takes a signal."""
 
-    def __init__(self, pipe: int) -> None:
-        self._pipe = pipe
+    def __init__(self, pipe: int, orders: int) -> None:
+        self._pipe, self._orders = pipe, orders
+        self._unread = b""
 
     def tell(self, **event: Any) -> None:
         # In one write: a pipe keeps lines of up to 4096 bytes together.
@@ -110,8 +118,17 @@ class PipeReporter:
     def is_open(self) -> bool:
         return bool(select.select([], [self._pipe], [], 0)[1])
 
-    def on_stop(self, stop: Callable[[], object]) -> None:
-        """Does nothing: signals stop this worker."""
+    def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
+        """Only for orders: signals stop this worker."""
+        asyncio.get_running_loop().add_reader(self._orders, self._read, order)
+
+    def _read(self, order: Callable[[bytes], object]) -> None:
+        data = os.read(self._orders, 1 << 16)
+        if not data:  # nobody is left who could say something
+            asyncio.get_running_loop().remove_reader(self._orders)
+        *lines, self._unread = (self._unread + data).split(b"\n")
+        for line in lines:
+            order(line)
 
 
 class SocketReporter:
@@ -120,8 +137,8 @@ class SocketReporter:
     def __init__(self, port: int, token: str, process: str) -> None:
         self._socket = socket.create_connection(("127.0.0.1", port), timeout=CONNECT_LIMIT)
         self._socket.settimeout(None)
-        self._asked = threading.Event()
-        self._stop: Callable[[], object] = lambda: None
+        self._heard: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self._wake: Callable[[], object] = lambda: None
         self.tell(token=token, process=process)
         threading.Thread(target=self._listen, name="graphflow-supervisor", daemon=True).start()
 
@@ -131,17 +148,23 @@ class SocketReporter:
     def is_open(self) -> bool:
         return bool(select.select([], [self._socket], [], 0)[1])
 
-    def on_stop(self, stop: Callable[[], object]) -> None:
-        self._stop = stop
-        if self._asked.is_set():
-            stop()
+    def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
+        loop = asyncio.get_running_loop()
+
+        def take() -> None:
+            while not self._heard.empty():
+                line = self._heard.get()
+                stop() if json.loads(line)["do"] == "stop" else order(line)
+
+        self._wake = lambda: loop.call_soon_threadsafe(take)
+        take()
 
     def _listen(self) -> None:
         # Not on the loop: even a node whose loop is blocked must not outlive its supervisor.
         with self._socket.makefile("rb") as lines, suppress(OSError):  # an error counts as the end
-            for _ in lines:
-                self._asked.set()
-                self._stop()
+            for line in lines:
+                self._heard.put(line)
+                self._wake()
         _end_children()
         os._exit(EXIT_ERROR)
 
@@ -159,8 +182,8 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     """Run a worker to its end; does not return.
 
     Args:
-        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`, and
-            `log`, the file that its output goes to.
+        job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`,
+            `allow_control` and `log`, the file that its output goes to.
     """
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
@@ -174,7 +197,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     code = 0
     try:
         add_root(job["root"])
-        nodes = [make_node(node_from_json(data), job["file"]) for data in job["nodes"]]
+        nodes = [_make(job, report, data) for data in job["nodes"]]
     except Exception as error:
         _log_failure(error)
         report.tell(event="failed", process=job["process"], error=_one_line(error))
@@ -190,25 +213,25 @@ def main(job: dict[str, Any], report: Reporter) -> None:
 async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
-    running = asyncio.get_running_loop()
-    report.on_stop(lambda: running.call_soon_threadsafe(stop.set))
     ready: list[Node] = []
 
     def is_ready(node: Node) -> None:
         ready.append(node)
         report.tell(event="ready", process=job["process"], node=node.full_name)
 
-    for node in nodes:
-        core = core_of(node)
-        if isinstance(core, ManagedCore):
-            core.on_state = partial(_tell_state, report, job["process"], node.full_name)
-
-    context = None
+    context = obeying = None
     beating = asyncio.create_task(_beat(report, job["process"]))
     try:
         rules = {"deadlock": job["deadlock"], "call_timeout": job["call_timeout"]}
         context = await Context.open(job["domain"], mode=job["mode"], checked=True, **rules)
-        await serve(nodes, context, stop, is_ready)
+        company = Company(context, stop, is_ready)
+        orders = Orders(company, partial(_make, job, report), partial(report.tell, process=job["process"]))
+        orders.count(nodes)
+        if job["allow_control"]:
+            Container(nodes[0], orders, job["process"], job["root"], report.tell)
+        report.listen(stop.set, orders.take)
+        obeying = asyncio.create_task(orders.run())
+        await company.run(nodes)
     except Exception as error:
         at_start = len(ready) < len(nodes)
         if at_start and not any(core_of(node).failure is error for node in nodes):  # which has logged it
@@ -218,9 +241,20 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         return EXIT_CONFIGURATION if at_start and is_for_good else EXIT_ERROR
     finally:
         beating.cancel()
+        if obeying is not None:
+            obeying.cancel()
         if context is not None:
             await context.close()
     return 0
+
+
+def _make(job: dict[str, Any], report: Reporter, described: dict[str, Any]) -> Node:
+    """A node of this worker."""
+    node = make_node(node_from_json(described), job["file"])
+    core = core_of(node)
+    if isinstance(core, ManagedCore):
+        core.on_state = partial(_tell_state, report, job["process"], node.full_name)
+    return node
 
 
 def _tell_state(report: Reporter, process: str, node: str, state: LifecycleState) -> None:
@@ -277,11 +311,12 @@ def _line_buffered() -> None:
 
 
 def _start() -> None:
-    """In an interpreter of its own: `PIPE PARENT` for the child of a preload process, else `PORT`; the job on stdin."""
+    """Begin in an interpreter of its own: `PIPE PIPE PARENT` under a preload process, else `PORT`; the job on stdin."""
     _line_buffered()
-    if len(sys.argv) == 3:
-        end_with_parent(int(sys.argv[2]), signal.SIGTERM)
-        main(json.load(sys.stdin), PipeReporter(int(sys.argv[1])))
+    if len(sys.argv) == 4:
+        status, orders, parent = map(int, sys.argv[1:])
+        end_with_parent(parent, signal.SIGTERM)
+        main(json.load(sys.stdin), PipeReporter(status, orders))
     given = json.load(sys.stdin)
     main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))
 

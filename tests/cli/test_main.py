@@ -15,7 +15,20 @@ from graphflow.cli.main import cli
 
 VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
 VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
-VERBS += ("demo", "node", "topic", "service", "action", "param", "lifecycle", "waits", "groups", "doctor", "console")
+VERBS += (
+    "demo",
+    "node",
+    "topic",
+    "service",
+    "action",
+    "param",
+    "component",
+    "lifecycle",
+    "waits",
+    "groups",
+    "doctor",
+    "console",
+)
 VERBS += ("interface",)
 
 

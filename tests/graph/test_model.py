@@ -26,7 +26,9 @@ def test_keys_are_those_written_in_files() -> None:
     words = "call set goal wait delay type request params after timeout if unless"
     assert keys_of(StepSpec) == words.split()
     assert keys_of(Arg) == ["default", "doc", "unit", "type", "choices"]
-    words = "name domain args nodes steps group for templates include override deadlock call_timeout strategy console"
+    words = (
+        "name domain net args nodes steps group for templates include override deadlock call_timeout strategy console"
+    )
     assert tuple(words.split()) == TOP_KEYS
     with pytest.raises(ValidationError):
         NodeSpec.model_validate({"class_": "a:B"})

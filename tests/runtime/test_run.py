@@ -13,6 +13,7 @@ from graphflow import Context, GraphflowError, Node, Param, Publisher, task, tim
 from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
+from graphflow.runtime.company import Company
 from graphflow.runtime.run import make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
@@ -244,7 +245,7 @@ async def test_serve_says_who_is_ready(graphflow_runner: asyncio.Runner) -> None
     ready: list[Node] = []
     first, wrong = Talker("first"), Talker("wrong", rat=1)
     with pytest.raises(GraphflowError, match="no parameter 'rat'"):
-        await serve([first, wrong], context_of(), asyncio.Event(), ready.append)
+        await Company(context_of(), asyncio.Event(), ready.append).run([first, wrong])
 
     assert ready == [first]
     assert not first.is_running

@@ -24,6 +24,7 @@ class Graph:
     """A graph of one node that is asked things, and tells nothing by itself."""
 
     plan = Plan("g", "g.yaml", "/", ())
+    components: Any = None
 
     def __init__(self) -> None:
         self.stopped: list[str] = []

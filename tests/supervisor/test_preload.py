@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from graphflow.supervisor.preload import PROBE_LIMIT, _reseed, probe_result, sweep
+from graphflow.supervisor.preload import ORDER_BOUND, PROBE_LIMIT, _reseed, _write_whole, probe_result, sweep
 from graphflow.system import is_portable
 from tests.cases import slow
 from tests.conftest import Machine, alive
@@ -97,3 +97,17 @@ def test_workers_have_random_numbers_of_their_own() -> None:
         drawn.append((random.random(), float(np.random.random())))
     assert drawn[0][0] != drawn[1][0]
     assert drawn[0][1] != drawn[1][1]
+
+
+@pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
+def test_an_order_goes_into_a_pipe_whole_or_not_at_all() -> None:
+    """Who starts the nodes never waits for one that does not read."""
+    read, write = os.pipe()
+    os.set_blocking(write, False)
+    line = b"x" * (ORDER_BOUND - 1) + b"\n"
+    assert _write_whole(write, line)
+    assert not _write_whole(write, b"more\n")
+    assert os.read(read, 2 * len(line)) == line
+    os.close(read)
+    assert not _write_whole(write, b"nobody reads\n")
+    os.close(write)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
@@ -109,7 +110,7 @@ def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
 def test_a_report_keeps_in_one_piece() -> None:
     """A pipe that many write to mixes lines that are longer: an error is cut, the rest is not."""
     read, write = os.pipe()
-    report = PipeReporter(write)
+    report = PipeReporter(write, -1)
     report.tell(event="ready", process="/a", node="/a")
     report.tell(event="failed", process="/a", error="x" * 10_000)
     os.close(write)
@@ -134,12 +135,12 @@ def until_it_has_listened() -> None:
             thread.join(10.0)
 
 
-def test_a_worker_that_is_asked_to_stop(ends: list[int]) -> None:
-    """It shows its token first; a line asks it to stop; when the line ends, so does it, at once."""
+async def test_a_worker_that_is_asked_to_stop(graphflow_runner: asyncio.Runner, ends: list[int]) -> None:
+    """It shows its token first; a line asks it to stop, others are orders; when the line ends, so does it, at once."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         report = SocketReporter(server.getsockname()[1], "secret", "/a")
-        stopped = threading.Event()
-        report.on_stop(stopped.set)
+        stopped, orders = asyncio.Event(), list[bytes]()
+        report.listen(stopped.set, orders.append)
         connection, _ = server.accept()
         with connection:
             report.tell(event="ready")
@@ -147,15 +148,17 @@ def test_a_worker_that_is_asked_to_stop(ends: list[int]) -> None:
                 assert json.loads(lines.readline()) == {"token": "secret", "process": "/a"}
                 assert json.loads(lines.readline()) == {"event": "ready"}
             assert not stopped.is_set()
-            connection.sendall(b'{"do": "stop"}\n')
-            assert stopped.wait(10.0)
+            connection.sendall(b'{"do": "load"}\n{"do": "stop"}\n')
+            async with asyncio.timeout(10.0):
+                await stopped.wait()
+            assert orders == [b'{"do": "load"}\n']
             assert ends == []
         until_it_has_listened()
     assert ends == [worker.EXIT_ERROR]
     report._socket.close()
 
 
-def test_a_worker_that_was_asked_before_it_could_stop(ends: list[int]) -> None:
+async def test_a_worker_that_was_asked_before_it_could_stop(graphflow_runner: asyncio.Runner, ends: list[int]) -> None:
     """It stops as soon as it can."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         report = SocketReporter(server.getsockname()[1], "secret", "/a")
@@ -164,9 +167,27 @@ def test_a_worker_that_was_asked_before_it_could_stop(ends: list[int]) -> None:
             connection.sendall(b'{"do": "stop"}\n')
         until_it_has_listened()
     stopped: list[bool] = []
-    report.on_stop(lambda: stopped.append(True))
+    report.listen(lambda: stopped.append(True), nothing)
     assert stopped == [True]
     report._socket.close()
+
+
+def nothing(line: bytes) -> None:
+    """No order is expected."""
+
+
+async def test_orders_come_over_a_pipe(graphflow_runner: asyncio.Runner) -> None:
+    """Whole lines, however they are cut; the end of the pipe is nothing."""
+    read, write = os.pipe()
+    heard: list[bytes] = []
+    PipeReporter(-1, read).listen(lambda: None, heard.append)
+    for part in (b'{"order": 1', b'}\n{"order"', b": 2}\n"):
+        os.write(write, part)
+        await asyncio.sleep(0.01)
+    os.close(write)
+    await asyncio.sleep(0.01)
+    assert heard == [b'{"order": 1}', b'{"order": 2}']
+    os.close(read)
 
 
 def test_an_error_in_one_line() -> None:

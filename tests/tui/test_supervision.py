@@ -25,6 +25,7 @@ class Graph:
     """A supervisor that remembers what it was asked."""
 
     plan = Plan("g", "g.yaml", "/", ())
+    components: Any = None
 
     def __init__(self) -> None:
         self.asked: list[str] = []

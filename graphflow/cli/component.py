@@ -1,0 +1,146 @@
+"""`graphflow component`: nodes are loaded into the processes of a running graph, and unloaded."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import Any
+
+import click
+
+from graphflow.cli import output
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import GraphFileError, SupervisorError, UsageFault
+from graphflow.graph.executables import EXECUTABLES
+from graphflow.graph.model import LOG_LEVELS
+from graphflow.names import did_you_mean
+from graphflow.supervisor import rundir
+from graphflow.supervisor.control import ControlClient
+
+ANSWER_LIMIT = 30.0
+"""Seconds that the supervisor has to answer."""
+_graph = click.option("--graph", help="Which graph, when several are running.")
+
+
+@click.group(cls=Verbs)
+def component() -> None:
+    """Load nodes into running processes, and unload them."""
+
+
+@component.command(name="list")
+@click.argument("container", metavar="[PROCESS]", required=False)
+@click.option("--containers-only", is_flag=True, help="Only the processes.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@_graph
+def list_(container: str | None, containers_only: bool, as_json: bool, graph: str | None) -> None:
+    """List the processes of a graph and the nodes in each."""
+    found = _containers(rundir.choose(graph).socket)
+    if container is not None:
+        name = container if container in found else f"/{container.lstrip('/')}"
+        if name not in found:
+            raise UsageFault(f"the graph has no process {container!r}{did_you_mean(container, found)}")
+        found = {name: found[name]}
+    if as_json:
+        output.as_json({name: {str(row["number"]): row["node"] for row in rows} for name, rows in found.items()})
+        return
+    for name, rows in found.items():
+        if container is None or containers_only:
+            output.data(name)
+        if not containers_only:
+            indent = "" if container is not None else "  "
+            output.lines(f"{indent}{row['number']}  {row['node']}" for row in rows)
+
+
+@component.command(short_help="Load a node into a running process.")
+@click.argument("container", metavar="PROCESS")
+@click.argument("what", metavar="MODULE:CLASS|PACKAGE")
+@click.argument("plugin", metavar="[PLUGIN]", required=False)
+@click.option("-n", "--node-name", help="Name of the node; else the class's.")
+@click.option("--node-namespace", default="/", help="Namespace of the node.")
+@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Least level that is logged.")
+@click.option("-r", "--remap-rule", "remaps", multiple=True, metavar="FROM:=TO", help="Remap a name.")
+@click.option("-p", "--parameter", "params", multiple=True, metavar="NAME:=VALUE", help="Set a parameter.")
+@click.option("-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="For ROS's sake; not used.")
+@_graph
+def load(
+    container: str,
+    what: str,
+    plugin: str | None,
+    node_name: str | None,
+    node_namespace: str,
+    log_level: str | None,
+    remaps: tuple[str, ...],
+    params: tuple[str, ...],
+    extra: tuple[str, ...],
+    graph: str | None,
+) -> None:
+    """Load a node into a running process: a class, or what ROS calls a plugin of a package.
+
+    PROCESS is the word after `process:` in the graph file, or a node that runs in the process.
+    """
+    from graphflow.cli.finding import find_class
+    from graphflow.domain import domain_id
+    from graphflow.introspect.view import refuse_taken_names
+    from graphflow.runtime.args import parse_ros_args
+    from graphflow.supervisor.joining import check_component, planned_component
+
+    run = rundir.choose(graph)
+    if plugin is not None and "::" in plugin:
+        plugin = plugin.rpartition("::")[2].lower()
+    cls, rest = find_class(what, [plugin] if plugin else [])
+    if rest:
+        raise UsageFault(f"{what}: write MODULE:CLASS, or PACKAGE PLUGIN")
+    words = [word for rule in remaps for word in ("-r", rule)] + [word for p in params for word in ("-p", p)]
+    ros = parse_ros_args(["--ros-args", *words])
+    interface = cls.interface()
+    node = planned_component(interface, node_name or interface.node_name, node_namespace, ros, log_level or "")
+    problems = check_component(node, interface)
+    if problems:
+        raise GraphFileError(problems)
+    refuse_taken_names([node.name], domain_id(), hint="give this one another name with -n NAME")
+    answer = _ask(run.socket, do="load", container=container, node=node.to_json())
+    if extra:
+        output.talk(f"{', '.join(extra)}: not needed: messages within a process are always handed over")
+    output.data(f"Loaded component {answer['number']} into '{container}' container node as '{answer['node']}'")
+
+
+@component.command()
+@click.argument("container", metavar="PROCESS")
+@click.argument("numbers", metavar="NUMBER...", nargs=-1, type=int, required=True)
+@_graph
+def unload(container: str, numbers: tuple[int, ...], graph: str | None) -> None:
+    """Unload nodes from a running process, by the numbers that `component list` shows."""
+    run = rundir.choose(graph)
+    for number in numbers:
+        _ask(run.socket, do="unload", container=container, number=number)
+        output.data(f"Unloaded component {number} from '{container}' container node")
+
+
+@component.command()
+@click.argument("package", required=False)
+def types(package: str | None) -> None:
+    """List the plugins of ROS's packages that are here; any class of a project can be loaded as well."""
+    packages = {known for known, _ in EXECUTABLES}
+    if package is not None and package not in packages:
+        raise UsageFault(f"there is no package {package!r} here{did_you_mean(package, packages)}")
+    for known in [package] if package else sorted(packages):
+        if package is None:
+            output.data(known)
+        indent = "" if package else "  "
+        output.lines(f"{indent}{name}" for of, name in EXECUTABLES if of == known)
+
+
+def _containers(socket: str) -> dict[str, list[dict[str, Any]]]:
+    """The rows of `ps` by process; a process of one node has its name."""
+    with ControlClient(socket) as client:
+        client.send(do="ps")
+        rows = next(client.receive(), {}).get("nodes", [])
+    return {name: list(found) for name, found in groupby(rows, lambda row: row["process"] or row["node"])}
+
+
+def _ask(socket: str, **request: Any) -> dict[str, Any]:
+    with ControlClient(socket) as client:
+        client.send(**request)
+        answer = next(client.receive(ANSWER_LIMIT), {"event": "error", "message": "the supervisor has gone"})
+    if answer["event"] == "error":
+        raise SupervisorError(answer["message"])
+    return answer

@@ -1,0 +1,107 @@
+"""`graphflow component`, on a running graph."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+GRAPH = "tests/programs/supervisor/components.yaml"
+
+
+def test_nodes_come_and_go(machine: Machine) -> None:
+    """In ROS 2's words; a process that is started again has the same nodes."""
+    machine.run("up", "-d", GRAPH)
+    assert machine.run("component", "list") == "tutorial\n  1  /talker\n  2  /listener\n/alone\n  1  /alone\n"
+    words = ("-n", "ear", "--node-namespace", "/room", "-r", "chatter:=/news", "--log-level", "WARN")
+    assert "Loaded component 3 into 'tutorial' container node as '/room/ear'" in machine.run(
+        "component", "load", "tutorial", "composition", "composition::Listener", *words
+    )
+    assert machine.run("component", "list", "tutorial") == "1  /talker\n2  /listener\n3  /room/ear\n"
+    assert machine.run("component", "list", "--containers-only") == "tutorial\n/alone\n"
+    assert "/news" in machine.run("node", "info", "/room/ear")
+    rows = {row["node"]: row for row in json.loads(machine.run("ps", "--json"))}
+    assert rows["/room/ear"]["pid"] == rows["/talker"]["pid"]
+    assert machine.run("component", "unload", "tutorial", "2", "1") == (
+        "Unloaded component 2 from 'tutorial' container node\nUnloaded component 1 from 'tutorial' container node\n"
+    )
+    assert machine.run("node", "list") == "/alone\n/room/ear\n"
+    machine.run("restart", "/room/ear")
+    assert json.loads(machine.run("component", "list", "--json")) == {
+        "tutorial": {"1": "/room/ear"},
+        "/alone": {"1": "/alone"},
+    }
+    machine.run("wait", "/room/ear")
+    assert "/room/ear" in machine.run("node", "list")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (("load", "tutorail", "nodes.talker:Talker", "-n", "x"), 1, "no process 'tutorail'; did you mean 'tutorial'?"),
+        (("load", "tutorial", "nodes.talker:Talker"), 1, "already in domain"),
+        (("load", "tutorial", "nodes.talker:Talker", "-n", "x", "-p", "rat:=1"), 2, "did you mean 'rate'?"),
+        (("load", "tutorial", "nodes.talker:Talkr", "-n", "x"), 2, "did you mean 'Talker'?"),
+        (("load", "tutorial", "composition", "composition::Talkr"), 2, "did you mean 'talker'?"),
+        (("unload", "tutorial", "7"), 1, "tutorial has no component 7; there is 1 /talker, 2 /listener"),
+        (("unload", "/alone", "1"), 1, "to end it: graphflow stop /alone"),
+        (("list", "/alon"), 2, "did you mean '/alone'?"),
+        (("types", "compositon"), 2, "did you mean 'composition'?"),
+        (("standalone", "a", "b"), 2, "meanwhile: graphflow run PACKAGE PLUGIN"),
+    ],
+)
+def test_mistakes(components: Machine, words: tuple[str, ...], code: int, told: str) -> None:
+    """Each is told with what to write instead, and changes nothing."""
+    assert told in components.run("component", *words, code=code)
+
+
+@pytest.fixture(scope="module")
+def components(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    """A machine on which the graph stands."""
+    made = Machine(tmp_path_factory.mktemp("components"))
+    made.run("up", "-d", GRAPH)
+    yield made
+    made.close()
+
+
+def test_a_process_that_is_stopped_takes_no_order(machine: Machine) -> None:
+    """Neither the supervisor nor the process that starts the nodes waits for it."""
+    machine.run("up", "-d", GRAPH)
+    pid = next(r["pid"] for r in json.loads(machine.run("ps", "--json")) if r["node"] == "/alone")
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        loading = machine.start("component", "load", "/alone", "nodes.listener:Listener", "-n", "ear")
+        time.sleep(0.5)
+        machine.run("component", "load", "tutorial", "nodes.listener:Listener", "-n", "other")
+        assert machine.run("component", "list", "tutorial").endswith("3  /other\n")
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    assert loading.wait() == 0
+    assert "as '/ear'" in loading.text
+
+
+def test_roses_services_where_the_graph_allows_them(machine: Machine) -> None:
+    """ROS 2's own tools load nodes, and `ps` knows of them; other graphs offer no such service."""
+    machine.run("up", "-d", "tests/programs/supervisor/controlled.yaml")
+    ask = ("service", "call", "/talker/_container/load_node", "composition_interfaces/srv/LoadNode")
+    name = "package_name: composition, node_name: ear, node_namespace: /room"
+    answer = machine.run(*ask, f"{{{name}, plugin_name: 'composition::Listener', remap_rules: ['chatter:=b']}}")
+    assert "full_node_name='/room/ear', unique_id=2" in answer
+    assert "/room/ear" in machine.run("ps")
+    answer = machine.run(*ask, f"{{{name}, plugin_name: 'composition::Listener'}}")
+    assert "success=False, error_message='there is a node /room/ear already'" in answer
+    answer = machine.run(*ask, "{package_name: composition, plugin_name: 'composition::Listner'}")
+    assert "there is no 'composition::Listner' of the package 'composition' here" in answer
+    unload = ("service", "call", "/talker/_container/unload_node", "composition_interfaces/srv/UnloadNode")
+    assert "success=False" in machine.run(*unload, "{unique_id: 1}")
+    assert "success=True" in machine.run(*unload, "{unique_id: 2}")
+    assert "/room/ear" not in machine.run("ps")
+    lists = ("service", "call", "/talker/_container/list_nodes", "composition_interfaces/srv/ListNodes")
+    assert "full_node_names=['/talker'], unique_ids=array([1])" in machine.run(*lists)
