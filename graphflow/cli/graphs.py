@@ -201,7 +201,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
         (
             row["graph"],
             row["node"],
-            (row["lifecycle"] or row["state"])
+            (row.get("lifecycle") or row["state"])
             + (f" ({shorten(row['detail'], DETAIL, placeholder=' ...')})" if row["detail"] else ""),
             str(row["pid"] or "-"),
             ago(now - row["since"]),

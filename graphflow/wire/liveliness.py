@@ -11,7 +11,7 @@ Source: rmw_zenoh design document, "Graph cache"; rmw_zenoh liveliness_utils.
 from __future__ import annotations
 
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from graphflow.names import join
@@ -107,6 +107,9 @@ def whole_number(text: str) -> int | None:
     return number if number <= _LARGEST else None
 
 
+_KINDS = {kind.value: kind for kind in Kind}
+
+
 def parse_token(token: str) -> Entity | None:
     """The entity that a token announces, or None when it announces none known here."""
     if len(token) > TOKEN_BOUND or not token.isprintable():
@@ -115,11 +118,11 @@ def parse_token(token: str) -> Entity | None:
     if len(parts) < 9 or parts[0] != ADMIN_SPACE or not all(parts):
         return None
     _, domain, zid, nid, eid, kind, enclave, namespace, node = parts[:9]
-    domain_, nid_, eid_ = whole_number(domain), whole_number(nid), whole_number(eid)
-    if kind not in Kind.__members__.values() or domain_ is None or nid_ is None or eid_ is None:
+    domain_, nid_, eid_, kind_ = whole_number(domain), whole_number(nid), whole_number(eid), _KINDS.get(kind)
+    if kind_ is None or domain_ is None or nid_ is None or eid_ is None:
         return None
-    head = (domain_, zid, nid_, eid_, Kind(kind), _demangle(namespace), node)
-    if kind == Kind.NODE:
+    head = (domain_, zid, nid_, eid_, kind_, _demangle(namespace), node)
+    if kind_ is Kind.NODE:
         entity = Entity(*head, enclave=_demangle(enclave))
     elif len(parts) < 13:
         return None
@@ -155,6 +158,7 @@ def qos_chunk(qos: Qos) -> str:
     )
 
 
+@lru_cache(maxsize=256)  # a graph uses few different ones, in thousands of tokens
 def parse_qos(chunk: str) -> Qos:
     """Read a QoS chunk; whatever is missing or not understood gets its default."""
     fields = [part.split(",") for part in chunk.split(":")]
