@@ -37,5 +37,6 @@ def graph_file(name: str, kind: str) -> Path:
 
 
 def heading(file: Path) -> str:
-    """What a graph file says of itself in its first line."""
-    return file.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
+    """What a graph file says of itself in its first line, or the second if the first is for editors."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    return lines[lines[0].startswith("# yaml-language-server:")].lstrip("# ")

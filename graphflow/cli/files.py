@@ -180,9 +180,9 @@ def schema() -> None:
 
     Save it, and begin a graph file with:  # yaml-language-server: $schema=graph.schema.json
     """
-    from graphflow.graph.schema import graph_schema
+    from graphflow.graph.schema import schema_text
 
-    output.as_json(graph_schema())
+    output.data(schema_text().rstrip())
 
 
 def _count(things: Sized, word: str) -> str:

@@ -79,6 +79,7 @@ if __name__ == "__main__":
     graphflow.run(Greeter)
 ''',
     "graphs/@name.yaml": """\
+# yaml-language-server: $schema=graph.schema.json
 args:
   text: {default: hello, doc: What the greeter says.}
 
@@ -111,6 +112,8 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 @click.argument("name")
 def init(name: str) -> None:
     """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test."""
+    from graphflow.graph.schema import schema_text
+
     folder = Path(name)
     word = folder.name
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", word):
@@ -122,4 +125,7 @@ def init(name: str) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text.replace("@name", word), encoding="utf-8")
         output.data(f"  {file}")
+    schema = folder / "graphs" / "graph.schema.json"
+    schema.write_text(schema_text(), encoding="utf-8")
+    output.data(f"  {schema}")
     output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{word}.yaml")

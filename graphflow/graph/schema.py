@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
@@ -58,3 +59,8 @@ def graph_schema() -> dict[str, Any]:
     assert set(node["properties"]) == set(keys_of(NodeSpec))
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A graph file of graphflow"}
     return {**schema, **head}
+
+
+def schema_text() -> str:
+    """The schema as it is saved beside graph files."""
+    return json.dumps(graph_schema(), indent=2) + "\n"

@@ -19,27 +19,27 @@ GRAPH = "tests/programs/supervisor/components.yaml"
 def test_nodes_come_and_go(machine: Machine) -> None:
     """In ROS 2's words; a process that is started again has the same nodes."""
     machine.run("up", "-d", GRAPH)
-    assert machine.run("component", "list") == "tutorial\n  1  /talker\n  2  /listener\n/alone\n  1  /alone\n"
+    assert machine.look("component", "list") == "tutorial\n  1  /talker\n  2  /listener\n/alone\n  1  /alone\n"
     words = ("-n", "ear", "--node-namespace", "/room", "-r", "chatter:=/news", "--log-level", "WARN")
-    assert "Loaded component 3 into 'tutorial' container node as '/room/ear'" in machine.run(
+    assert "Loaded component 3 into 'tutorial' container node as '/room/ear'" in machine.look(
         "component", "load", "tutorial", "composition", "composition::Listener", *words
     )
-    assert machine.run("component", "list", "tutorial") == "1  /talker\n2  /listener\n3  /room/ear\n"
-    assert machine.run("component", "list", "--containers-only") == "tutorial\n/alone\n"
-    assert "/news" in machine.run("node", "info", "/room/ear")
-    rows = {row["node"]: row for row in json.loads(machine.run("ps", "--json"))}
+    assert machine.look("component", "list", "tutorial") == "1  /talker\n2  /listener\n3  /room/ear\n"
+    assert machine.look("component", "list", "--containers-only") == "tutorial\n/alone\n"
+    assert "/news" in machine.look("node", "info", "/room/ear")
+    rows = {row["node"]: row for row in json.loads(machine.look("ps", "--json"))}
     assert rows["/room/ear"]["pid"] == rows["/talker"]["pid"]
-    assert machine.run("component", "unload", "tutorial", "2", "1") == (
+    assert machine.look("component", "unload", "tutorial", "2", "1") == (
         "Unloaded component 2 from 'tutorial' container node\nUnloaded component 1 from 'tutorial' container node\n"
     )
-    assert machine.run("node", "list") == "/alone\n/room/ear\n"
-    machine.run("restart", "/room/ear")
-    assert json.loads(machine.run("component", "list", "--json")) == {
+    assert machine.look("node", "list") == "/alone\n/room/ear\n"
+    machine.look("restart", "/room/ear")
+    assert json.loads(machine.look("component", "list", "--json")) == {
         "tutorial": {"1": "/room/ear"},
         "/alone": {"1": "/alone"},
     }
-    machine.run("wait", "/room/ear")
-    assert "/room/ear" in machine.run("node", "list")
+    machine.look("wait", "/room/ear")
+    assert "/room/ear" in machine.look("node", "list")
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
 )
 def test_mistakes(components: Machine, words: tuple[str, ...], code: int, told: str) -> None:
     """Each is told with what to write instead, and changes nothing."""
-    assert told in components.run("component", *words, code=code)
+    assert told in components.look("component", *words, code=code)
 
 
 @pytest.fixture(scope="module")
@@ -74,13 +74,13 @@ def components(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 def test_a_process_that_is_stopped_takes_no_order(machine: Machine) -> None:
     """Neither the supervisor nor the process that starts the nodes waits for it."""
     machine.run("up", "-d", GRAPH)
-    pid = next(r["pid"] for r in json.loads(machine.run("ps", "--json")) if r["node"] == "/alone")
+    pid = next(r["pid"] for r in json.loads(machine.look("ps", "--json")) if r["node"] == "/alone")
     os.kill(pid, signal.SIGSTOP)
     try:
         loading = machine.start("component", "load", "/alone", "nodes.listener:Listener", "-n", "ear")
         time.sleep(0.5)
-        machine.run("component", "load", "tutorial", "nodes.listener:Listener", "-n", "other")
-        assert machine.run("component", "list", "tutorial").endswith("3  /other\n")
+        machine.look("component", "load", "tutorial", "nodes.listener:Listener", "-n", "other")
+        assert machine.look("component", "list", "tutorial").endswith("3  /other\n")
     finally:
         os.kill(pid, signal.SIGCONT)
     assert loading.wait() == 0
@@ -92,16 +92,16 @@ def test_roses_services_where_the_graph_allows_them(machine: Machine) -> None:
     machine.run("up", "-d", "tests/programs/supervisor/controlled.yaml")
     ask = ("service", "call", "/talker/_container/load_node", "composition_interfaces/srv/LoadNode")
     name = "package_name: composition, node_name: ear, node_namespace: /room"
-    answer = machine.run(*ask, f"{{{name}, plugin_name: 'composition::Listener', remap_rules: ['chatter:=b']}}")
+    answer = machine.look(*ask, f"{{{name}, plugin_name: 'composition::Listener', remap_rules: ['chatter:=b']}}")
     assert "full_node_name='/room/ear', unique_id=2" in answer
-    assert "/room/ear" in machine.run("ps")
-    answer = machine.run(*ask, f"{{{name}, plugin_name: 'composition::Listener'}}")
+    assert "/room/ear" in machine.look("ps")
+    answer = machine.look(*ask, f"{{{name}, plugin_name: 'composition::Listener'}}")
     assert "success=False, error_message='there is a node /room/ear already'" in answer
-    answer = machine.run(*ask, "{package_name: composition, plugin_name: 'composition::Listner'}")
+    answer = machine.look(*ask, "{package_name: composition, plugin_name: 'composition::Listner'}")
     assert "there is no 'composition::Listner' of the package 'composition' here" in answer
     unload = ("service", "call", "/talker/_container/unload_node", "composition_interfaces/srv/UnloadNode")
-    assert "success=False" in machine.run(*unload, "{unique_id: 1}")
-    assert "success=True" in machine.run(*unload, "{unique_id: 2}")
-    assert "/room/ear" not in machine.run("ps")
+    assert "success=False" in machine.look(*unload, "{unique_id: 1}")
+    assert "success=True" in machine.look(*unload, "{unique_id: 2}")
+    assert "/room/ear" not in machine.look("ps")
     lists = ("service", "call", "/talker/_container/list_nodes", "composition_interfaces/srv/ListNodes")
-    assert "full_node_names=['/talker'], unique_ids=array([1])" in machine.run(*lists)
+    assert "full_node_names=['/talker'], unique_ids=array([1])" in machine.look(*lists)

@@ -16,28 +16,28 @@ LISTED = "- {} [{}]\n\tStart: {}\n\tGoal: {}\n"
 def test_a_life(machine: Machine) -> None:
     """The supervisor brings the node up; the verbs bring it down and up again, in ROS 2's words."""
     machine.run("up", "-d", "graphs/lifecycle.yaml")
-    assert machine.run("lifecycle", "nodes") == "/lc_talker\n"
-    assert machine.run("lifecycle", "nodes", "-c") == "1\n"
-    assert machine.run("lifecycle", "get", "/lc_talker") == "active [3]\n"
-    assert machine.run("lifecycle", "get") == "/lc_talker: active [3]\n"
-    assert "active " in machine.run("ps")
-    assert "ready, active for" in machine.run("status", "/lc_talker")
-    assert machine.run("lifecycle", "list", "lc_talker") == (
+    assert machine.look("lifecycle", "nodes") == "/lc_talker\n"
+    assert machine.look("lifecycle", "nodes", "-c") == "1\n"
+    assert machine.look("lifecycle", "get", "/lc_talker") == "active [3]\n"
+    assert machine.look("lifecycle", "get") == "/lc_talker: active [3]\n"
+    assert "active " in machine.look("ps")
+    assert "ready, active for" in machine.look("status", "/lc_talker")
+    assert machine.look("lifecycle", "list", "lc_talker") == (
         LISTED.format("deactivate", 4, "active", "deactivating")
         + LISTED.format("shutdown", 7, "active", "shuttingdown")
     )
-    assert len(json.loads(machine.run("lifecycle", "list", "lc_talker", "-a", "--json"))) == 25
+    assert len(json.loads(machine.look("lifecycle", "list", "lc_talker", "-a", "--json"))) == 25
     for transition in ("deactivate", "2", "configure"):
-        assert machine.run("lifecycle", "set", "/lc_talker", transition) == "Transitioning successful\n"
-    assert json.loads(machine.run("lifecycle", "get", "--json")) == {"/lc_talker": {"id": 2, "label": "inactive"}}
-    assert "inactive " in machine.run("ps")
-    told = machine.run("lifecycle", "set", "/lc_talker", "configure", code=1)
+        assert machine.look("lifecycle", "set", "/lc_talker", transition) == "Transitioning successful\n"
+    assert json.loads(machine.look("lifecycle", "get", "--json")) == {"/lc_talker": {"id": 2, "label": "inactive"}}
+    assert "inactive " in machine.look("ps")
+    told = machine.look("lifecycle", "set", "/lc_talker", "configure", code=1)
     assert "Unknown transition requested, available ones are:\n- cleanup [2]\n- activate [3]\n- shutdown [6]" in told
-    assert "error: /lc_listener has no life cycle; those that do: /lc_talker" in machine.run(
+    assert "error: /lc_listener has no life cycle; those that do: /lc_talker" in machine.look(
         "lifecycle", "get", "/lc_listener", code=2
     )
-    machine.run("down")
-    log = machine.run("logs", "--node", "/lc_talker")
+    machine.look("down")
+    log = machine.look("logs", "--node", "/lc_talker")
     assert "on_cleanup() is called after" in log
     assert log.count("on_shutdown() is called.") == 1
 
@@ -51,13 +51,13 @@ def test_a_node_that_cannot_be_brought_up(machine: Machine) -> None:
 def test_a_transition_that_is_refused(machine: Machine) -> None:
     """`set` fails, and says where the reason is."""
     machine.run("up", "-d", "tests/programs/supervisor/refusing.yaml", "state:=unconfigured")
-    told = machine.run("lifecycle", "set", "/camera", "configure", code=1)
+    told = machine.look("lifecycle", "set", "/camera", "configure", code=1)
     assert told.startswith("Transitioning failed\nerror: /camera is unconfigured; its log says why: graphflow logs")
-    assert "on_configure refused: no camera" in machine.run("logs", "--node", "/camera")
+    assert "on_configure refused: no camera" in machine.look("logs", "--node", "/camera")
 
 
 def test_members_of_a_group_without_a_life_cycle(machine: Machine) -> None:
     """A group's `lifecycle:` is for those of its nodes that have one; one that fits none is a mistake."""
-    assert machine.run("check", "tests/programs/supervisor/managed_group.yaml").startswith("tests/programs")
-    told = machine.run("check", "tests/programs/supervisor/unmanaged.yaml", code=2)
+    assert machine.look("check", "tests/programs/supervisor/managed_group.yaml").startswith("tests/programs")
+    told = machine.look("check", "tests/programs/supervisor/unmanaged.yaml", code=2)
     assert "unmanaged.yaml:5:16: Talker has no life cycle: derive it from LifecycleNode" in told

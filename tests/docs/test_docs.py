@@ -283,7 +283,20 @@ def test_definitions(page: Path, project: Path) -> None:
         assert registry.interface(block.options["file"].removeprefix("interfaces/").rpartition(".")[0])
 
 
-LONG = {"README", "running", "groups", "actions", "parameters", "graphs", "testing", "names", "interfaces", "console"}
+LONG = {
+    "README",
+    "running",
+    "lifecycle",
+    "composition",
+    "groups",
+    "actions",
+    "parameters",
+    "graphs",
+    "testing",
+    "names",
+    "interfaces",
+    "console",
+}
 LONG |= {"topics", "services"}
 """Pages whose commands take seconds: they run with `--cases full`, as in CI."""
 

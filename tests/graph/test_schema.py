@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 
 from graphflow.graph import source
-from graphflow.graph.schema import graph_schema
+from graphflow.graph.schema import graph_schema, schema_text
 from tests.conftest import PROJECT
 
 VALIDATOR = jsonschema.Draft202012Validator(graph_schema())
@@ -23,6 +23,19 @@ def faults(text: str) -> list[Any]:
 def test_it_is_a_schema() -> None:
     """By the rules of JSON Schema itself."""
     jsonschema.Draft202012Validator.check_schema(graph_schema())
+
+
+def test_it_is_saved_beside_our_graphs() -> None:
+    """For editors; `graphflow schema > graphs/graph.schema.json` writes it anew."""
+    assert (PROJECT / "graphs" / "graph.schema.json").read_text() == schema_text()
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(PROJECT / "graphs")))
+def test_editors_find_it(file: Path) -> None:
+    """Each of our files says where it is in its first line."""
+    before, _, path = file.read_text().partition("\n")[0].partition("$schema=")
+    assert before == "# yaml-language-server: "
+    assert (file.parent / path).resolve() == PROJECT / "graphs" / "graph.schema.json"
 
 
 @pytest.mark.parametrize("file", FILES, ids=[str(f.relative_to(PROJECT / "graphs")) for f in FILES])

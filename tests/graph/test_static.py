@@ -47,7 +47,7 @@ def test_what_is_told_says_where_and_what_to_do() -> None:
     """The line of the await, the chain of calls, and the line of a graph file that ends it."""
     [certain] = found(FOLDER / "self_call_broken.yaml")
     assert "nodes/deadlock/self_call.py:18: CERTAIN: timer tick of /narcissus awaits /narcissus/add" in certain
-    assert certain.endswith("self_call_broken.yaml:5 /narcissus: {concurrency: {add_group: [add]}}")
+    assert certain.endswith("self_call_broken.yaml:6 /narcissus: {concurrency: {add_group: [add]}}")
     [possible] = found(FOLDER / "crossing_broken.yaml")
     assert "timer greet of /left holds group 'default_group' of /left and awaits /right/how_are_you" in possible
     [recursion] = found(FOLDER / "recursion_broken.yaml")
