@@ -16,6 +16,7 @@ from graphflow.introspect import concurrency as found
 from graphflow.introspect.health import examine
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
+from graphflow.names import is_hidden
 from graphflow.wire.process import NUMBERS, answer_key
 
 ANSWER_LIMIT = 1.0
@@ -195,6 +196,6 @@ def doctor(as_json: bool) -> int:
         if read.unreadable:
             output.data(f"processes running another version of graphflow, not understood: {read.unreadable}")
         if not any(faults.values()) and not late:
-            count = len(read.nodes)
+            count = sum(not is_hidden(name) for name in read.nodes)
             output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
     return exits.FAILED if any(faults.values()) else exits.OK

@@ -291,6 +291,7 @@ class _Launch:
 
         from graphflow.supervisor import control as controlling
         from graphflow.supervisor import rundir
+        from graphflow.supervisor.mirror import mirror
         from graphflow.supervisor.supervisor import Supervisor
 
         supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
@@ -310,6 +311,7 @@ class _Launch:
         linked = asyncio.create_task(context.wait_linked())
         kept = asyncio.create_task(_keep_reachable(supervisor, control, directory, run))
         warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
+        mirrored = asyncio.create_task(mirror(supervisor, context))
         watching = asyncio.create_task(_watch(supervisor, plan, interfaces)) if self._is_watching else None
         try:
             code = await supervisor.run()
@@ -319,6 +321,7 @@ class _Launch:
             linked.cancel()
             kept.cancel()
             warned.cancel()
+            mirrored.cancel()
             if watching is not None:
                 watching.cancel()
             await control.close()

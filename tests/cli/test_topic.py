@@ -21,7 +21,8 @@ def test_list(standing: Machine) -> None:
     assert standing.look("topic", "list").split() == VISIBLE
     assert standing.look("topic", "list", "-t").splitlines()[:2] == [f"{name} [{STRING}]" for name in VISIBLE[:2]]
     assert standing.look("topic", "list", "-c") == "4\n"
-    assert standing.look("topic", "list", "--include-hidden-topics").split() == sorted([*VISIBLE, *HIDDEN])
+    hidden = [*HIDDEN, "/standing/_supervisor/states"]
+    assert standing.look("topic", "list", "--include-hidden-topics").split() == sorted([*VISIBLE, *hidden])
     assert json.loads(standing.look("topic", "list", "--json"))["/chatter"] == [STRING]
 
 
