@@ -41,6 +41,9 @@ PS_LIMIT = 1.0
 )
 @click.option("--replace", is_flag=True, help="Stop the graph first, if it is running.")
 @click.option("--watch", is_flag=True, help="Restart nodes when their source changes.")
+@click.option(
+    "--debug", multiple=True, metavar="NODE", help="Start this node's process under debugpy; may be repeated."
+)
 @click.option("--domain", type=click.IntRange(0), help="Domain id; overrides the file's.")
 @click.option("--wire", type=click.Choice(PROFILES), help="ROS 2 distribution whose message definitions to use.")
 @reach_options
@@ -55,6 +58,7 @@ def up(
     only: tuple[str, ...],
     replace: bool,
     watch: bool,
+    debug: tuple[str, ...],
     domain: int | None,
     wire: str | None,
     connect: tuple[str, ...],
@@ -82,7 +86,7 @@ def up(
     from graphflow.supervisor.launch import launch
 
     uses_console = not detach and not no_console and output.is_terminal()
-    report, launched = launch(path, list(args), domain, only, watch=watch)
+    report, launched = launch(path, list(args), domain, only, debug, watch=watch)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
         return int(report["exit_code"])

@@ -89,6 +89,8 @@ class PlannedNode:
     lifecycle: str = ""
     """The state that a lifecycle node is brought to before it counts as ready; empty to leave it alone."""
     lifecycle_place: Place = NOWHERE
+    is_debugged: bool = False
+    """Whether its process waits for a debugger."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain data that `node_from_json` reads back."""
@@ -246,7 +248,18 @@ def _after_line(after: Mapping[str, str]) -> Iterator[str]:
         yield f"  after    {', '.join(names)}"
 
 
-_PLAIN = ("name", "class_path", "process", "env", "after", "on_exit", "critical", "log_level", "lifecycle")
+_PLAIN = (
+    "name",
+    "class_path",
+    "process",
+    "env",
+    "after",
+    "on_exit",
+    "critical",
+    "log_level",
+    "lifecycle",
+    "is_debugged",
+)
 
 
 def node_from_json(data: dict[str, Any]) -> PlannedNode:

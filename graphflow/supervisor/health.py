@@ -50,7 +50,7 @@ class Health:
         was_held_up = now - self._looked > 2 * LOOK_EVERY
         self._looked = now
         for process in self._processes:
-            if process.state is not State.READY or process.heard is None:
+            if process.state is not State.READY or process.heard is None or process.is_debugged:
                 process.silent_since = None
             elif now - process.heard <= SILENCE:
                 if process.silent_since is not None:

@@ -62,7 +62,13 @@ class Launched(NamedTuple):
 
 
 def launch(
-    file: Path, given: list[str], domain: int | None, only: Sequence[str] = (), *, watch: bool = False
+    file: Path,
+    given: list[str],
+    domain: int | None,
+    only: Sequence[str] = (),
+    debug: Sequence[str] = (),
+    *,
+    watch: bool = False,
 ) -> tuple[Report, Launched]:
     """Start a supervisor for a graph file; returns when the graph is being brought up, or has been refused.
 
@@ -71,13 +77,16 @@ def launch(
         given: `name:=value` arguments.
         domain: See `domain.domain_id`.
         only: Nodes that are wanted, if not all are.
+        debug: Nodes whose processes wait for a debugger.
         watch: Start nodes again when their source changes.
 
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
     begin = _begin_portable if is_portable() else _begin_forked
-    begun = begin({"file": str(file), "given": given, "domain": domain, "only": list(only), "watch": watch})
+    begun = begin(
+        {"file": str(file), "given": given, "domain": domain, "only": list(only), "debug": list(debug), "watch": watch}
+    )
     data = b""
     try:
         while not data.endswith(b"\n") and (chunk := os.read(begun.report, 65536)):
@@ -176,7 +185,7 @@ class _Launch:
 
     def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1) -> None:
         self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
-        self._is_watching = bool(job["watch"])
+        self._is_watching, self._debug = bool(job["watch"]), job["debug"]
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._starter: Starter
 
@@ -232,10 +241,13 @@ class _Launch:
         from graphflow.graph.project import add_interfaces
         from graphflow.graph.resolve import load
         from graphflow.supervisor.classes import read_interfaces
+        from graphflow.supervisor.debugging import debugged
 
         plan = load(self._file, self._given)
         if self._only:
             plan = plan.only(self._only)
+        if self._debug:
+            plan = debugged(plan, self._debug)
         add_interfaces(Path(plan.root))
         domain = domain_id(self._domain if self._domain is not None else plan.domain)
         self._starter.begin_probe(plan.classes(), plan.root)

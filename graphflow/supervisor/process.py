@@ -58,6 +58,7 @@ class Process:
         policies = [node.restart for node in nodes if node.restart != BACKOFF]
         self.restarts = Restarts(policies[0] if policies else BACKOFF)
         self.ends_graph = any(node.on_exit == "shutdown" for node in nodes)
+        self.is_debugged = any(node.is_debugged for node in nodes)
         self.is_critical = any(node.critical for node in nodes)
 
     @property

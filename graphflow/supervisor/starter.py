@@ -12,6 +12,7 @@ Heard = Callable[[dict[str, Any]], None]
     {"event": "spawned", "process": ..., "pid": ...}
     {"event": "ready", "process": ..., "node": ...}
     {"event": "lifecycle", "process": ..., "node": ..., "state": ...}   of a lifecycle node that runs
+    {"event": "debugging", "process": ..., "port": ...}    it waits for a debugger there
     {"event": "beat", "process": ...}                      its event loop goes round
     {"event": "obeyed", "process": ..., "order": ..., "node": ..., "number": ..., "error": ...}   see `orders`
     {"event": "joined", "process": ..., "node": {...}, "number": ...}   and "left": see `container`

@@ -17,6 +17,7 @@ from graphflow.machines.process import ALARMS, Do, Event, Exit, Need, Order, Sta
 from graphflow.machines.restarts import Again, GiveUp
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
+from graphflow.supervisor import debugging
 from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
@@ -213,6 +214,8 @@ class Supervisor:
             process.heard = time.monotonic()
         elif what == "lifecycle":
             process.lifecycle[event["node"]] = event["state"]
+        elif what == "debugging":
+            self.note(debugging.invitation(process.name, event["port"]))
         elif what in ("obeyed", "joined", "left"):
             self.components.heard(event)
         elif what == "failed":
@@ -293,6 +296,8 @@ class Supervisor:
                 process.alarm.cancel()
                 process.alarm = None
             delay = process.delay if process.state is State.WAITING else ALARMS.get(process.state)
+            if process.is_debugged and process.state is State.STARTING:
+                delay = None  # whoever debugs it has all the time in the world
             if delay is not None:
                 process.alarm = self._context.loop.call_later(delay, self._happen, process, Event.LATE)
         if was in (State.RESTARTING, State.RESETTING) and event is Event.EXIT and process.state is not State.ENDED:
@@ -336,6 +341,7 @@ class Supervisor:
             "deadlock": self.plan.deadlock,
             "call_timeout": self.plan.call_timeout,
             "allow_control": self.plan.allow_control,
+            "debug": process.is_debugged,
         }
         if process.command:
             job = {"command": list(process.command)}

@@ -31,7 +31,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.run import catch_signals
 from graphflow.runtime.surroundings import Surroundings, make_within
-from graphflow.supervisor import family, logfile
+from graphflow.supervisor import debugging, family, logfile
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.supervisor.container import Container
 from graphflow.supervisor.orders import Orders
@@ -183,7 +183,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
 
     Args:
         job: `nodes` (as of Plan.to_json), `file`, `root`, `process`, `domain`, `mode`, `deadlock`, `call_timeout`,
-            `allow_control` and `log`, the file that its output goes to.
+            `allow_control`, `debug` and `log`, the file that its output goes to.
     """
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
@@ -196,6 +196,8 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     setup_console()
     code = 0
     try:
+        if job["debug"]:
+            debugging.wait_for_debugger(partial(report.tell, event="debugging", process=job["process"]))
         add_root(job["root"])
         nodes = [_make(job, report, data) for data in job["nodes"]]
     except Exception as error:
@@ -224,6 +226,8 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
     try:
         rules = {"deadlock": job["deadlock"], "call_timeout": job["call_timeout"]}
         context = await Context.open(job["domain"], mode=job["mode"], checked=True, **rules)
+        if job["debug"]:
+            context.search.watchdog.close()  # a loop that stands at a breakpoint is not blocked
         company = Company(context, stop, is_ready)
         orders = Orders(company, partial(_make, job, report), partial(report.tell, process=job["process"]))
         orders.count(nodes)
