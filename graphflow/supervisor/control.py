@@ -108,6 +108,10 @@ class ControlServer:
         except TimeoutError:
             return
 
+    def expect_nobody(self) -> None:
+        """The command that started the graph has gone: no door will come to hear how it ends."""
+        self._followed.set()
+
     async def close(self) -> None:
         """Stop listening, and let open connections send what is waiting."""
         if self._server is not None:

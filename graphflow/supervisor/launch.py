@@ -167,11 +167,13 @@ class _Lifeline:
 
 def _end_at_once(directory: RunDirectory | None = None) -> None:
     """End this process, whatever it is doing, before it has started anything."""
-    try:
-        if directory is not None:
-            directory.release()
-    finally:
+    if directory is None:
         os._exit(1)
+    with directory.changing:  # and so nothing comes into the directory any more
+        try:
+            directory.release()
+        finally:
+            os._exit(1)
 
 
 class _Launch:
@@ -268,8 +270,8 @@ class _Launch:
         from graphflow.supervisor import rundir
 
         directory = rundir.RunDirectory(domain, plan.name)
-        directory.claim()
         self._lifeline.on_cut(partial(_end_at_once, directory))
+        directory.claim()
         try:
             names = [n.name for n in plan.nodes]
             refuse_taken_names(names, domain)
@@ -307,15 +309,19 @@ class _Launch:
         from graphflow.supervisor.supervisor import Supervisor
 
         supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
+        control = controlling.ControlServer(supervisor)
+
+        def cut() -> None:
+            control.expect_nobody()
+            supervisor.begin_stop(now=False, reason=GONE)
+
+        self._lifeline.on_cut(lambda: context.loop.call_soon_threadsafe(cut))
         _tell_notes(supervisor.note)
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
-        control = controlling.ControlServer(supervisor)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
-        cut = partial(supervisor.begin_stop, now=False, reason=GONE)
-        self._lifeline.on_cut(lambda: context.loop.call_soon_threadsafe(cut))
         classes = {path: str(interface.place) for path, interface in interfaces.items()}
         self._report(ok=True, run=run.__dict__, classes=classes)
         os.close(self._report_pipe)

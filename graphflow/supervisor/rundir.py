@@ -17,6 +17,7 @@ import os
 import stat
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
@@ -184,6 +185,8 @@ class RunDirectory:
     def __init__(self, domain: int, graph: str) -> None:
         self.path = runtime_root() / str(domain) / graph
         self._lock: int | None = None
+        self.changing = threading.RLock()
+        """Held by the thread that makes, fills or removes the directory: another may be ending this process."""
 
     def claim(self) -> None:
         """Take the directory for this process.
@@ -191,6 +194,10 @@ class RunDirectory:
         Raises:
             SupervisorError: The graph is already running, or the directory cannot be made.
         """
+        with self.changing:
+            self._claim()
+
+    def _claim(self) -> None:
         # Next to the directory, and never removed: the process that holds the lock on this one file owns the directory.
         lock = _lock_of(self.path)
         try:
@@ -219,6 +226,10 @@ class RunDirectory:
         Raises:
             SupervisorError: Another graph of this user, domain and rendezvous has claimed some of them.
         """
+        with self.changing:
+            self._claim_names(names)
+
+    def _claim_names(self, names: Iterable[str]) -> None:
         root, endpoint = self.path.parents[1], rendezvous_endpoint()
         guard = os.open(root / "names.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
         try:
@@ -247,9 +258,11 @@ class RunDirectory:
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
             raise SupervisorError(f"{self.path}: {error.strerror}") from None
-        if self._lock is not None:
-            os.close(self._lock)
-        self.claim()
+        with self.changing:
+            if self._lock is not None:
+                os.close(self._lock)
+                self._lock = None
+            self.claim()
 
     @property
     def socket(self) -> Path:
@@ -267,11 +280,19 @@ class RunDirectory:
     def write(self, run: GraphRun) -> None:
         """Write the run file, whole or not at all."""
         fresh = self.path / "run.json.new"
-        fresh.write_text(json.dumps(asdict(run), indent=1))
-        fresh.replace(self.path / "run.json")
+        with self.changing:
+            fresh.write_text(json.dumps(asdict(run), indent=1))
+            fresh.replace(self.path / "run.json")
 
     def release(self) -> None:
-        """Remove what `claim` and `write` left."""
+        """Remove what `claim` and `write` left, if anything."""
+        with self.changing:
+            if self._lock is not None:
+                self._remove()
+                os.close(self._lock)
+                self._lock = None
+
+    def _remove(self) -> None:
         for name in ("run.json", "run.json.new", "names", "control.sock"):
             (self.path / name).unlink(missing_ok=True)
         self.socket.unlink(missing_ok=True)
@@ -280,9 +301,6 @@ class RunDirectory:
                 folder.rmdir()
             except OSError:  # another graph of the domain is using it
                 break
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
 
 
 def _lock_of(directory: Path) -> Path:

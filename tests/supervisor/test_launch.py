@@ -7,6 +7,9 @@ import os
 import shutil
 import signal
 import socket
+import subprocess
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +22,7 @@ from graphflow.system import is_portable
 from graphflow.transport.rendezvous import address
 from tests.cases import slow, some
 from tests.conftest import PROGRAMS, Machine
-from tests.supervisor.running import GOOD, nothing_is_left, rows, write
+from tests.supervisor.running import GOOD, nothing_is_left, rows, supervisor_of, write
 
 
 @slow
@@ -114,8 +117,11 @@ HAS_GUARDIAN = not is_portable()
 
 
 def family_of(pid: int) -> list[int]:
-    """What a command has started, and what that has."""
-    return [child.pid for child in psutil.Process(pid).children(recursive=True)]
+    """What a command has started, and what that has; nothing once it has ended."""
+    try:
+        return [child.pid for child in psutil.Process(pid).children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
 
 
 class Begun:
@@ -149,7 +155,7 @@ def test_a_supervisor_that_reports(monkeypatch: pytest.MonkeyPatch) -> None:
     begun = Begun(monkeypatch, data[:5], data[5:])
     told, launched = launch(Path("g.yaml"), ["a:=1"], 7)
     assert told == report
-    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "only": [], "watch": False}
+    assert begun.job == {"file": "g.yaml", "given": ["a:=1"], "domain": 7, "only": [], "debug": [], "watch": False}
     assert not begun.is_reaped
     launched.let_go()
     assert os.read(begun.lifeline, 2) == LET_GO
@@ -194,3 +200,82 @@ def test_a_wrong_file_is_refused(machine: Machine, project: Path, text: str, cod
     """All its problems at once, and the exit code of wrong usage."""
     assert told in machine.run("up", write(project, text), cwd=project, code=code)
     nothing_is_left(machine, [])
+
+
+MOMENTS = [n / 40 for n in range(50)]
+"""Seconds after which a start is broken off: a graph is up in less than the last."""
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("moment", some(MOMENTS, MOMENTS[9], MOMENTS[21]))
+def test_ctrl_c_at_any_moment(machine: Machine, project: Path, moment: float) -> None:
+    """Once at every other one, twice at the others: nothing is left, and no traceback is shown."""
+    up = machine.start("up", "--no-console", write(project, GOOD), cwd=project)
+    seen: set[int] = set()
+    deadline = time.monotonic() + moment
+    while time.monotonic() < deadline:
+        seen.update(family_of(up.pid))
+        time.sleep(0.01)
+    for _ in range(1 + round(moment * 40) % 2):
+        seen.update(family_of(up.pid))
+        up.process.send_signal(signal.SIGINT)
+        time.sleep(0.15)
+    up.process.wait(15.0)
+    nothing_is_left(machine, sorted(seen))
+    assert "Traceback" not in up.text
+
+
+@pytest.mark.real
+@pytest.mark.skipif(is_portable(), reason="the portable way has no signals")
+def test_a_stopped_rendezvous_is_named(machine: Machine, project: Path) -> None:
+    """The supervisor of another graph, say: whoever wants to join is told its process, and soon."""
+    machine.run("up", "-d", write(project, GOOD), cwd=project)
+    host = supervisor_of(machine)["pid"]
+    os.kill(host, signal.SIGSTOP)
+    try:
+        other = write(project, "nodes:\n  /c: {class: nodes.lab:Good}\n", "other.yaml")
+        text = machine.run("up", "-d", other, cwd=project, code=1)
+    finally:
+        os.kill(host, signal.SIGCONT)
+    assert f"process {host}" in text
+    assert f"kill -CONT {host}" in text
+
+
+@slow
+@pytest.mark.real
+def test_a_run_directory_that_cannot_be_made(machine: Machine, project: Path) -> None:
+    """The folder and the variable that moves it are named."""
+    (project / "file").touch()
+    machine.env["XDG_RUNTIME_DIR"] = str(project / "file" / "run")
+    text = machine.run("up", "-d", write(project, GOOD), cwd=project, code=1)
+    assert f"{project}/file/run/graphflow: Not a directory; set XDG_RUNTIME_DIR to a folder you can write to" in text
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A disk with room for a few hundred lines."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", str(folder)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("this user may not mount a disk")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@slow
+@pytest.mark.real
+@pytest.mark.skipif(is_portable(), reason="the portable way does not watch its logs")
+def test_a_full_disk_for_logs(machine: Machine, project: Path, small_disk: Path) -> None:
+    """No node is lost: they run on, `ps` says that lines are, and the graph can be stopped."""
+    machine.env["ROS_LOG_DIR"] = str(small_disk)
+    text = "nodes:\n  /t: {class: nodes.talker:Talker, params: {rate: 1000.0}}\n  /b: {class: nodes.lab:Good}\n"
+    machine.run("up", "-d", write(project, text), cwd=project)
+    pids = {name: row["pid"] for name, row in rows(machine).items()}
+    machine.until(lambda: "its log is not written whole" in rows(machine)["/t"]["detail"], "the disk is full")
+    assert "its log is not written whole" in machine.look("ps")
+    now = {name: (row["pid"], row["state"]) for name, row in rows(machine).items()}
+    assert now == {name: (pid, "ready") for name, pid in pids.items()}
+    assert "success=True" in machine.look("service", "call", "/b/ask", "std_srvs/srv/Trigger")
+    machine.look("down")
+    nothing_is_left(machine, list(pids.values()))
