@@ -358,6 +358,7 @@ class Supervisor:
         else:
             del self._process_of[node.name], self._planned[node.name]
             process.lifecycle.pop(node.name, None)
+            self._tell(event="left", node=node.name, process=process.name)
 
     def _process_ended(self, process: Process, was: State) -> None:
         self.components.lost(process)

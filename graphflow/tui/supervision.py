@@ -131,7 +131,7 @@ class Supervision:
             self.consoles = event["consoles"]
         elif what == "end":
             self.exit_code = int(event["exit_code"])
-        if what in ("ready", "exited", "starting"):
+        if what in ("ready", "exited", "starting", "left"):
             self.send(do="ps")
         self.events.append(event)
         self._heard(event)

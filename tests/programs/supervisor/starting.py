@@ -35,7 +35,7 @@ async def start(starter: Starter) -> None:
     await starter.open(ROOT / "supervisor.log", heard.put_nowait, lambda how: print("lost", how))
 
     async def follow(name: str, class_path: str, env: dict[str, str], end: Callable[[str, int], None] | None) -> None:
-        job = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": [planned(class_path)]}
+        job = {"process": name, "file": "lab.yaml", "root": str(ROOT), "nodes": [planned(class_path)], "debug": False}
         (log := ROOT / f"{name}.log").touch()
         starter.spawn(name, job, str(log), env)
         pid = 0
