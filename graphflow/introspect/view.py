@@ -24,6 +24,8 @@ from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import Kind, watch_key
 from graphflow.wire.process import ProcessToken
 
+TAKEN_SHOWN = 5
+"""Names with their owners that are told when many are taken."""
 GID = bytes(16)
 """Commands are not entities of the graph, so they have no GID of their own."""
 
@@ -178,8 +180,9 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
     with view:
         taken = sorted(set(names) & set(view.cache.nodes()))
         if taken:
-            owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken)
+            owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken[:TAKEN_SHOWN])
+            more = f"; and {len(taken) - TAKEN_SHOWN} more" if len(taken) > TAKEN_SHOWN else ""
             raise SupervisorError(
-                f"already in domain {domain}: {owners}. Stop what runs there, {hint}, or choose another domain with "
-                "--domain N"
+                f"already in domain {domain}: {owners}{more}. Stop what runs there, {hint}, or choose another domain "
+                "with --domain N"
             )
