@@ -22,7 +22,10 @@ from typing import Any
 
 from graphflow.errors import Place
 from graphflow.graph import executables
+from graphflow.graph.ros_attributes import children, items, says
+from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, step_of, typed
+from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.tree import Item, located
 from graphflow.names import did_you_mean
 
@@ -40,6 +43,7 @@ _KNOWN: dict[str, set[str]] = {
     "group": {"children", "scoped", "forwarding", "keep", *_ANY, *_RECORDED},
     "include": {"file", "arg", "let", *_ANY, *_RECORDED},
     "node": {"pkg", "exec", "namespace", "args", "ros_args", "remap", "param", "autostart", *_RUN},
+    **KNOWN,
     "executable": {"cmd", "cwd", "shell", *_RUN},
     "push_ros_namespace": {"namespace", *_ANY},
     "set_parameter": {"name", "value", *_ANY},
@@ -51,8 +55,6 @@ _KNOWN: dict[str, set[str]] = {
 """Actions that have words here, and their attributes."""
 _SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace", "lifecycle_node": "node"}
 _ELSEWHERE = {
-    "node_container": "components are not built yet",
-    "load_composable_node": "components are not built yet",
     "shutdown": "write on_exit: shutdown at the node that it waits for",
     "unset_env": "write env: in a group or at a node",
     "reset_env": "write env: in a group or at a node",
@@ -136,10 +138,10 @@ class _Translation:
             if name in _SCOPING:
                 _add(body, "group", self._around(name, item, after))
                 break
-            if name == "group" and _says(item, "scoped", "false", "0"):  # what it sets holds for what comes after, too
+            if name == "group" and says(item, "scoped", "false", "0"):  # what it sets holds for what comes after, too
                 if self._conditions(item):
                     self._complain(item.at, "group: scoped: false with a condition has no words in a graph file")
-                for key, more in self._block([*_children(item), *after]).items():
+                for key, more in self._block([*children(item), *after]).items():
                     _extend(body, key, more)
                 break
             self._act(name, item, body)
@@ -193,7 +195,7 @@ class _Translation:
             case "append_env":
                 pair, get = self._pair(item, "name", "value"), item.entries.get
                 separator = str(get("separator", Item(":", item.place)).value)
-                is_first = _says(item, "prepend", "true", "1")
+                is_first = says(item, "prepend", "true", "1")
                 found = {}
                 for name, value in pair.entries.items():
                     parts = [f"$(optenv {name})", str(value.value)]
@@ -217,12 +219,15 @@ class _Translation:
             self._arg(item)
         elif name == "node":
             self._node(item, body)
+        elif name in KNOWN:
+            for component in components(item, self._root, self._complain):
+                self._node(component, body)
         elif name == "executable":
             self._executable(item, body)
         elif name == "include":
             _add(body, "include", self._include(item))
         elif name == "group":
-            inner = self._block(_children(item))
+            inner = self._block(children(item))
             conditions = self._conditions(item)
             only = inner.get("group")
             if only is not None and len(inner) == 1 and isinstance(only.value, dict) and not conditions:
@@ -243,9 +248,7 @@ class _Translation:
         if "description" in item.entries and item.entries["description"].value:
             spec["doc"] = item.entries["description"]
         if "choice" in item.entries:
-            choices = [
-                choice.entries["value"] for choice in _items(item.entries["choice"]) if "value" in choice.entries
-            ]
+            choices = [choice.entries["value"] for choice in items(item.entries["choice"]) if "value" in choice.entries]
             spec["choices"] = Item([typed(choice) for choice in choices], item.entries["choice"].place)
         self._args[name.value] = item._replace(value=spec)
 
@@ -254,7 +257,7 @@ class _Translation:
         file = entries.get("file")
         if file is not None and str(file.value).endswith(".py"):
             self._complain(file.place, f"{file.value} is in Python: convert it too, and name the result here")
-        args = [arg for key in ("arg", "let") for arg in _items(item.entries.get(key))]
+        args = [arg for key in ("arg", "let") for arg in items(item.entries.get(key))]
         if args:
             pairs = [self._pair(arg, "name", "value", is_typed=True) for arg in args]
             entries["args"] = Item({key: value for pair in pairs for key, value in pair.entries.items()}, item.place)
@@ -268,7 +271,7 @@ class _Translation:
         step = f"timer_{self._next('timer')}"
         delay = item._replace(value={"delay": typed(period), **self._conditions(item)})
         _put(body, "steps", step, delay)
-        inner = self._block(_children(item))
+        inner = self._block(children(item))
         after = Item(step, item.place, item.place)
         for section in ("nodes", "steps"):
             for name, entry in inner.get(section, Item({}, item.place)).entries.items():
@@ -292,7 +295,7 @@ class _Translation:
         if "namespace" in item.entries:
             entries["namespace"] = item.entries["namespace"]
         if "remap" in item.entries:
-            pairs = [self._pair(remap, "from", "to") for remap in _items(item.entries["remap"])]
+            pairs = [self._pair(remap, "from", "to") for remap in items(item.entries["remap"])]
             rules = {key: value for pair in pairs for key, value in pair.entries.items()}
             entries["remap"] = Item(rules, item.entries["remap"].place, item.entries["remap"].key)
         self._params(item, entries)
@@ -301,10 +304,12 @@ class _Translation:
         else:
             self._words(item, entries)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
-        if _says(item, "autostart", "true", "1"):
+        if says(item, "autostart", "true", "1"):
             if found is None:
                 self._complain(item.entries["autostart"].place, "autostart: nobody here brings up a program of ROS")
             entries["lifecycle"] = Item("active", item.entries["autostart"].place, item.entries["autostart"].key)
+        if "process" in item.entries:  # of a component
+            entries["process"] = item.entries["process"]
         entries |= self._common(item)
         usual = name.value if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
@@ -315,7 +320,7 @@ class _Translation:
         place = item.entries["exec"].place
         self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
         words = ["ros2", "run", package, name]
-        words += _split(item.entries.get("args"))
+        words += words_of(item.entries.get("args"))
         own = [(key, given[key]) for key in ("namespace", "remap", "params") if key in given]
         around = [*self._shared, *own]  # a group gives a program nothing: it is passed what it would have got
         rules = {old: new.value for key, value in around if key == "remap" for old, new in value.entries.items()}
@@ -345,7 +350,7 @@ class _Translation:
                     files.append(param.entries["from"])
                 elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
                     inner: dict[str, Item] = {}
-                    take(_items(param.entries["param"]), inner)
+                    take(items(param.entries["param"]), inner)
                     into[str(name.value)] = Item(inner, param.place, name.place)
                 else:
                     pair = self._pair(param, "name", "value")
@@ -353,7 +358,7 @@ class _Translation:
                     is_text = kind is not None and kind.value == "str"
                     into.update({key: value if is_text else typed(value) for key, value in pair.entries.items()})
 
-        take(_items(item.entries.get("param")), values)
+        take(items(item.entries.get("param")), values)
         if files:
             entries["params_file"] = Item(files, files[0].place, files[0].place)
         if values:
@@ -364,7 +369,7 @@ class _Translation:
         """What `args` and `ros_args` say, as far as it is the level of the log."""
         for key in ("args", "ros_args"):
             given = item.entries.get(key)
-            words = [word for word in _split(given) if word != "--ros-args"]
+            words = [word for word in words_of(given) if word != "--ros-args"]
             if words[:1] == ["--log-level"] and len(words) == 2 and given is not None:
                 entries["log_level"] = Item(words[1].lower(), given.place, given.key)
             elif words and given is not None:
@@ -388,7 +393,7 @@ class _Translation:
             before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
             _put(body, "steps", name, item._replace(value={**step, **before}))
             return
-        if _says(item, "shell", "true", "1"):
+        if says(item, "shell", "true", "1"):
             words = ["sh", "-c", " ".join(words) if isinstance(command.value, list) else str(command.value)]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
@@ -405,10 +410,10 @@ class _Translation:
         entries = self._conditions(item)
         get = item.entries.get
         if "env" in item.entries:
-            pairs = [self._pair(variable, "name", "value") for variable in _items(item.entries["env"])]
+            pairs = [self._pair(variable, "name", "value") for variable in items(item.entries["env"])]
             entries["env"] = Item({k: v for pair in pairs for k, v in pair.entries.items()}, item.entries["env"].place)
         respawn = get("respawn")
-        if respawn is not None and _says(item, "respawn", "true", "1"):
+        if respawn is not None and says(item, "respawn", "true", "1"):
             settings = {"policy": Item("always", respawn.place)}
             for key, ours in (("respawn_delay", "delay"), ("respawn_max_retries", "max_restarts")):
                 value = get(key)
@@ -435,36 +440,6 @@ class _Translation:
     def _next(self, word: str) -> int:
         self._count[word] = self._count.get(word, 0) + 1
         return self._count[word]
-
-
-def _children(item: Item) -> list[Item]:
-    children = item.entries.get("children")
-    return children.value if children is not None and isinstance(children.value, list) else []
-
-
-def _items(item: Item | None) -> list[Item]:
-    """A list's items, of which one alone may stand without the list."""
-    if item is None:
-        return []
-    return item.value if isinstance(item.value, list) else [item]
-
-
-def _split(item: Item | None) -> list[str]:
-    """The words of a text, or of a list of them."""
-    if item is None:
-        return []
-    if isinstance(item.value, list):
-        return [str(word.value) for word in item.value]
-    try:
-        return shlex.split(str(item.value))
-    except ValueError:  # a quote that is not closed
-        return str(item.value).split()
-
-
-def _says(item: Item, key: str, *words: str) -> bool:
-    """Whether an attribute is there and one of some words, in any case."""
-    value = item.entries.get(key)
-    return value is not None and str(value.value).lower() in words
 
 
 def _extend(body: dict[str, Item], key: str, more: Item) -> None:

@@ -210,6 +210,12 @@ def _action(said: Said) -> tuple[str, Any]:
         case "Node" | "LifecycleNode":
             found = {"autostart": "true"} if get("autostart") is True else {}
             return "node", {**_node(said), **found}
+        case "ComposableNodeContainer":
+            return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
+        case "LoadComposableNodes":
+            target = get("target_container")
+            name = text(target.get("name") if isinstance(target, Said) else target)
+            return "load_composable_node", {"target": name, "composable_node": _components(said)}
         case "ExecuteProcess" | "ExecuteLocal":
             first, *rest = get("cmd", 0, [""])
             if isinstance(first, Said) and first.name == "ExecutableInPackage":  # a node, by another way
@@ -284,6 +290,14 @@ def _node(said: Said) -> dict[str, Any]:
     if params:
         found["param"] = params
     return found
+
+
+def _components(said: Said) -> list[dict[str, Any]]:
+    described = said.get("composable_node_descriptions") or []
+    nodes = [one for one in described if isinstance(one, Said)]
+    return [
+        {**{k: v for k, v in _node(one).items() if k != "exec"}, "plugin": text(one.get("plugin"))} for one in nodes
+    ]
 
 
 def _parameter(name: Any, value: Any) -> dict[str, Any]:

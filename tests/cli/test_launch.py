@@ -25,7 +25,7 @@ def test_python(machine: Machine, tmp_path: Path) -> None:
     assert f"{target}: written; try it with: graphflow check {target}" in told
     assert "rviz2 rviz2: no node of that name is here; ros2 runs it, which must be installed" in told
     assert "b.launch.py is in Python: convert it too, and name the result here" in told
-    assert "ComposableNodeContainer has no words in a graph file" in told
+    assert "SetParametersFromFile has no words in a graph file" in told
     text = target.read_text()
     assert text.startswith("# From robot.launch.py, by graphflow launch convert.\n")
     text = text.replace("quiet", "speed").replace("unless: $(var speed)", "unless: false")
@@ -33,7 +33,15 @@ def test_python(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {background_g: 1}}\n")
     (tmp_path / "pyproject.toml").write_text('[project]\nname = "robot"\n')
     plan = load(target, [], {})
-    assert {node.name for node in plan.nodes} == {"/sim", "/echo_1", "/robot1/talker", "/rviz2", "/listener", "/leo"}
+    assert {node.name for node in plan.nodes} == {
+        "/sim",
+        "/t",
+        "/echo_1",
+        "/robot1/talker",
+        "/rviz2",
+        "/listener",
+        "/leo",
+    }
     assert plan.nodes[0].env == {"A": "c"}
     (spawn, _) = plan.steps
     assert (spawn.target, spawn.request, spawn.after) == ("/spawn", {"x": 2, "y": 2, "name": "t2"}, {"/sim": "ready"})

@@ -183,6 +183,37 @@ def test_actions(actions: str, expected: dict[str, Any]) -> None:
     assert native(f"launch: {actions}\n") == (expected, [], [])
 
 
+def test_components() -> None:
+    """Nodes of a container share a process, and so do those that are loaded into it."""
+    talker = "{pkg: composition, plugin: 'composition::Talker', name: t, param: [{name: rate, value: '2.0'}]}"
+    listener = "{pkg: composition, plugin: 'composition::Listener', remap: [{from: chatter, to: news}]}"
+    container = "{name: c, namespace: '', pkg: rclcpp_components, exec: component_container"
+    made, complaints, _ = native(
+        f"launch: [{{node_container: {container}, composable_node: [{talker}]}}}}, "
+        f"{{load_composable_node: {{target: /c, if: $(var x), composable_node: [{listener}]}}}}]\n"
+    )
+    assert complaints == []
+    assert made["nodes"] == {
+        "t": {"class": "nodes.talker:Talker", "params": {"rate": 2.0}, "process": "c"},
+        "listener": {
+            "class": "nodes.listener:Listener",
+            "remap": {"chatter": "news"},
+            "process": "c",
+            "if": "$(var x)",
+        },
+    }
+
+
+def test_lifecycle_nodes() -> None:
+    """One that ROS would start by itself is brought to work; a program of ROS is not."""
+    made, complaints, _ = native(
+        "launch: [{lifecycle_node: {pkg: lifecycle, exec: lifecycle_talker, name: t, autostart: 'true'}}, "
+        "{lifecycle_node: {pkg: nav2, exec: planner, name: p, autostart: 'True'}}]\n"
+    )
+    assert made["nodes"]["t"] == {"class": "nodes.lifecycle_talker:LifecycleTalker", "lifecycle": "active"}
+    assert complaints[0].endswith("autostart: nobody here brings up a program of ROS")
+
+
 @pytest.mark.parametrize(
     ("action", "complaint"),
     [
@@ -194,7 +225,15 @@ def test_actions(actions: str, expected: dict[str, Any]) -> None:
             "a: 1, b: 2",
             "f.yaml:1:10: expected an action, for example node: {pkg: turtlesim, exec: turtlesim_node}, got",
         ),
-        ("node_container: {}", "f.yaml:1:11: the action 'node_container' has no words in a graph file: components"),
+        ("node_container: {}", "f.yaml:1:11: the attribute 'name' or 'target' is missing"),
+        (
+            "node_container: {name: c, composable_node: [{pkg: a, plugin: 'a::B'}]}",
+            "f.yaml:1:72: composable_node: no node here is the component a::B of the package a",
+        ),
+        (
+            "load_composable_node: {target: c, composable_node: [{pkg: a}]}",
+            "f.yaml:1:63: composable_node: the attributes 'pkg' and 'plugin' are needed",
+        ),
         ("shutdown: {}", "f.yaml:1:11: the action 'shutdown' has no words in a graph file: write on_exit: shutdown"),
         ("arg: {default: '1'}", "f.yaml:1:11: arg: the attribute 'name' is missing"),
         ("set_remap: {to: a}", "f.yaml:1:11: the attribute 'from' is missing"),

@@ -31,7 +31,7 @@ def test_what_is_recorded() -> None:
     """Each action with its line and its arguments, substitutions as texts, and what others come after by its number."""
     told = record(ROBOT)
     actions = [next(iter(action.items())) for action in told["actions"]]
-    names = "arg arg set_env node executable log executable group group timer include node log"
+    names = "arg arg set_env node executable log executable group group timer include node node_container log"
     assert [name for name, _ in actions] == names.split()
     found = [attributes for _, attributes in actions]
     assert found[1] | {"line": 0} == {
@@ -78,7 +78,7 @@ def test_what_has_no_words() -> None:
     problems = {problem["line"]: problem["message"] for problem in record(ROBOT)["problems"]}
     assert problems[line_of("OnProcessIO(target")].startswith("an event handler OnProcessIO has no words")
     assert problems[line_of("OpaqueFunction(function")].startswith("OpaqueFunction: it was called once, with $(var")
-    assert problems[line_of("ComposableNodeContainer(name")].startswith("ComposableNodeContainer has no words")
+    assert problems[line_of("SetParametersFromFile(filename")].startswith("SetParametersFromFile has no words")
     assert len(problems) == 3
 
 

@@ -27,7 +27,8 @@ from launch.substitutions import (
     PythonExpression,
     TextSubstitution,
 )
-from launch_ros.actions import ComposableNodeContainer, Node, PushRosNamespace
+from launch_ros.actions import ComposableNodeContainer, Node, PushRosNamespace, SetParametersFromFile
+from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
 
 
@@ -93,7 +94,22 @@ def generate_launch_description():
                 condition=LaunchConfigurationEquals("who", "don"),
             ),
             OpaqueFunction(function=more),
-            ComposableNodeContainer(name="c", namespace="", package="p", executable="e"),
+            ComposableNodeContainer(
+                name="c",
+                namespace="",
+                package="p",
+                executable="e",
+                composable_node_descriptions=[
+                    ComposableNode(
+                        package="composition",
+                        plugin="composition::Talker",
+                        name="t",
+                        parameters=[{"rate": 2.0}],
+                        remappings=[("chatter", "news")],
+                    )
+                ],
+            ),
+            SetParametersFromFile(filename="a.yaml"),
         ]
     )
     description.add_action(LogInfo(msg="last"))

@@ -1,0 +1,52 @@
+"""ROS's component containers, as nodes that share a process.
+
+node_container: {name: c, composable_node: [{pkg: composition, plugin: "composition::Talker"}]}
+->  /talker: {class: nodes.talker:Talker, process: c}
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from graphflow.graph import executables
+from graphflow.graph.ros_attributes import items
+from graphflow.graph.ros_commands import Complain
+from graphflow.graph.tree import Item
+
+_ANY = {"if", "unless"}
+KNOWN = {
+    "node_container": {"pkg", "exec", "name", "namespace", "composable_node", "args", "ros_args", "output", *_ANY},
+    "load_composable_node": {"target", "composable_node", *_ANY},
+}
+"""The actions, and their attributes."""
+_OF_NODES = ("name", "namespace", "param", "remap")
+
+
+def components(item: Item, root: Path, complain: Complain) -> list[Item]:
+    """The nodes of a container, as actions of their own.
+
+    Args:
+        root: The project's folder.
+        complain: Called with what has no words here.
+    """
+    container = item.entries.get("name") or item.entries.get("target")
+    if container is None or not isinstance(container.value, str):
+        complain(item.at, "the attribute 'name' or 'target' is missing")
+        return []
+    process = container._replace(value=container.value.rstrip("/").rpartition("/")[2])
+    found = []
+    for component in items(item.entries.get("composable_node")):
+        package, plugin = component.entries.get("pkg"), component.entries.get("plugin")
+        if package is None or plugin is None:
+            complain(component.at, "composable_node: the attributes 'pkg' and 'plugin' are needed")
+            continue
+        name = str(plugin.value).rpartition("::")[2].lower()
+        if executables.find(str(package.value), name, root) is None:
+            text = f"no node here is the component {plugin.value} of the package {package.value}"
+            complain(plugin.place, f"composable_node: {text}")
+            continue
+        entries = {key: component.entries[key] for key in _OF_NODES if key in component.entries}
+        entries |= {key: item.entries[key] for key in _ANY if key in item.entries}
+        entries |= {"pkg": package, "exec": plugin._replace(value=name), "process": process}
+        found.append(component._replace(value=entries))
+    return found

@@ -1,0 +1,45 @@
+"""Attributes of actions in launch files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from graphflow.graph import source
+from graphflow.graph.ros_attributes import children, items, says, words
+from graphflow.graph.tree import Item, tree
+
+
+def read(text: str) -> Item:
+    return tree(source.read(text, "f.yaml"))
+
+
+def test_children() -> None:
+    """A list, or nothing."""
+    assert [c.plain() for c in children(read("{children: [1, 2]}\n"))] == [1, 2]
+    assert children(read("{children: 3}\n")) == children(read("{a: 1}\n")) == []
+
+
+def test_items() -> None:
+    """One alone may stand without a list."""
+    entries = read("{a: [1, 2], b: 3}\n").entries
+    assert [[i.plain() for i in items(entries.get(key))] for key in ("a", "b", "c")] == [[1, 2], [3], []]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("'a \"b c\"'", ["a", "b c"]), ("[a, 1]", ["a", "1"]), ('"a \'b"', ["a", "'b"]), ("5", ["5"])],
+)
+def test_words(text: str, expected: list[str]) -> None:
+    """As a shell splits them; a quote that is not closed is none."""
+    assert words(read(f"{{a: {text}}}\n").entries["a"]) == expected
+    assert words(None) == []
+
+
+@pytest.mark.parametrize(("value", "holds"), [("'True'", True), ("true", True), ("'1'", True), ("no", False)])
+def test_says(value: Any, holds: bool) -> None:
+    """In any case."""
+    item = read(f"{{a: {value}}}\n")
+    assert says(item, "a", "true", "1") is holds
+    assert not says(item, "b", "true")
