@@ -78,7 +78,6 @@ def load(
     PROCESS is the word after `process:` in the graph file, or a node that runs in the process.
     """
     from graphflow.cli.finding import find_class
-    from graphflow.domain import domain_id
     from graphflow.introspect.view import refuse_taken_names
     from graphflow.runtime.args import parse_ros_args
     from graphflow.supervisor.joining import check_component, planned_component
@@ -96,7 +95,7 @@ def load(
     problems = check_component(node, interface)
     if problems:
         raise GraphFileError(problems)
-    refuse_taken_names([node.name], domain_id(), hint="give this one another name with -n NAME")
+    refuse_taken_names([node.name], run.domain, hint="give this one another name with -n NAME")
     answer = _ask(run.socket, do="load", container=container, node=node.to_json())
     if extra:
         output.talk(f"{', '.join(extra)}: not needed: messages within a process are always handed over")

@@ -13,10 +13,9 @@ from functools import cache
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.deadlock import races
-from graphflow.deadlock.openings import place_of
 from graphflow.deadlock.protocols import Unopened
 from graphflow.errors import ClosedError, DeclarationError, ParameterError
-from graphflow.executor.clock import Alarm, Clock
+from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.interface import OnError
@@ -38,14 +37,12 @@ from graphflow.runtime.parameter_services import ParameterEvents, ParameterServi
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.slow_hooks import when_slow
 from graphflow.runtime.surroundings import unused_remaps
-from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity, Kind
 
 P = TypeVar("P", bound=Part)
 
-SLOW_START = 5.0
-"""Seconds that `on_start` may take before it is reported where it waits."""
 STOP_LIMIT = 2.0
 """Seconds that cancelled handlers and tasks have for their cleanup."""
 
@@ -312,7 +309,7 @@ class NodeCore:
             part.open()
         if self.parameters.get("use_sim_time"):
             self._follow_sim_time()
-        slow = self.when_slow("on_start")
+        slow = when_slow(self, "on_start")
         self.starting = asyncio.current_task()
         context.search.arm()
         try:
@@ -329,19 +326,6 @@ class NodeCore:
         late, self._late = self._late, None
         for part in sorted(late, key=lambda part: part.opens_last):
             part.open()
-
-    def when_slow(self, hook: str) -> Alarm:
-        """Say where a hook that this task runs waits if it has not returned in a while; the caller cancels that."""
-        task, clock = asyncio.current_task(), self.context.clock
-        text = (
-            "%s has not returned for %.0f s %s; this node's handlers start when it has: what waits for them, or for "
-            "nodes that wait for this one, belongs in a @task"
-        )
-
-        def say() -> None:
-            self.log.warning(text, hook, SLOW_START, place_of(task))
-
-        return clock.call_at(clock.monotonic_ns() + to_ns(SLOW_START), say)
 
     def warn_unused_remaps(self) -> None:
         """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later."""

@@ -25,8 +25,12 @@ from graphflow.qos import SERVICES, Qos
 from graphflow.runtime.core import NodeCore
 from graphflow.runtime.host import Part
 from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.slow_hooks import when_slow
 
 P = TypeVar("P", bound=Part)
+
+LABEL_SHOWN = 40
+"""Characters of a label that is no transition's, in messages: it may come from anybody."""
 
 
 class _Level:
@@ -217,16 +221,16 @@ class ManagedCore(NodeCore):
             return outcome, why
         if goal is not LifecycleState.ACTIVE:
             self._mute(muted=True)
-        try:
-            while len(self._levels) > goal.level:
+        while len(self._levels) > goal.level:
+            try:
                 await self._leave_level()
-        except Exception as error:
-            self.report_error(f"leaving what was entered, after {hook}", error)
-            return Outcome.ERROR, f"{type(error).__name__}: {error}"
+            except Exception as error:  # the levels below are left all the same
+                self.report_error(f"leaving what was entered, after {hook}", error)
+                outcome, why = Outcome.ERROR, f"{type(error).__name__}: {error}"
         return outcome, why
 
     async def _run_hook(self, hook: str) -> tuple[Outcome, str]:
-        slow = self.when_slow(hook)
+        slow = when_slow(self, hook)
         try:
             returned = await getattr(self.instance, hook)()
             if returned is not None:
@@ -340,7 +344,7 @@ def _described(transitions: list[Transition]) -> Any:
 def _verb(wanted: int | str) -> str:
     """A transition for people, however a request has named it."""
     if isinstance(wanted, str):
-        return repr(wanted) if not wanted.isidentifier() else wanted
+        return wanted if wanted in {t.label for t in TRANSITIONS} else repr(wanted[:LABEL_SHOWN])
     return next(
         (f"{t.label} (transition {wanted})" for t in TRANSITIONS if t.id == wanted), f"make transition {wanted}"
     )

@@ -96,7 +96,7 @@ class TopicPublisher(Endpoint, Generic[M]):
 
     def _hand_over(self, message: M, sender: Sender) -> None:
         """Give a copy to the subscriptions of this process, and send it if others want it."""
-        clone, receivers = self._codec.clone, self._here
+        clone, receivers = self._codec.clone, tuple(self._here)  # which may change: this may be another thread
         copy = clone(message)
         payload = self._codec.encode(copy) if sender.is_wanted else None
         self.published += 1

@@ -6,7 +6,7 @@ import asyncio
 import itertools
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from graphflow.errors import SupervisorError
 from graphflow.graph.plan import PlannedNode, node_from_json
@@ -17,6 +17,15 @@ from graphflow.supervisor.starter import Starter
 
 LIMIT = 20.0
 """Seconds that a worker has to load or unload a node."""
+
+
+class _Order(NamedTuple):
+    """What a process was told to do."""
+
+    process: Process
+    node: PlannedNode | None
+    """The node to load; None for one to unload."""
+    answer: asyncio.Future[dict[str, Any]]
 
 
 class Components:
@@ -38,27 +47,33 @@ class Components:
         self._numbers = itertools.count(1)
         self._turns = {process.name: asyncio.Lock() for process in processes}
         """One order at a time is given to a process."""
-        self._answers: dict[int, tuple[str, asyncio.Future[dict[str, Any]]]] = {}
-        """Who waits for the answer to an order, and the process that it was given to."""
+        self._given: dict[int, _Order] = {}
+        """Orders that have not been answered."""
 
     def heard(self, event: dict[str, Any]) -> None:
         """Take in an answer of a worker, or what has changed there without an order."""
+        process = self._processes[event["process"]]
         if event["event"] == "joined":
-            container = self._processes[event["process"]]
-            self._join(container, replace(node_from_json(event["node"]), process=container.name), event["number"])
-            return
-        if event["event"] == "left":
-            self._leave(self._processes[event["process"]], event["node"])
-            return
-        process, answer = self._answers.get(event["order"], ("", None))
-        if answer is not None and not answer.done() and process == event["process"]:
-            answer.set_result(event)
+            self._join(process, replace(node_from_json(event["node"]), process=process.name), event["number"])
+        elif event["event"] == "left":
+            self._leave(process, event["node"])
+        elif (order := self._given.get(event["order"])) is not None and order.process is process:
+            del self._given[event["order"]]
+            if not event["error"]:  # it counts also when nobody waits any more
+                if order.node is not None:
+                    self._join(process, replace(order.node, name=event["node"]), event["number"])
+                else:
+                    self._leave(process, event["node"])
+            if not order.answer.done():
+                order.answer.set_result(event)
 
     def lost(self, process: Process) -> None:
         """A process has ended: nobody there will answer."""
-        for name, answer in self._answers.values():
-            if name == process.name and not answer.done():
-                answer.set_result({"node": "", "error": "its process has ended"})
+        for number, order in list(self._given.items()):
+            if order.process is process:
+                del self._given[number]
+                if not order.answer.done():
+                    order.answer.set_result({"node": "", "error": "its process has ended"})
 
     async def load(self, container: str, node: PlannedNode) -> tuple[int, str]:
         """Load a node into a process; returns its number there, and its full name.
@@ -73,8 +88,7 @@ class Components:
         if any(known.name == node.name for other in self._processes.values() for known in other.nodes):
             raise SupervisorError(f"the graph has a node {node.name} already; give this one another name with -n NAME")
         shared = replace(node, process=process.name)
-        told = await self._order(process, {"do": "load", "node": shared.to_json()})
-        self._join(process, replace(shared, name=told["node"]), told["number"])
+        told = await self._order(process, {"do": "load", "node": shared.to_json()}, shared)
         return told["number"], told["node"]
 
     def _join(self, process: Process, node: PlannedNode, number: int) -> None:
@@ -101,8 +115,7 @@ class Components:
             raise SupervisorError(f"{container} has no component {number}; there is {there}")
         if len(process.nodes) == 1:
             raise SupervisorError(f"{name} is all that {container} has; to end it: graphflow stop {name}")
-        await self._order(process, {"do": "unload", "node": name})
-        self._leave(process, name)
+        await self._order(process, {"do": "unload", "node": name}, None)
         return name
 
     def _container(self, container: str) -> Process:
@@ -118,18 +131,15 @@ class Components:
             raise SupervisorError(f"{container} is not running: {process.word}")
         return process
 
-    async def _order(self, process: Process, order: dict[str, Any]) -> dict[str, Any]:
+    async def _order(self, process: Process, order: dict[str, Any], node: PlannedNode | None) -> dict[str, Any]:
         number = next(self._numbers)
-        answer: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
-        self._answers[number] = (process.name, answer)
         try:
             async with asyncio.timeout(LIMIT), self._turns[process.name]:
+                given = self._given[number] = _Order(process, node, asyncio.get_running_loop().create_future())
                 self._starter.tell(process.name, {**order, "order": number})
-                told = await answer
+                told = await given.answer
         except TimeoutError:
             raise SupervisorError(f"{process.name} did not answer within {LIMIT:.0f} s", exit_code=4) from None
-        finally:
-            del self._answers[number]
         if told["error"]:
             raise SupervisorError(str(told["error"]))
         return told

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from graphflow.errors import GraphFileError, GraphflowError
+from graphflow.errors import GraphFileError, GraphflowError, printable
 from graphflow.graph.executables import find
 from graphflow.graph.plan import PlannedNode
 from graphflow.names import Remap
@@ -26,6 +26,8 @@ from graphflow.supervisor.classes import import_class
 from graphflow.supervisor.joining import check_component, planned_component
 from graphflow.supervisor.orders import Orders
 
+NAME_BOUND = 255
+"""Characters of a name in a request."""
 DESCRIPTION_BOUND = 3500
 """Bytes that the description of a node may have which the supervisor is told of."""
 _LEVELS = {10: "debug", 20: "info", 30: "warn", 40: "error", 50: "fatal"}
@@ -64,13 +66,19 @@ class Container:
             number, node = await self._orders.load(described)
         except Exception as error:  # whatever goes wrong, the one who asked is told
             text = str(error) if isinstance(error, GraphflowError) else f"{type(error).__name__}: {error}"
-            self._node.log.warning("%s could not be loaded: %s", request.plugin_name, text)
+            text = printable(text)
+            self._node.log.warning("%s could not be loaded: %s", printable(request.plugin_name[:NAME_BOUND]), text)
             return LoadNode.Response(success=False, error_message=text)
         self._tell(event="joined", process=self._process, number=number, node={**described, "name": node.full_name})
         return LoadNode.Response(success=True, full_node_name=node.full_name, unique_id=number)
 
     def _planned(self, request: Any) -> PlannedNode:
         plugin = str(request.plugin_name)
+        for text in (plugin, request.package_name, request.node_name, request.node_namespace, *request.remap_rules):
+            if len(text) > NAME_BOUND:
+                raise GraphflowError(
+                    f"{text[:20]!r}... has {len(text)} characters; a name here has {NAME_BOUND} at most"
+                )
         if ":" in plugin.replace("::", ""):
             class_path = plugin
         else:

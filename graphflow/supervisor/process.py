@@ -97,7 +97,7 @@ class Process:
             {
                 "node": node.name,
                 "state": self.word,
-                "lifecycle": self.lifecycle.get(node.name, "") if self.state is State.READY else "",
+                "lifecycle": self.lifecycle.get(node.name, "") if self.word == "ready" else "",
                 "pid": self.pid,
                 "since": self.since,
                 "process": node.process,

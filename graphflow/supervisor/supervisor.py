@@ -227,6 +227,7 @@ class Supervisor:
             process.exit = Exit() if event["status"] is None else Exit.of_status(event["status"])
             if event["status"] is None and (trouble := self._starter.trouble()):
                 self.note(trouble)
+            self.components.lost(process)
             self._happen(process, Event.EXIT)
 
     def starter_lost(self, how: str) -> None:
@@ -361,7 +362,6 @@ class Supervisor:
             self._tell(event="left", node=node.name, process=process.name)
 
     def _process_ended(self, process: Process, was: State) -> None:
-        self.components.lost(process)
         asked = process.stop_asked or was in (State.STOPPING, State.PENDING, State.WAITING)
         early = was is State.STARTING and not asked
         if early and not process.error:

@@ -247,6 +247,7 @@ async def _run(nodes: list[Node], job: dict[str, Any], report: Reporter) -> int:
         beating.cancel()
         if obeying is not None:
             obeying.cancel()
+            await asyncio.gather(obeying, return_exceptions=True)
         if context is not None:
             await context.close()
     return 0

@@ -25,7 +25,7 @@ LENT = "_lent"
 
 
 def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
-    """The array in a field, read-only.
+    """The array in a field: read-only, and of one dimension, as it would be received.
 
     Args:
         base: The ROS type of its elements.
@@ -36,8 +36,8 @@ def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
     try:
         array = object.__getattribute__(message, name)
     except AttributeError:  # lent before, and not touched since
-        lent: ndarray[Any, Any] = object.__getattribute__(message, LENT)[name].view()
-        return lent
+        lent: ndarray[Any, Any] = object.__getattribute__(message, LENT)[name]
+        return lent.reshape(-1)
     if array.__class__ is not ndarray or array.dtype != DTYPES[base] or not array.flags.c_contiguous:
         array = as_array(array, base)
     elif array.nbytes > SMALL and hasattr(type(message), LENT):
@@ -46,10 +46,10 @@ def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
             _freeze(array)
             return _set_aside(message, name, array)
     if array.nbytes > SMALL and _is_frozen(array):
-        return array.view()
+        return array.reshape(-1)
     copy = array.copy()
     copy.flags.writeable = False
-    return copy.view()
+    return copy.reshape(-1)
 
 
 def _set_aside(message: Any, name: str, array: ndarray[Any, Any]) -> ndarray[Any, Any]:
@@ -58,7 +58,7 @@ def _set_aside(message: Any, name: str, array: ndarray[Any, Any]) -> ndarray[Any
         object.__getattribute__(message, LENT)[name] = array
     except AttributeError:
         setattr(message, LENT, {name: array})
-    return array.view()
+    return array.reshape(-1)
 
 
 def _is_frozen(array: ndarray[Any, Any]) -> bool:

@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 import os
 import signal
-import time
 from collections.abc import Iterator
 
 import pytest
 
+from graphflow.runtime.args import RosArgs
+from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.joining import planned_component
+from nodes.listener import Listener
 from tests.conftest import Machine
+from tests.supervisor.running import supervisor_of
 
 pytestmark = pytest.mark.real
 GRAPH = "tests/programs/supervisor/components.yaml"
@@ -72,19 +76,20 @@ def components(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 
 def test_a_process_that_is_stopped_takes_no_order(machine: Machine) -> None:
-    """Neither the supervisor nor the process that starts the nodes waits for it."""
+    """Neither the supervisor nor the process that starts the nodes waits for it; when it goes on, it obeys."""
     machine.run("up", "-d", GRAPH)
     pid = next(r["pid"] for r in json.loads(machine.look("ps", "--json")) if r["node"] == "/alone")
-    os.kill(pid, signal.SIGSTOP)
-    try:
-        loading = machine.start("component", "load", "/alone", "nodes.listener:Listener", "-n", "ear")
-        time.sleep(0.5)
-        machine.look("component", "load", "tutorial", "nodes.listener:Listener", "-n", "other")
-        assert machine.look("component", "list", "tutorial").endswith("3  /other\n")
-    finally:
-        os.kill(pid, signal.SIGCONT)
-    assert loading.wait() == 0
-    assert "as '/ear'" in loading.text
+    ear = planned_component(Listener.interface(), "ear", "/", RosArgs(), "")
+    with ControlClient(supervisor_of(machine)["socket"]) as client:
+        os.kill(pid, signal.SIGSTOP)
+        try:
+            client.send(do="load", container="/alone", node=ear.to_json())
+            machine.look("component", "load", "tutorial", "nodes.listener:Listener", "-n", "other")
+            assert machine.look("component", "list", "tutorial").endswith("3  /other\n")
+            assert client.pending() == []
+        finally:
+            os.kill(pid, signal.SIGCONT)
+        assert next(client.receive(20.0)) == {"event": "loaded", "number": 2, "node": "/ear"}
 
 
 def test_roses_services_where_the_graph_allows_them(machine: Machine) -> None:

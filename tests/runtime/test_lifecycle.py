@@ -265,6 +265,33 @@ async def test_an_error_in_on_error_is_the_end(graph: Graph) -> None:
     assert "on_shutdown" not in node.done
 
 
+async def test_every_level_is_left(graph: Graph) -> None:
+    """Also if leaving one of them fails, at the end of all: nothing stays open in a node that is finalized."""
+
+    class Stuck(Camera):
+        async def on_error(self) -> None:
+            self.done.append("on_error")
+
+        async def on_deactivate(self) -> None:
+            raise RuntimeError("smoke")
+
+    node = Stuck(name="camera", trouble="close stream fails")
+    await graph.start(node)
+    await node.trigger_configure()
+    await node.trigger_activate()
+    with pytest.raises(TransitionFailed, match="it is finalized"):
+        await node.trigger_deactivate()
+    assert node.done[-3:] == ["on_error", "close stream", "close camera"]
+
+
+async def test_a_label_of_any_length(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Is not repeated whole in the log: anybody may send it."""
+    node = Camera()
+    await graph.start(node)
+    assert not await change(graph, "x" * 100_000)
+    assert max(len(r.getMessage()) for r in caplog.records) < 300
+
+
 async def test_a_refusal_has_its_reason(graph: Graph) -> None:
     """For code that asks for the transition itself."""
     node = Camera(trouble="on_activate refuses")

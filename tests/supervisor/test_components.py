@@ -123,15 +123,18 @@ async def test_a_worker_that_fails_to() -> None:
 
 
 async def test_a_worker_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not for ever, and a late answer is nothing."""
+    """Not for ever; a node that has come up all the same is known, by whatever it is then called."""
     monkeypatch.setattr(components, "LIMIT", 0.05)
     stage = Stage()
     stage.worker.is_silent = True
     with pytest.raises(SupervisorError, match="/c did not answer within"):
         await stage.components.load("/c", node("/x"))
     number = stage.worker.orders[0]["order"]
-    stage.components.heard({"event": "obeyed", "process": "/c", "order": number, "node": "/x", "error": ""})
-    assert stage.changes == []
+    late = {"event": "obeyed", "process": "/c", "order": number, "node": "/x", "number": 2, "error": ""}
+    stage.components.heard(late)
+    stage.components.heard(late)  # a second time it is nothing
+    assert stage.changes == [("/c", "/x", True)]
+    assert stage.processes[1].numbers == {"/c": 1, "/x": 2}
 
 
 async def test_a_process_that_ends_meanwhile() -> None:

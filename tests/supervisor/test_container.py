@@ -83,6 +83,7 @@ async def test_a_node_is_loaded_listed_and_unloaded(graph: Graph) -> None:
         ("nodes.no:Such", {}, "there is no module"),
         ("composition::Talker", {"node_name": "first"}, "there is a node /first already"),
         ("composition::Talker", {"node_name": "a b"}, "a b"),
+        ("x" * 100_000, {}, "has 100000 characters; a name here has 255 at most"),
         ("composition::Talker", {"remap_rules": ["x"]}, "'x' is not a remap rule"),
         ("composition::Talker", {"remap_rules": ["chater:=b"]}, "did you mean 'chatter'?"),
         (

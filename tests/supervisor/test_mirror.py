@@ -39,7 +39,16 @@ async def test_states_are_published_and_answered(graph: Graph) -> None:
     assert answer.passed == 1
 
 
-@pytest.mark.parametrize(("graph_name", "name"), [("a.b", "/a_b/_supervisor"), ("20", "/_20/_supervisor")])
+@pytest.mark.parametrize(
+    ("graph_name", "name"),
+    [
+        ("a.b", "/a_b/_supervisor"),
+        ("20", "/_20/_supervisor"),
+        ("a--b_c", "/a_b_c/_supervisor"),
+        ("caf\u00e9", "/caf_/_supervisor"),
+        ("_x", "/_x/_supervisor"),
+    ],
+)
 def test_any_name_of_a_graph_gives_a_legal_one(graph_name: str, name: str) -> None:
     """Graphs may be called by more than nodes may."""
     assert Mirror(graph_name, list).full_name == name

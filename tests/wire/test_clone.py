@@ -12,6 +12,7 @@ from graphflow.msgs import registry
 from graphflow.msgs.base import Message
 from graphflow.msgs.geometry_msgs.msg import Polygon, Twist
 from graphflow.msgs.nav_msgs.msg import Path
+from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.msgs.std_msgs.msg import Float32, String
 from tests.cases import sample
 
@@ -74,6 +75,19 @@ def test_values_are_converted_as_when_encoded() -> None:
     text = String()
     text.data = Shout("hey")
     assert type(registry.codec("std_msgs/msg/String").clone(text).data) is str
+
+
+@pytest.mark.parametrize("side", [2, 200])
+def test_a_matrix_arrives_as_a_row(side: int) -> None:
+    """As it does over the network, whether it is small and copied or large and lent; the sender's stays a matrix."""
+    image: Any = Image()
+    image.data = np.arange(side * side, dtype=np.uint8).reshape(side, side)
+    codec = registry.codec("sensor_msgs/msg/Image")
+    for _ in range(2):
+        assert shape(codec.clone(image)) == shape(codec.decode(codec.encode(image)))
+    codec.clone(image)
+    assert codec.clone(image).data.shape == (side * side,)
+    assert image.data.shape == (side, side)
 
 
 def test_two_copies_share_nothing_that_can_change() -> None:
