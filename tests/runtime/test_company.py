@@ -42,7 +42,13 @@ def company(graph: Graph) -> tuple[Company, asyncio.Event]:
 async def test_nodes_that_join_are_stopped_with_the_others(graph: Graph) -> None:
     """In reverse order of their coming."""
     made, stop = company(graph)
-    first, second = Quiet("first"), Quiet("second")
+    order: list[str] = []
+
+    class Last(Node):
+        async def on_shutdown(self) -> None:
+            order.append(self.name)
+
+    first, second = Last("first"), Last("second")
     running = asyncio.create_task(made.run([first]))
     await graph.settle()
     await made.join(second)
@@ -52,6 +58,7 @@ async def test_nodes_that_join_are_stopped_with_the_others(graph: Graph) -> None
     await running
     assert not first.is_running
     assert not second.is_running
+    assert order == ["second", "first"]
 
 
 async def test_a_node_that_leaves(graph: Graph) -> None:

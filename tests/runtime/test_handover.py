@@ -11,7 +11,7 @@ import pytest
 from graphflow import EncodeError, Node, Qos
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.qos import Durability
+from graphflow.qos import Durability, Liveliness
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.handover import Handed
@@ -211,3 +211,41 @@ def test_the_last_receiver_gets_the_copy_itself() -> None:
     handed = Handed(original, (1, 2, bytes(16)), 3, clone)
     assert [handed.take(), handed.take()] == made
     assert handed.take() is original
+
+
+SECOND = 1_000_000_000
+
+
+async def test_a_message_that_waited_too_long(graph: Graph) -> None:
+    """Has outlived its lifespan here, too."""
+    speaker, listener = Node("speaker", enable_rosout=False), Node("listener", enable_rosout=False)
+    listening = listener.create_subscription(String, "chatter", None, Qos(lifespan_ns=SECOND))
+    publisher = speaker.create_publisher(String, "chatter")
+    await together(graph, speaker, listener)
+    publisher.publish(String(data="old"))
+    await graph.clock.advance(2.0)
+    publisher.publish(String(data="new"))
+    assert (await anext(aiter(listening))).data == "new"
+    assert listening.expired == 1
+
+
+async def test_a_publisher_is_alive_whose_message_waits(graph: Graph) -> None:
+    """The reader is late, and not the publisher, also within a process."""
+    manual = Qos(liveliness=Liveliness.MANUAL_BY_TOPIC, lease_ns=SECOND)
+    speaker, listener = Node("speaker", enable_rosout=False), Node("listener", enable_rosout=False)
+    changes: list[int] = []
+    listening = listener.create_subscription(
+        String,
+        "chatter",
+        None,
+        Qos(lease_ns=SECOND, liveliness=Liveliness.MANUAL_BY_TOPIC),
+        on_event=lambda event: changes.append(event.current) if event.kind == "liveliness_changed" else None,
+    )
+    publisher = speaker.create_publisher(String, "chatter", manual)
+    await together(graph, speaker, listener)
+    publisher.publish(String(data="here"))
+    await graph.clock.advance(1.5)
+    assert changes == [1]
+    assert (await anext(aiter(listening))).data == "here"
+    await graph.clock.advance(1.5)
+    assert changes == [1, 0]

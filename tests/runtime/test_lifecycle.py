@@ -11,6 +11,8 @@ import pytest
 
 from graphflow import (
     DeclarationError,
+    GoalAborted,
+    GoalRejected,
     LifecycleNode,
     LifecycleState,
     Node,
@@ -19,11 +21,13 @@ from graphflow import (
     ServerInactive,
     TransitionFailed,
     TransitionRefused,
+    action,
     service,
     subscription,
     task,
     timer,
 )
+from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.lifecycle_msgs.msg import Transition, TransitionEvent
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 from graphflow.msgs.std_msgs.msg import String
@@ -533,3 +537,75 @@ async def test_a_plain_node_is_not_managed(graph: Graph) -> None:
 
     assert not Plain.interface().is_managed
     assert Camera.interface().is_managed
+
+
+async def test_what_a_hook_makes_rests_and_is_ended(graph: Graph) -> None:
+    """A publisher made on configure is silent until the node is active; a task started there ends with cleanup."""
+    ended: list[str] = []
+
+    class Maker(LifecycleNode):
+        async def on_configure(self) -> None:
+            self.word = self.create_publisher(String, "word")
+            self.spawn(self.run)
+
+        async def run(self) -> None:
+            try:
+                await asyncio.Event().wait()
+            finally:
+                ended.append("task")
+
+    node = Maker()
+    await graph.start(node)
+    words = graph.tap(String, "/word")
+    await node.trigger_configure()
+    await settle()
+    node.word.publish(String(data="too early"))
+    await node.trigger_activate()
+    node.word.publish(String(data="now"))
+    await settle()
+    assert [word.data for word in words] == ["now"]
+    await node.trigger_deactivate()
+    assert ended == []
+    await node.trigger_cleanup()
+    assert ended == ["task"]
+
+
+async def test_goals_are_rejected_while_not_active(graph: Graph) -> None:
+    """With the reason; a goal that is under way is aborted when the node rests."""
+
+    class Server(LifecycleNode):
+        @action(Fibonacci, "count")
+        async def count(self, goal: Fibonacci.Handle) -> Fibonacci.Result:
+            await asyncio.Event().wait()
+            raise AssertionError
+
+    node, asker = Server(), Node("asker")
+    client = asker.create_action_client(Fibonacci, "count")
+    await graph.start(node, asker)
+    with pytest.raises(GoalRejected, match="/server is unconfigured, not active"):
+        async with client.send(Fibonacci.Goal(order=1)):
+            pass
+    await node.trigger_configure()
+    await node.trigger_activate()
+    async with client.send(Fibonacci.Goal(order=1)) as goal:
+        await node.trigger_deactivate()
+        with pytest.raises(GoalAborted):
+            await goal.result()
+
+
+async def test_remaps_of_nothing_are_told_once_the_node_is_configured(
+    graph: Graph, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Which may make the name: before, nobody knows."""
+
+    class Maker(LifecycleNode):
+        async def on_configure(self) -> None:
+            self.create_publisher(String, "made")
+
+    node = Maker(remap=["made:=other", "mad:=other"])
+    await graph.start(node)
+    assert "matches no name" not in caplog.text
+    await node.trigger_configure()
+    told = [r.getMessage() for r in caplog.records if "matches no name" in r.getMessage()]
+    assert len(told) == 1
+    assert told[0].startswith("the remap mad:=other matches no name of this node")

@@ -445,3 +445,20 @@ async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph) -> None:
     reader.cancel()
 
     assert all(later - earlier <= BURST for earlier, later in itertools.pairwise(turns))
+
+
+async def test_a_subscription_that_is_paused_leaves_out_what_comes(graph: Graph) -> None:
+    """Also what comes in the last moment before it goes on."""
+    listener, heard = Node("listener"), Log()
+    listening = listener.create_subscription(String, "chatter", lambda message: heard(message.data))
+    await graph.start(listener)
+    publisher = graph.publisher(String, "/chatter")
+    await graph.settle()
+    listening.pause("it is night")
+    publisher.publish(String(data="night"))
+    await graph.settle()
+    publisher.publish(String(data="dawn"))
+    listening.resume()
+    publisher.publish(String(data="day"))
+    await graph.settle()
+    assert heard == ["day"]

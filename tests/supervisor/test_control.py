@@ -14,6 +14,7 @@ import pytest
 
 from graphflow.errors import SupervisorError
 from graphflow.graph.plan import Plan
+from graphflow.supervisor import control
 from graphflow.supervisor.control import ControlClient, ControlServer
 from graphflow.supervisor.doors import Doors
 
@@ -98,3 +99,14 @@ async def test_without_the_token_nothing_is_done(
     assert await asyncio.to_thread(say, address, json.dumps(request).encode() + b"\n") == b""
     assert graph.stopped == []
     await server.close()
+
+
+async def test_nobody_is_waited_for_who_has_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A graph waits for its command to hear how it ends, unless that is known to have ended."""
+    monkeypatch.setattr(control, "FOLLOW_LIMIT", 60.0)
+    server = ControlServer(Graph())
+    waiting = asyncio.create_task(server.wait_followed())
+    await asyncio.sleep(0.01)
+    assert not waiting.done()
+    server.expect_nobody()
+    await asyncio.wait_for(waiting, 5.0)

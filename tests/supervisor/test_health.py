@@ -94,3 +94,12 @@ def test_a_node_that_is_stopped(machine: Machine, project: Path) -> None:
     assert rows(machine)["/a"]["state"] == "ready"
     up.process.send_signal(signal.SIGINT)
     assert up.wait() == 0
+
+
+def test_who_is_debugged_may_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For as long as it stands at a breakpoint."""
+    ward = Ward(monkeypatch)
+    ward.process.is_debugged = True
+    ward.looks(1.0, speaks=True)
+    ward.looks(10 * SILENCE, speaks=False)
+    assert (ward.told, ward.process.word) == ([], "ready")

@@ -14,6 +14,7 @@ from graphflow import Context
 from graphflow.errors import SupervisorError
 from graphflow.graph import source
 from graphflow.graph.resolve import resolve
+from graphflow.supervisor.debugging import debugged
 from graphflow.supervisor.supervisor import Supervisor
 from graphflow.testing.clock import ManualClock
 from graphflow.transport.memory import Network
@@ -95,8 +96,8 @@ class Stage:
 
 
 @asynccontextmanager
-async def graph(text: str, tmp_path: Path, *unready: str) -> AsyncIterator[Stage]:
-    plan = resolve(source.read(text, "g.yaml"), tmp_path / "g.yaml")
+async def graph(text: str, tmp_path: Path, *unready: str, debug: Sequence[str] = ()) -> AsyncIterator[Stage]:
+    plan = debugged(resolve(source.read(text, "g.yaml"), tmp_path / "g.yaml"), debug)
     workers = Workers()
     workers.unready.update(unready)
     context = Context(Network().session(asyncio.get_running_loop()), clock=ManualClock())
@@ -285,3 +286,13 @@ async def test_nothing_is_started_while_others_take_long_to_stop(tmp_path: Path,
         assert stage.workers.spawned.count("/a") == 1
         stage.workers.end("/b", -15)
         assert await stage.ended() == 0
+
+
+@pytest.mark.parametrize("is_debugged", [False, True])
+async def test_how_long_a_start_may_take(tmp_path: Path, is_debugged: bool) -> None:
+    """There is a limit, but not for a process that waits for its debugger."""
+    debug = ["/a"] if is_debugged else []
+    async with graph("nodes: {a: {class: x:Y}}", tmp_path, "/a", debug=debug) as stage:
+        await stage.until(a="starting")
+        await asyncio.sleep(0.01)
+        assert (stage.supervisor._processes["/a"].alarm is None) is is_debugged

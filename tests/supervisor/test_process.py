@@ -62,3 +62,15 @@ def test_a_new_start_forgets() -> None:
     assert (process.failed, process.ready_for) == (False, 0.0)
     assert process.waiting_for == {"/a", "/b"}
     assert process.rows()[0]["restarts"] == 1
+
+
+def test_the_state_of_a_lifecycle_node() -> None:
+    """Is told of a process that answers; one that does not is unresponsive, whatever its node is in."""
+    process = Process("/p", [A], "a.log")
+    process.begin()
+    process.state, process.lifecycle = State.READY, {"/a": "active"}
+    assert process.rows()[0]["lifecycle"] == "active"
+    process.silent_since = time.monotonic()
+    assert (process.rows()[0]["state"], process.rows()[0]["lifecycle"]) == ("unresponsive", "")
+    process.state = State.STOPPING
+    assert process.rows()[0]["lifecycle"] == ""

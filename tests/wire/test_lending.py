@@ -42,6 +42,13 @@ def holding(array: Any) -> Any:
     return array
 
 
+def assigned(array: Any) -> Image:
+    """A message whose field is that very array, and not a view of it."""
+    message = Image()
+    message.data = array
+    return message
+
+
 @pytest.mark.parametrize(
     ("make", "is_shared"),
     [
@@ -52,6 +59,8 @@ def holding(array: Any) -> Any:
         pytest.param(lambda: Image(data=holding(frozen())), True, id="an array that nobody can write to"),
         pytest.param(lambda: Image(data=holding(zeros())), False, id="an array that somebody holds"),
         pytest.param(lambda: Image(data=holding(zeros())[10:]), False, id="a part of an array that somebody holds"),
+        pytest.param(lambda: assigned(zeros()), True, id="an assigned array that it alone holds"),
+        pytest.param(lambda: assigned(holding(zeros())), False, id="an assigned array that somebody holds"),
         pytest.param(lambda: Image(data=bytearray(SIZE)), False, id="a bytearray"),
         pytest.param(lambda: Image(data=memoryview(holding(bytearray(SIZE)))), False, id="a view of one"),
         pytest.param(lambda: Image(data=zeros()[:SMALL]), False, id="a small array"),
