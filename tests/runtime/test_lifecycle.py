@@ -546,6 +546,8 @@ async def test_what_a_hook_makes_rests_and_is_ended(graph: Graph) -> None:
     class Maker(LifecycleNode):
         async def on_configure(self) -> None:
             self.word = self.create_publisher(String, "word")
+            await self.word.wait_matched()
+            self.word.publish(String(data="in the hook"))
             self.spawn(self.run)
 
         async def run(self) -> None:
