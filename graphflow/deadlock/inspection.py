@@ -62,9 +62,11 @@ class Inspection:
             return self._last_waits
         search, watchdog = self._search, self._search.watchdog
         nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
+        reports = dict(search.reports)
         told = {
             **to_json(search.snapshot.take_for_others()),
-            "reports": [report.text for report in list(search.reports.values())],
+            "reports": [report.text for report in reports.values()],
+            "rings": [list(ring) for ring in reports],
             "process": self._process.session.zid,
             "stalls": search.stalls.texts,
             "nodes": nodes,

@@ -12,9 +12,10 @@ from __future__ import annotations
 import json
 import logging
 import threading
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from contextlib import suppress
 from functools import partial
+from types import MappingProxyType
 from typing import NamedTuple
 
 from graphflow.deadlock.chains import Chains
@@ -89,6 +90,16 @@ class Report(NamedTuple):
         """Whether its members call something else by now."""
         now = {name: _called(graph.activities[name]) for name in self.order if name in graph.activities}
         return any(not set(names).issubset(self.calls[name]) for name, names in now.items())
+
+
+class Picture(NamedTuple):
+    """What processes have answered, and this one's waits."""
+
+    graph: WaitGraph
+    answered: set[str]
+    """The processes whose waits it shows."""
+    told: dict[Ring, str]
+    """The deadlocks that others have reported and that still exist, with the process that has."""
 
 
 class Foreign(NamedTuple):
@@ -257,13 +268,13 @@ class Search:
 
         def first(replies: list[bytes], is_all: bool) -> None:
             nonlocal goes_on
-            before, answered = self._whole(replies)
+            before = self._whole(replies)
             if is_all:
-                self._unresponsive.compare(self.snapshot.take(), answered)
-            dead = () if goes_on else deadlocked(before)
-            if any(self._process.session.zid == before.activities[i].process for i in dead):
+                self._unresponsive.compare(self.snapshot.take(), before.answered)
+            dead = () if goes_on else deadlocked(before.graph)
+            if any(self._process.session.zid == before.graph.activities[i].process for i in dead):
                 goes_on = True
-                self._ask(lambda again, _: self._conclude(before, self._whole(again)[0]))
+                self._ask(lambda again, _: self._conclude(before.graph, self._whole(again)))
 
         self._ask(first)
 
@@ -273,60 +284,64 @@ class Search:
         self.pulls += 1
         self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, told)
 
-    def _whole(self, replies: list[bytes]) -> tuple[WaitGraph, set[str]]:
-        """The waits of all, and which processes answered."""
-        pictures, answered = [], {self._process.session.zid}
+    def _whole(self, replies: list[bytes]) -> Picture:
+        """The waits of all."""
+        graphs, answered, told = [], {self._process.session.zid}, dict[Ring, str]()
         for reply in replies:
             try:
                 data = json.loads(reply)
                 graph, process = from_json(data), str(data["process"])
+                rings = [frozenset(map(str, ring)) for ring in data["rings"]]
             except (ValueError, KeyError, TypeError, RecursionError) as error:
                 logger.debug("a snapshot of waits that cannot be read: %s", error)
                 continue
-            pictures.append(graph)
+            graphs.append(graph)
             answered.add(process)
-        return joined([*pictures, self.snapshot.take()]), answered
+            told |= dict.fromkeys(rings, process)
+        return Picture(joined([*graphs, self.snapshot.take()]), answered, told)
 
     def _look_again(self, replies: list[bytes], is_all: bool) -> None:
         """Whether what was reported still stands in other processes."""
         if not is_all:
             return
-        whole, answered = self._whole(replies)
-        self._take_back(whole, deadlocked(whole), answered)
+        whole = self._whole(replies)
+        self._take_back(whole.graph, deadlocked(whole.graph), whole.answered)
 
-    def _conclude(self, before: WaitGraph, now: WaitGraph) -> None:
-        self._dead = deadlocked(now, before)
-        for deadlock in explained(now, self._dead):
-            self._tell(deadlock, now)
+    def _conclude(self, before: WaitGraph, now: Picture) -> None:
+        self._dead = deadlocked(now.graph, before)
+        for deadlock in explained(now.graph, self._dead):
+            self._tell(deadlock, now.graph, now.told)
         if self.reports:  # to see when they are over
             self._schedule(min(self._period, 2 * PROBE_AFTER))
 
     # what is said
 
-    def _tell(self, deadlock: Deadlock, graph: WaitGraph) -> None:
+    def _tell(self, deadlock: Deadlock, graph: WaitGraph, elsewhere: Mapping[Ring, str] = MappingProxyType({})) -> None:
         members = [graph.activities[i] for i in deadlock.ring]
         # What only the source code shows must have lasted: a setter may be about to run.
         if deadlock.is_likely and not all(_is_old(a) for a in members):
             return
         ring, mine = frozenset(deadlock.ring), self._process.session.zid
-        who = " and ".join(title(a) for a in members)
         # One that was reported may have grown since, and another ring of it be found.
-        told = next((known for known in self.reports if known & ring), ring)
-        behind = [graph.activities[i] for i in (*deadlock.victims, *(ring - told))]
+        reporters = {**elsewhere, **dict.fromkeys(self.reports, mine)}
+        told = next((known for known in reporters if known & ring), ring)
+        core = members if told == ring else [graph.activities[i] for i in sorted(told & set(graph.activities))]
+        who = " and ".join(title(a) for a in core)
+        behind = [graph.activities[i] for i in (ring | {*deadlock.victims}) - told]
         victims = {title(a) for a in behind if a.process == mine}
         if self.policy == "break" and not deadlock.is_likely:
             self._break(deadlock, graph)
-        processes = {a.process for a in members}
-        first = min(processes - set(graph.blocked) or processes)
-        if first != mine and ring not in self._behind:
+        processes = {a.process for a in core}
+        first = reporters.get(told) or min(processes - set(graph.blocked) or processes)
+        if first != mine and told not in {*self._behind, *elsewhere}:
             self._process.session.ask_reports(answer_key(self._process.domain, LOOK, first), PULL_LIMIT, _nothing)
-        if first != mine and ring not in self._foreign:
-            held = frozenset((a.id, a.wait) for a in members if a.process == mine)
-            self._foreign[ring] = Foreign(first, who, processes, held)
+        held = frozenset((a.id, a.wait) for a in core if a.process == mine)
+        if held and first != mine and told not in self._foreign:
+            self._foreign[told] = Foreign(first, who, processes, held)
             if not self._is_watching:
                 self._is_watching = True
                 self._process.on_change(self._changed)
-        is_first = told not in self._behind and self._count(_lines(members)) == 1
+        is_first = told not in self._behind and self._count(_lines(core)) == 1
         if first == mine and told not in self.reports:
             involved = {a.process for a in behind} | processes
             in_vain, text = is_in_vain(deadlock, graph), explanation(deadlock, graph)

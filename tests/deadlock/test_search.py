@@ -757,6 +757,63 @@ async def test_a_ring_that_opens_and_closes_again(graph: Graph, caplog: Caplog) 
     assert cleared(caplog) == []
 
 
+class Crew(Node):
+    """Asks two others at once, or does what one of them asks for: then it asks back, after a while."""
+
+    work = Group(1)
+
+    def __init__(self, name: str, others: str) -> None:
+        super().__init__(name)
+        self.orders = [self.create_client(Empty, f"/{other}/obey") for other in others]
+        self.back = self.create_client(Empty, "/answer")
+        self.delay = 0.0
+
+    @subscription(String, "~/go", group=work)
+    async def ask(self, _: String) -> None:
+        self.create_service(Empty, "/answer", self.answer, group=self.work)
+        orders = (order.call(Empty.Request(), timeout=None) for order in self.orders)
+        await asyncio.gather(*orders, return_exceptions=True)
+
+    @service(Empty, "~/obey")
+    async def obey(self, request: Empty.Request) -> Empty.Response:
+        await self.clock.sleep(self.delay)
+        return await self.back.call(Empty.Request(), timeout=None)
+
+    async def answer(self, request: Empty.Request) -> Empty.Response:
+        return Empty.Response()
+
+
+@pytest.mark.parametrize("delay", [0.3, 1.0, 5.0])
+async def test_a_ring_that_grows_is_one_report(graph: Graph, caplog: Caplog, delay: float) -> None:
+    """Who comes to it late says nothing new, though it would have reported the whole of it (row 29).
+
+    What is left of it when another member gives up is a ring of its own.
+    """
+    graph.deadlock = "report"
+    crew = [Crew("a", "bc"), Crew("b", "ca"), Crew("c", "ab")]
+    await graph.start(*crew)
+    late, other, boss = sorted(crew, key=lambda node: node.context.session.zid)
+    late.delay = delay
+    await say(graph, f"{boss.full_name}/go")
+    await graph.clock.advance(0.3)
+    text = the_report(caplog)
+    await graph.clock.advance(20.0)
+
+    assert reports(caplog) == [text]
+    assert cleared(caplog) == []
+    said = [m for m in (r.getMessage() for r in caplog.records) if " waits behind the deadlock of " in m]
+    assert len(said) == 1
+    assert said[0].startswith(f"service obey of {late.full_name} waits behind the deadlock of ")
+
+    [run] = [run for runner in core_of(other).runners for run in runner.active]
+    run.cancel()
+    await graph.clock.advance(10.0)
+    _, rest = reports(caplog)
+    assert rest.startswith("DEADLOCK: 2 callbacks wait for each other in a ring\n")
+    assert f"service obey of {late.full_name} waits for the response of service /answer " in flat(rest)
+    assert len(cleared(caplog)) == 1
+
+
 async def test_two_rings_are_two_reports(graph: Graph, caplog: Caplog) -> None:
     """Each is told once, and neither as the other's victim."""
     graph.deadlock = "report"
