@@ -12,7 +12,20 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "graphflow"
 
-CELLAR = ("errors", "names", "qos", "times", "interface", "domain", "system", "wire", "msgs", "machines", "graph")
+CELLAR = (
+    "errors",
+    "names",
+    "qos",
+    "times",
+    "interface",
+    "domain",
+    "system",
+    "folders",
+    "wire",
+    "msgs",
+    "machines",
+    "graph",
+)
 FLOORS = ("transport", "executor", "deadlock", "runtime", "introspect", "bag", "supervisor", "testing", "nodes")
 DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
+import shutil
+import sys
 import tomllib
+from collections.abc import Mapping
+from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,6 +70,50 @@ def package_folder(package: str, root: Path) -> Path | None:
             if found and found[1] == package:
                 return file.parent
     return root if package in (root.name, _project_name(root)) else None
+
+
+def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | None:
+    """The folder of a package's files: of the project's, of a ROS 2 that is sourced, or of an installed Python package.
+
+    Args:
+        root: The folder of the project.
+        env: The environment.
+    """
+    own, sourced = package_folder(package, root), _sourced(package, env)
+    return own or (sourced / "share" / package if sourced else _python_package(package))
+
+
+def package_prefix(package: str, root: Path, env: Mapping[str, str]) -> Path | None:
+    """The folder below which a package is installed. Arguments as for `package_share`."""
+    own, sourced = package_folder(package, root), _sourced(package, env)
+    return own or sourced or (Path(sys.prefix) if _python_package(package) else None)
+
+
+def package_program(program: str, package: str, root: Path, env: Mapping[str, str]) -> Path | None:
+    """A package's program: installed with it, among its scripts, or beside this Python. Arguments as for `find`."""
+    own, sourced = package_folder(package, root), _sourced(package, env)
+    folders = [own / "scripts", own / package, own] if own else []
+    folders += [sourced / "lib" / package] if sourced else []
+    folders += [Path(sys.prefix) / "bin"]
+    found = shutil.which(program, path=os.pathsep.join(map(str, folders)))
+    return Path(found) if found else None
+
+
+def _sourced(package: str, env: Mapping[str, str]) -> Path | None:
+    """The prefix of a package in a ROS 2 that is sourced."""
+    prefixes = [Path(p) for p in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    index = Path("share/ament_index/resource_index/packages")
+    return next((prefix for prefix in prefixes if (prefix / index / package).is_file()), None)
+
+
+def _python_package(name: str) -> Path | None:
+    """The folder of an installed Python package."""
+    try:
+        spec = util.find_spec(name) if name.isidentifier() else None
+    except ValueError:  # a module that was not imported the usual way, such as __main__
+        spec = None
+    folders = list(spec.submodule_search_locations or []) if spec else []
+    return Path(folders[0]) if folders else None
 
 
 def _scripts(package: str, root: Path) -> dict[str, str]:

@@ -19,7 +19,6 @@ from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph.arguments import Arguments
-from graphflow.graph.executables import package_folder
 from graphflow.graph.faults import Problems, example, unknown_key, validated
 from graphflow.graph.model import (
     BLOCKS,
@@ -31,9 +30,9 @@ from graphflow.graph.model import (
     NodeSpec,
     keys_of,
 )
-from graphflow.graph.project import project_root, shown
+from graphflow.graph.project import shown
 from graphflow.graph.reading import read
-from graphflow.graph.substitutions import SubstitutionError, Substitutions, python_package, truth
+from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
 from graphflow.graph.tree import Item, first_of, located, merged, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
 
@@ -71,10 +70,10 @@ class Expansion:
 
     Args:
         given: Words of the command line, `name:=value`.
-        env: The environment; the process's own if None.
+        outside: What is around the file.
     """
 
-    def __init__(self, given: Sequence[str], env: Mapping[str, str] | None, problems: Problems) -> None:
+    def __init__(self, given: Sequence[str], outside: Outside, problems: Problems) -> None:
         self.nodes: dict[str, Item] = {}
         """By full name."""
         self.steps: dict[str, Item] = {}
@@ -86,12 +85,10 @@ class Expansion:
         """Nodes and steps that a condition has left out."""
         self.refused: set[str] = set()
         """Keys of nodes and steps whose names cannot be, which has been reported."""
-        self.folders: dict[str, Path] = {}
-        """The folder of each file, by the name that messages have for it."""
+        self.files: dict[str, Path] = {}
+        """By the names that messages have for them."""
         self.arguments = Arguments(given, problems)
-        self._env, self._problems = env, problems
-        self._root = Path()
-        """The project's folder."""
+        self._outside, self._problems = outside, problems
         self._rounds = self._made = 0
         self._relative = 0
         """Names so far that depend on a namespace."""
@@ -105,13 +102,12 @@ class Expansion:
 
     def file(self, top: Item, path: Path) -> None:
         """Take in the graph's own file."""
-        self._root = project_root(path)
         self._file(top, path, _Scope({}, (path.resolve(),)), {})
         self.arguments.refuse_strays()
 
     def _file(self, top: Item, path: Path, scope: _Scope, fixed: Mapping[str, Item]) -> Mapping[str, Item]:
         """Take in a file; returns its templates."""
-        self.folders[top.place.file] = path.resolve().parent
+        self.files[top.place.file] = path.resolve()
         entries = top.entries
         if entries.get("args") is None or isinstance(entries["args"].value, dict):
             outer = scope
@@ -166,7 +162,7 @@ class Expansion:
         if model is None:
             return scope
         file = block.entries["file"]
-        path = self.folders[file.place.file] / model.file
+        path = self.files[file.place.file].parent / model.file
         if path.resolve() in scope.files:
             self._problems.add(file.place, f"{model.file} includes itself")
             return scope
@@ -193,7 +189,7 @@ class Expansion:
             found = stems.get(nearest(path.stem, stems) or "")
             near = f"; did you mean {found!r}?" if found else ""
             raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
-        if len(self.folders) > MAX_FILES:
+        if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
         top = read(path, shown(path), self._problems.add)
         if not isinstance(top.value, dict):
@@ -451,16 +447,14 @@ class Expansion:
     def _one(self, value: Any, place: Place, scope: _Scope) -> Any:
         if not isinstance(value, str) or "$(" not in value:
             return value
-        folder = self.folders.get(place.file, Path())
+        file = self.files.get(place.file, Path())
+        params = first_of([group["params"].entries for group in scope.shared if "params" in group])
+        values = {name: item.plain() for name, item in params.items()} if "param" in value else {}
         try:
-            return Substitutions(scope.values, str(folder), self._env, self._package).apply(value)
+            return Substitutions(scope.values, file, self._outside, values).apply(value)
         except SubstitutionError as error:
             self._problems.add_unknown(place, str(error))
             return value
-
-    def _package(self, name: str) -> str | None:
-        folder = package_folder(name, self._root)
-        return str(folder) if folder is not None else python_package(name)
 
     def _substituted(self, item: Item, scope: _Scope) -> Item:
         """The same with every substitution made, in keys too."""

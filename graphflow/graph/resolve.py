@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from graphflow.errors import GraphFileError, InvalidName, Place
+from graphflow.folders import newest_logs
 from graphflow.graph import params_file, source
 from graphflow.graph.console import console_section
 from graphflow.graph.expand import Expansion
@@ -18,25 +20,29 @@ from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, R
 from graphflow.graph.project import project_root, shown
 from graphflow.graph.reading import read
 from graphflow.graph.source import Source
+from graphflow.graph.substitutions import Outside, Run
 from graphflow.graph.tree import Item, source_of, tree
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import did_you_mean, expand, split
 
 
-def load(path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
+def load(
+    path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None, *, run: Run | None = None
+) -> Plan:
     """Read and resolve a graph file.
 
     Args:
         path: The file.
         given: Arguments from the command line, `name:=value`.
         env: The environment; the process's own if None.
+        run: What `$(command ...)` is carried out by; it stays as it is written without.
 
     Raises:
         GraphFileError: Every mistake that could be found.
     """
     problems = Problems()
-    return _resolve(read(path, shown(path), problems.add), path, given, env, problems)
+    return _resolve(read(path, shown(path), problems.add), path, given, env, problems, run=run)
 
 
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
@@ -44,12 +50,24 @@ def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str
     return _resolve(tree(src), path, given, env, Problems())
 
 
-def _resolve(top: Item, path: Path, given: Sequence[str], env: Mapping[str, str] | None, problems: Problems) -> Plan:
+def _resolve(
+    top: Item,
+    path: Path,
+    given: Sequence[str],
+    env: Mapping[str, str] | None,
+    problems: Problems,
+    *,
+    run: Run | None = None,
+) -> Plan:
     if not isinstance(top.value, dict):
         what = "the file is empty; " if top.value is None else ""
         problems.add(top.place, f"{what}a graph file is a mapping with the key 'nodes'{example('nodes')}")
         problems.raise_any()
-    expansion = Expansion(given, env, problems)
+    root, name = project_root(path), path.stem.removesuffix(".launch")
+    given_name = top.entries.get("name")
+    logs = newest_logs(name if given_name is None else str(given_name.value))
+    outside = Outside(os.environ if env is None else env, root, logs, run)
+    expansion = Expansion(given, outside, problems)
     expansion.file(top, path)
     if not problems and not top.entries.keys() & {*BLOCKS}:
         problems.add(top.place, "the key 'nodes' is missing")
@@ -58,7 +76,7 @@ def _resolve(top: Item, path: Path, given: Sequence[str], env: Mapping[str, str]
     if model is None:
         problems.raise_any()
     assert model is not None
-    files = _ParamsFiles(src, expansion.folders, problems)
+    files = _ParamsFiles(src, expansion.files, problems)
     nodes = _nodes(src, model, files, problems)
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
@@ -67,9 +85,9 @@ def _resolve(top: Item, path: Path, given: Sequence[str], env: Mapping[str, str]
     console = console_section(src, problems.add)
     problems.raise_any()
     return Plan(
-        name=model.name or path.stem.removesuffix(".launch"),
+        name=model.name or name,
         file=src.file,
-        root=str(project_root(path)),
+        root=str(root),
         nodes=tuple(ordered_nodes),
         steps=tuple(ordered_steps),
         args=expansion.arguments.values,
@@ -86,11 +104,11 @@ class _ParamsFiles:
     """The parameter files of a graph; each is read once.
 
     Args:
-        folders: The folder that relative paths start from, by the file they are written in.
+        graph_files: The graph files, whose folders relative paths start from, by the names that messages have for them.
     """
 
-    def __init__(self, src: Source, folders: Mapping[str, Path], problems: Problems) -> None:
-        self._src, self._folders, self._problems = src, folders, problems
+    def __init__(self, src: Source, graph_files: Mapping[str, Path], problems: Problems) -> None:
+        self._src, self._graph_files, self._problems = src, graph_files, problems
         self._files: dict[Path, list[Section]] = {}
 
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
@@ -99,7 +117,7 @@ class _ParamsFiles:
         names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
         for i, name in enumerate(names):
             place = self._src.place((*at, i))
-            path = self._folders[place.file] / name
+            path = self._graph_files[place.file].parent / name
             if path not in self._files:
                 self._files[path] = self._read(path, place)
             sections = self._files[path]

@@ -11,21 +11,39 @@ import os
 import shlex
 import shutil
 import zlib
-from collections.abc import Callable, Mapping
-from importlib import util
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
 from graphflow.names import did_you_mean
 
 MAX_DEPTH = 20
 MAX_TEXT = 100_000
-"""Characters of a text, and bytes of a file that `$(file-content ...)` takes in."""
+"""Characters of a text, and bytes of a file that `$(file-content ...)` takes in, or that `$(command ...)` prints."""
+ON_STDERR = ("fail", "ignore", "warn", "capture")
+"""What may be done with what a program of `$(command ...)` writes to its error output."""
 
 
 class SubstitutionError(ValueError):
     """A substitution is malformed, unknown, or has no value."""
+
+
+Run = Callable[[list[str], str, Path, Mapping[str, str]], str]
+"""Runs a program in a folder and returns what it prints; the second argument is one of `ON_STDERR`."""
+
+
+class Outside(NamedTuple):
+    """What substitutions find outside their file."""
+
+    env: Mapping[str, str] = os.environ
+    root: Path = Path()
+    """The project's folder."""
+    logs: Path = Path()
+    """The folder of the logs."""
+    run: Run | None = None
+    """What `$(command ...)` is carried out by; it stays as it is written without."""
 
 
 class Substitutions:
@@ -33,22 +51,18 @@ class Substitutions:
 
     Args:
         args: Values of the file's arguments.
-        folder: The folder of the file.
-        env: The environment.
-        package: Finds the folder of a package.
+        file: The file.
+        outside: What is around it.
+        params: Values of the parameters that the groups around give to all nodes.
     """
 
     def __init__(
-        self,
-        args: Mapping[str, Any],
-        folder: str,
-        env: Mapping[str, str] | None = None,
-        package: Callable[[str], str | None] | None = None,
+        self, args: Mapping[str, Any], file: Path, outside: Outside, params: Mapping[str, Any] | None = None
     ) -> None:
         self._args = args
-        self._folder = folder
-        self._env = os.environ if env is None else env
-        self._package = package or python_package
+        self._file = file
+        self._env, self._root, self._logs, self._run = outside
+        self._params = params or {}
 
     def apply(self, value: Any) -> Any:
         """The value with every substitution in it made; a text that is one substitution takes its type.
@@ -133,17 +147,41 @@ class Substitutions:
         return self._env.get(name, default.strip())
 
     def _dirname(self, text: str) -> str:
-        if text:
-            raise SubstitutionError("write $(dirname)")
-        return self._folder
+        _words(text, 0, "dirname")
+        return str(self._file.parent)
+
+    def _filename(self, text: str) -> str:
+        _words(text, 0, "filename")
+        return str(self._file)
+
+    def _log_folder(self, text: str) -> str:
+        _words(text, 0, "log_dir")
+        return str(self._logs)
 
     def _share(self, text: str) -> str:
-        if len(text.split()) != 1:
-            raise SubstitutionError("write $(find-pkg-share PACKAGE)")
-        folder = self._package(text)
-        if folder is None:
-            raise SubstitutionError(f"$(find-pkg-share {text}): no package of that name is installed")
-        return folder
+        [package] = _words(text, 1, "find-pkg-share PACKAGE")
+        return _found(package_share(package, self._root, self._env), f"find-pkg-share {text}")
+
+    def _prefix(self, text: str) -> str:
+        [package] = _words(text, 1, "find-pkg-prefix PACKAGE")
+        return _found(package_prefix(package, self._root, self._env), f"find-pkg-prefix {text}")
+
+    def _program(self, text: str) -> str:
+        program, package = _words(text, 2, "exec-in-pkg EXECUTABLE PACKAGE")
+        _found(package_share(package, self._root, self._env), f"exec-in-pkg {text}")
+        found = package_program(program, package, self._root, self._env)
+        if found is None:
+            raise SubstitutionError(
+                f"$(exec-in-pkg {text}): there is no such program in the package; for a node write pkg: and exec:"
+            )
+        return str(found)
+
+    def _param(self, text: str) -> Any:
+        [name] = _words(text, 1, "param NAME")
+        if name not in self._params:
+            near = did_you_mean(name, self._params)
+            raise SubstitutionError(f"no group around this gives a parameter {name!r} to its nodes{near}")
+        return self._params[name]
 
     def _executable(self, text: str) -> str:
         found = shutil.which(text, path=self._env.get("PATH"))
@@ -152,7 +190,7 @@ class Substitutions:
         return found
 
     def _content(self, text: str) -> str:
-        path = Path(self._folder) / text
+        path = self._file.parent / text
         try:
             with path.open("rb") as file:
                 data = file.read(MAX_TEXT + 1)
@@ -165,13 +203,23 @@ class Substitutions:
 
     def _anonymous(self, text: str) -> str:
         # The same word for the same name in a file: its nodes can be referred to.
-        return f"{text}_{zlib.crc32(f'{self._folder} {os.getpid()} {text}'.encode()):08x}"
+        return f"{text}_{zlib.crc32(f'{self._file.parent} {os.getpid()} {text}'.encode()):08x}"
 
-    def _refuse(self, text: str) -> Any:
-        raise SubstitutionError(
-            f"$(command {text[:60]}): programs are not run while a file is read; write what it prints into a file, and"
-            " here $(file-content FILE)"
-        )
+    def _command(self, text: str) -> str:
+        """What a program prints. In quotes it may be followed by a word on its error output, as in ROS's files."""
+        try:
+            words = shlex.split(text)
+            on_stderr = words.pop() if len(words) == 2 and words[1] in ON_STDERR else "fail"
+            words = shlex.split(words[0]) if len(words) == 1 else words
+        except ValueError:  # a quotation that does not end
+            words = []
+        if not words:
+            raise SubstitutionError(f"write $(command 'PROGRAM ...') or $(command 'PROGRAM ...' {'|'.join(ON_STDERR)})")
+        return f"$(command {text})" if self._run is None else self._run(words, on_stderr, self._file.parent, self._env)
+
+    def _chosen(self, text: str) -> str:
+        condition, yes, *no = _words(text, (2, 3), "if CONDITION A B")
+        return yes if truth(condition) else "".join(no)
 
 
 def _closing(text: str, start: int) -> int:
@@ -192,14 +240,10 @@ def _text(value: Any) -> str:
     return str(value)
 
 
-def python_package(name: str) -> str | None:
-    """The folder of an installed Python package; None if there is none of that name."""
-    try:
-        spec = util.find_spec(name) if name.isidentifier() else None
-    except ValueError:  # a module that was not imported the usual way, such as __main__
-        spec = None
-    folders = list(spec.submodule_search_locations or []) if spec else []
-    return str(Path(folders[0])) if folders else None
+def _found(folder: Path | None, written: str) -> str:
+    if folder is None:
+        raise SubstitutionError(f"$({written}): no package of that name is installed")
+    return str(folder)
 
 
 def truth(value: Any) -> bool:
@@ -216,12 +260,14 @@ def truth(value: Any) -> bool:
     raise SubstitutionError(f"expected true or false, got {value!r}")
 
 
-def _words(text: str, count: int, form: str) -> list[str]:
+def _words(text: str, counts: int | Sequence[int] | None, form: str) -> list[str]:
+    """The words of a text, as a shell takes them; as many as it may have, or at least one."""
     try:
         words = shlex.split(text)
     except ValueError:
-        words = []
-    if len(words) != count:
+        raise SubstitutionError(f"write $({form})") from None
+    allowed = (counts,) if isinstance(counts, int) else counts
+    if not words if allowed is None else len(words) not in allowed:
         raise SubstitutionError(f"write $({form})")
     return words
 
@@ -231,15 +277,24 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, str], Any]] = {
     "env": Substitutions._environment,
     "optenv": Substitutions._optional_environment,
     "dirname": Substitutions._dirname,
+    "filename": Substitutions._filename,
+    "log_dir": Substitutions._log_folder,
+    "launch_log_dir": Substitutions._log_folder,
+    "param": Substitutions._param,
     "find-pkg-share": Substitutions._share,
+    "find-pkg-prefix": Substitutions._prefix,
+    "exec-in-pkg": Substitutions._program,
     "find-exec": Substitutions._executable,
     "file-content": Substitutions._content,
     "anon": Substitutions._anonymous,
     "eval": Substitutions._eval,
-    "command": Substitutions._refuse,
+    "command": Substitutions._command,
+    "if": Substitutions._chosen,
     "not": lambda _, text: not truth(text),
     "and": lambda _, text: all(map(truth, _words(text, 2, "and A B"))),
     "or": lambda _, text: any(map(truth, _words(text, 2, "or A B"))),
+    "all": lambda _, text: all(map(truth, _words(text, None, "all A B ..."))),
+    "any": lambda _, text: any(map(truth, _words(text, None, "any A B ..."))),
     "equals": lambda _, text: len(set(_words(text, 2, "equals A B"))) == 1,
     "not-equals": lambda _, text: len(set(_words(text, 2, "not-equals A B"))) == 2,
 }

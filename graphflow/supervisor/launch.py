@@ -244,8 +244,9 @@ class _Launch:
         from graphflow.graph.resolve import load
         from graphflow.supervisor.classes import read_interfaces
         from graphflow.supervisor.debugging import debugged
+        from graphflow.supervisor.printed import printed
 
-        plan = load(self._file, self._given)
+        plan = load(self._file, self._given, run=printed)
         if self._only:
             plan = plan.only(self._only)
         if self._debug:

@@ -13,6 +13,7 @@ import contextlib
 import io
 import json
 import os
+import shlex
 import sys
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
@@ -94,17 +95,28 @@ def text(value: Any) -> str:
             default = value.get("default_value", 1)
             return f"$(env {text(first)}{'' if default is None else f' {text(default)}'})"
         case "FindPackageShare" | "FindPackagePrefix":
-            return f"$(find-pkg-share {text(first)})"
+            return f"$(find-pkg-{value.name[11:].lower()} {text(first)})"
         case "ExecutableInPackage":
-            return f"$(find-exec {text(value.get('executable', 0))})"
+            return f"$(exec-in-pkg {text(value.get('executable', 0))} {text(value.get('package', 1))})"
         case "PathJoinSubstitution":
             return "/".join(text(part).strip("/") if i else text(part) for i, part in enumerate(first))
         case "PythonExpression":
             return f"$(eval {text(first)})"
         case "ThisLaunchFileDir":
             return "$(dirname)"
+        case "ThisLaunchFile":
+            return "$(filename)"
+        case "LaunchLogDir" | "LogDir":
+            return "$(log_dir)"
+        case "Parameter":
+            return f"$(param {text(first)})"
+        case "IfElseSubstitution":
+            return f"$(if {' '.join(map(_quoted, (*value.args, *value.kwargs.values())))})"
+        case "AnySubstitution" | "AllSubstitution":
+            return f"$({value.name[:3].lower()} {' '.join(map(_quoted, value.args))})"
         case "Command":
-            return f"$(command {text(first)})"
+            on_stderr = value.get("on_stderr", 1)
+            return f"$(command {_quoted(first)}{'' if on_stderr is None else f' {text(on_stderr)}'})"
         case "FileContent":
             return f"$(file-content {text(first)})"
         case "FindExecutable":
@@ -115,13 +127,17 @@ def text(value: Any) -> str:
             return f"$(not {text(first)})"
         case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
             word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.name[:-12]]
-            return f"$({word} {' '.join(text(arg) for arg in value.args)})"
+            return f"$({word} {' '.join(map(_quoted, value.args))})"
         case "TextSubstitution" | "ParameterValue" | "ParameterFile" | "PythonLaunchDescriptionSource":
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
     _problem(value, f"{value.name} has no words in a graph file")
     return ""
+
+
+def _quoted(value: Any) -> str:
+    return shlex.quote(text(value))
 
 
 def _problem(value: Said, message: str) -> None:
@@ -347,7 +363,7 @@ class _StandIn(ModuleType):
 
 def _function(name: str) -> Any:
     if name in ("get_package_share_directory", "get_package_share_path", "get_package_prefix"):
-        return lambda package, *_: f"$(find-pkg-share {package})"
+        return lambda package, *_: f"$(find-pkg-{'prefix' if name.endswith('prefix') else 'share'} {package})"
     return lambda *_, **__: None
 
 

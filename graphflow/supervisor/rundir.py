@@ -26,6 +26,7 @@ from typing import Any
 
 from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
+from graphflow.folders import log_root, named, newest_logs
 from graphflow.system import is_portable, user_id
 
 SUPERVISOR_LOG = "+supervisor.log"
@@ -44,7 +45,7 @@ def runtime_root() -> Path:
     Raises:
         SupervisorError: The folder cannot be made, or belongs to another user.
     """
-    given = _folder("XDG_RUNTIME_DIR")
+    given = named("XDG_RUNTIME_DIR")
     root = given / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
     try:
         root.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -54,26 +55,6 @@ def runtime_root() -> Path:
     if found.st_uid != user_id() or not stat.S_ISDIR(found.st_mode):
         raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
     return root
-
-
-def state_root() -> Path:
-    """The folder of what is kept for this user from one run to the next."""
-    return (_folder("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "graphflow"
-
-
-def log_root() -> Path:
-    """The folder of all logs."""
-    given = os.environ.get("ROS_LOG_DIR")
-    return Path(given).absolute() if given else state_root()
-
-
-def _folder(variable: str) -> Path | None:
-    """A folder that the environment names; a relative one would be another in each place, and counts as none.
-
-    Source: XDG Base Directory Specification.
-    """
-    given = os.environ.get(variable, "")
-    return Path(given) if os.path.isabs(given) else None
 
 
 def new_run_id() -> str:
@@ -90,7 +71,7 @@ def open_logs(graph: str, run_id: str) -> Path:
     folder = log_root() / graph / run_id
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        link = folder.parent / "latest"
+        link = newest_logs(graph)
         fresh = folder.parent / f".latest-{os.getpid()}"
         fresh.unlink(missing_ok=True)
         if not is_portable():  # links take a privilege on Windows that few users have
@@ -103,7 +84,7 @@ def open_logs(graph: str, run_id: str) -> Path:
 
 def latest_logs(graph: str | None) -> Path | None:
     """The log folder of the newest run, of one graph or of any; None when nothing has ever run."""
-    runs = [f for f in log_root().glob(f"{graph or '*'}/*/") if f.name != "latest"]
+    runs = [f for f in log_root().glob(f"{graph or '*'}/*/") if f != newest_logs(f.parent.name)]
     return max(runs, key=lambda f: f.stat().st_mtime, default=None)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.style import Style
 
-from graphflow.supervisor.rundir import state_root
+from graphflow.folders import state_root
 from graphflow.tui.actions import shown
 from graphflow.tui.bars import Bar
 

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from graphflow.graph.executables import Executable, find, package_folder
+from graphflow.graph.executables import (
+    Executable,
+    find,
+    package_folder,
+    package_prefix,
+    package_program,
+    package_share,
+)
 
 SETUP = (
     "from setuptools import setup\nsetup(entry_points={'console_scripts': ['go = my_robot.driver:main', 'x=a:b']})\n"
@@ -56,3 +65,29 @@ def test_folders_of_packages(root: Path) -> None:
     (root.parent / "pyproject.toml").write_text("[project")
     assert package_folder("lab", root.parent) is None
     assert package_folder(root.parent.name, root.parent) == root.parent
+
+
+def test_where_packages_are(root: Path, tmp_path: Path) -> None:
+    """The project's own come first, then those of a ROS 2 that is sourced, then Python's."""
+    ros = tmp_path / "opt"
+    for package in ("my_robot", "nav2", "numpy"):
+        (ros / "share/ament_index/resource_index/packages").mkdir(parents=True, exist_ok=True)
+        (ros / "share/ament_index/resource_index/packages" / package).touch()
+    (ros / "lib/nav2").mkdir(parents=True)
+    for program in (ros / "lib/nav2/planner", root / "scripts/calibrate"):
+        program.parent.mkdir(exist_ok=True)
+        program.touch(mode=0o755)
+    sourced = {"AMENT_PREFIX_PATH": f"/nowhere:{ros}"}
+
+    assert package_share("my_robot", root, sourced) == root
+    assert package_share("nav2", root, sourced) == ros / "share/nav2"
+    assert package_prefix("nav2", root, sourced) == ros
+    assert package_share("numpy", root, sourced) == ros / "share/numpy"
+    assert package_share("numpy", root, {}) == Path(np.__path__[0])
+    assert package_prefix("numpy", root, {}) == Path(sys.prefix)
+    assert package_prefix("nav2", root, {}) is None
+
+    assert package_program("planner", "nav2", root, sourced) == ros / "lib/nav2/planner"
+    assert package_program("planner", "nav2", root, {}) is None
+    assert package_program("calibrate", "my_robot", root, {}) == root / "scripts/calibrate"
+    assert package_program("calibrate", "nav2", root, sourced) is None

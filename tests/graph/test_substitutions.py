@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import graphflow
-from graphflow.graph.substitutions import MAX_DEPTH, SubstitutionError, Substitutions
+from graphflow.graph.substitutions import MAX_DEPTH, Outside, SubstitutionError, Substitutions
 from tests.cases import count
 
 ARGS: dict[str, Any] = {
@@ -26,7 +28,8 @@ ENV = {"USER": "ada", "EMPTY": "", "ARG": "gain", "TWO": "a b", "PARENTHESIS": "
 
 
 def apply(value: Any) -> Any:
-    return Substitutions(ARGS, "/home/ada/graphs", ENV).apply(value)
+    outside = Outside(ENV, Path("/home/ada"), Path("/home/ada/logs/lab/latest"))
+    return Substitutions(ARGS, Path("/home/ada/graphs/lab.yaml"), outside, {"rate": 2.5}).apply(value)
 
 
 @pytest.mark.parametrize(
@@ -51,6 +54,16 @@ def test_what_has_no_substitution_stays(value: Any) -> None:
         ("$(env EMPTY full)", ""),
         ("$(dirname)", "/home/ada/graphs"),
         ("$(dirname)/../maps", "/home/ada/graphs/../maps"),
+        ("$(filename)", "/home/ada/graphs/lab.yaml"),
+        ("$(log_dir)/map.pgm", "/home/ada/logs/lab/latest/map.pgm"),
+        ("$(launch_log_dir)", "/home/ada/logs/lab/latest"),
+        ("$(param rate)", 2.5),
+        ("$(find-pkg-prefix numpy)", sys.prefix),
+        ("$(exec-in-pkg gf graphflow)", f"{sys.prefix}/bin/gf"),
+        ("$(if $(var on) a 'b c')", "a"),
+        ("$(if false a 'b c')", "b c"),
+        ("x$(if 0 a)", "x"),
+        ("$(command 'xacro $(var name).urdf' warn)", "$(command 'xacro turtle2.urdf' warn)"),
         ("$(var $(var which))", "turtle2"),
         ("$(var $(env ARG))", 2.5),
         ("$(env NOBODY $(var name))", "turtle2"),
@@ -97,7 +110,7 @@ def test_values_are_not_read_again() -> None:
 def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without an environment given, the process's own is used."""
     monkeypatch.setenv("GRAPHFLOW_TEST_WORD", "here")
-    assert Substitutions({}, "/").apply("$(env GRAPHFLOW_TEST_WORD)") == "here"
+    assert Substitutions({}, Path("/"), Outside()).apply("$(env GRAPHFLOW_TEST_WORD)") == "here"
 
 
 @pytest.mark.parametrize(
@@ -109,6 +122,21 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
         ("$(env)", "write $(env NAME) or $(env NAME default)"),
         ("$(env NOBODY)", "the environment variable NOBODY is not set; give a default: $(env NAME default)"),
         ("$(dirname x)", "write $(dirname)"),
+        ("$(param)", "write $(param NAME)"),
+        ("$(param rat)", "no group around this gives a parameter 'rat' to its nodes; did you mean 'rate'?"),
+        ("$(if true)", "write $(if CONDITION A B)"),
+        ("$(if maybe a b)", "expected true or false, got 'maybe'"),
+        ("$(all)", "write $(all A B ...)"),
+        ("$(any 'true)", "write $(any A B ...)"),
+        ("$(find-pkg-prefix nowhere_to_be)", "no package of that name is installed"),
+        ("$(exec-in-pkg gf)", "write $(exec-in-pkg EXECUTABLE PACKAGE)"),
+        ("$(exec-in-pkg gf nowhere_to_be)", "no package of that name is installed"),
+        (
+            "$(exec-in-pkg talker graphflow)",
+            "there is no such program in the package; for a node write pkg:",
+        ),
+        ("$(command)", "write $(command 'PROGRAM ...')"),
+        ("$(command 'xacro)", "write $(command 'PROGRAM ...')"),
         ("$(find-pkg-share)", "write $(find-pkg-share PACKAGE)"),
         ("$(find-pkg-share nowhere_to_be)", "no package of that name is installed"),
         ("$(find-pkg-share ../x)", "no package of that name is installed"),
@@ -131,7 +159,7 @@ def test_what_cannot_be_substituted(text: str, message: str) -> None:
 def test_no_argument_to_be_near_to() -> None:
     """In a file without arguments, the way out is to declare one."""
     with pytest.raises(SubstitutionError, match="there is no argument 'x'; declare it under args:"):
-        Substitutions({}, "/", {}).apply("$(var x)")
+        Substitutions({}, Path("/"), Outside({})).apply("$(var x)")
 
 
 def test_nesting_has_an_end() -> None:
@@ -152,3 +180,11 @@ def test_any_text_is_substituted_or_refused(words: list[str]) -> None:
         apply("".join(words))
     except SubstitutionError:
         pass
+
+
+@pytest.mark.parametrize(("words", "word"), [("1 true", "true"), ("true 0", "false"), ("$(var on)", "true")])
+def test_all(words: str, word: str) -> None:
+    """Every one of them, as many as there are."""
+    assert apply(f"is $(all {words})") == f"is {word}"
+    assert apply(f"is $(any {words} false)") == "is true"
+    assert apply("$(any false 0)") is False

@@ -225,6 +225,19 @@ def test_ctrl_c_at_any_moment(machine: Machine, project: Path, moment: float) ->
     assert "Traceback" not in up.text
 
 
+@slow
+@pytest.mark.real
+def test_ctrl_c_while_a_program_prints_what_the_file_needs(machine: Machine, project: Path) -> None:
+    """It ends with the command that waits for it."""
+    script = "echo $$ > pid.new; mv pid.new pid; exec sleep 60"
+    text = f"args:\n  x: {{default: $(command 'sh -c \"{script}\"')}}\n{GOOD}"
+    up = machine.start("up", "--no-console", write(project, text), cwd=project)
+    machine.until((project / "pid").exists, "the program runs")
+    up.process.send_signal(signal.SIGINT)
+    up.process.wait(15.0)
+    nothing_is_left(machine, [int((project / "pid").read_text())])
+
+
 @pytest.mark.real
 @pytest.mark.skipif(is_portable(), reason="the portable way has no signals")
 def test_a_stopped_rendezvous_is_named(machine: Machine, project: Path) -> None:

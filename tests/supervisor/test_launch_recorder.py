@@ -95,6 +95,17 @@ def generate_launch_description():
         launch.actions.ExecuteProcess(cmd=[program, "-x"]),
         launch.actions.ExecuteProcess(cmd=["cat", os.path.join(share, f"{model}.urdf")]),
         launch.actions.AppendEnvironmentVariable("P", share),
+        launch.actions.ExecuteProcess(cmd=[
+            launch.substitutions.Command(["xacro ", share, "/a b.xacro"]),
+            launch.substitutions.Command("x", on_stderr="warn"),
+            launch.substitutions.ThisLaunchFile(),
+            launch.substitutions.LaunchLogDir(),
+            launch.substitutions.IfElseSubstitution("true", "a b", "c"),
+            launch.substitutions.AnySubstitution("true", launch.substitutions.LaunchConfiguration("x")),
+            launch_ros.substitutions.FindPackagePrefix("robot"),
+            launch_ros.substitutions.ExecutableInPackage("look", "tools"),
+            launch_ros.substitutions.Parameter("rate"),
+        ]),
     ])
 """
 
@@ -104,10 +115,21 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
     (tmp_path / "a.launch.py").write_text(SMALL)
     told = record(tmp_path / "a.launch.py")
     assert told["problems"] == []
-    look, cat, append = told["actions"]
+    look, cat, append, many = told["actions"]
     assert look["node"] == {"line": 11, "pkg": "tools", "exec": "look", "args": ["-x"]}
     assert cat["executable"]["cmd"] == ["cat", "$(find-pkg-share robot)/$(env NO_SUCH_MODEL).urdf"]
     assert append["append_env"]["value"] == "$(find-pkg-share robot)"
+    assert many["executable"]["cmd"] == [
+        "$(command 'xacro $(find-pkg-share robot)/a b.xacro')",
+        "$(command x warn)",
+        "$(filename)",
+        "$(log_dir)",
+        "$(if true 'a b' c)",
+        "$(any true '$(var x)')",
+        "$(find-pkg-prefix robot)",
+        "$(exec-in-pkg look tools)",
+        "$(param rate)",
+    ]
 
 
 @pytest.mark.parametrize(

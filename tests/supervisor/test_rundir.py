@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import SupervisorError
+from graphflow.folders import log_root
 from graphflow.supervisor import rundir
 from graphflow.supervisor.rundir import (
     SOCKET_PATH_LIMIT,
@@ -21,7 +22,6 @@ from graphflow.supervisor.rundir import (
     RunDirectory,
     choose,
     log_file,
-    log_root,
     new_run_id,
     open_logs,
     read_run,
