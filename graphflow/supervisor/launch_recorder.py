@@ -227,6 +227,8 @@ def _action(said: Said) -> tuple[str, Any]:
             found = {"autostart": "true"} if get("autostart") is True else {}
             return "node", {**_node(said), **found}
         case "ComposableNodeContainer":
+            for key in sorted(_OF_PROCESSES & {key for key, value in said.kwargs.items() if value}):
+                _problem(said, f"{key}: its container is a process that nodes share; write it at the nodes")
             return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
         case "LoadComposableNodes":
             target = get("target_container")
@@ -306,6 +308,19 @@ def _node(said: Said) -> dict[str, Any]:
     if params:
         found["param"] = params
     return found
+
+
+_OF_PROCESSES = {
+    "respawn",
+    "parameters",
+    "remappings",
+    "env",
+    "additional_env",
+    "on_exit",
+    "ros_arguments",
+    "arguments",
+}
+"""What a container may be given that its nodes here must be given."""
 
 
 def _components(said: Said) -> list[dict[str, Any]]:

@@ -82,6 +82,34 @@ def test_what_has_no_words() -> None:
     assert len(problems) == 3
 
 
+CONTAINER = """
+from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer
+from launch_ros.descriptions import ComposableNode
+
+def generate_launch_description():
+    return LaunchDescription([
+        ComposableNodeContainer(
+            name="eyes", namespace="", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[ComposableNode(package="composition", plugin="composition::Talker")],
+            respawn=True, parameters=[], output="screen",
+        ),
+    ])
+"""
+
+
+def test_what_a_container_cannot_be_given(tmp_path: Path) -> None:
+    """Its nodes can."""
+    (tmp_path / "a.launch.py").write_text(CONTAINER)
+    told = record(tmp_path / "a.launch.py")
+    assert told["actions"][0]["node_container"]["composable_node"][0]["plugin"] == "composition::Talker"
+    [problem] = told["problems"]
+    assert problem == {
+        "line": 8,
+        "message": "respawn: its container is a process that nodes share; write it at the nodes",
+    }
+
+
 SMALL = """
 import os
 import launch
