@@ -30,11 +30,20 @@ class Endpoint(Part):
 
     Args:
         on_event: Called with each `QosEvent`, one after the other; a `def` or an `async def`.
+        type_hash: RIHS01 of the type, where its definition is not known here.
     """
 
     kind: Kind
 
-    def __init__(self, host: Host, type_name: str, name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
+    def __init__(
+        self,
+        host: Host,
+        type_name: str,
+        name: str,
+        qos: Qos,
+        on_event: OnEvent | None = None,
+        type_hash: str = "",
+    ) -> None:
         self.host = host
         self.type_name = type_name
         self.name = name
@@ -44,6 +53,7 @@ class Endpoint(Part):
         """How the endpoint is announced; None until the node runs."""
         self.matched: dict[str, Entity] = {}
         """The counterparts in the graph that this endpoint reaches, by token."""
+        self._type_hash = type_hash
         self._declared: list[Closable] = []
         self._on_event = on_event
         self._event_runner: Runner | None = None
@@ -89,7 +99,7 @@ class Endpoint(Part):
             host.name,
             self.name,
             self.type_name,
-            registry.hash_of(self.type_name),
+            self._type_hash or registry.hash_of(self.type_name),
             self.qos,
         )
         if self._on_event is not None:

@@ -85,8 +85,6 @@ class Components:
             SupervisorError: There is no such process, it does not run, or the node cannot be made or started.
         """
         process = self._container(container)
-        if any(known.name == node.name for other in self._processes.values() for known in other.nodes):
-            raise SupervisorError(f"the graph has a node {node.name} already; give this one another name with -n NAME")
         shared = replace(node, process=process.name)
         told = await self._order(process, {"do": "load", "node": shared.to_json()}, shared)
         return told["number"], told["node"]
@@ -127,14 +125,22 @@ class Components:
             raise SupervisorError(f"the graph has no process {container!r}{near}")
         if process.command:
             raise SupervisorError(f"{container} is a foreign program, into which no node can be loaded")
-        if process.state is not State.READY:
-            raise SupervisorError(f"{container} is not running: {process.word}")
         return process
+
+    def _refuse(self, process: Process, node: PlannedNode | None) -> None:
+        """Refuse an order that cannot be carried out by now."""
+        if process.state is not State.READY:
+            raise SupervisorError(f"{process.name} is not running: {process.word}")
+        coming = [order.node for order in self._given.values() if order.node is not None]
+        there = [known for other in self._processes.values() for known in other.nodes]
+        if node is not None and any(known.name == node.name for known in (*there, *coming)):
+            raise SupervisorError(f"the graph has a node {node.name} already; give this one another name with -n NAME")
 
     async def _order(self, process: Process, order: dict[str, Any], node: PlannedNode | None) -> dict[str, Any]:
         number = next(self._numbers)
         try:
             async with asyncio.timeout(LIMIT), self._turns[process.name]:
+                self._refuse(process, node)
                 given = self._given[number] = _Order(process, node, asyncio.get_running_loop().create_future())
                 self._starter.tell(process.name, {**order, "order": number})
                 told = await given.answer

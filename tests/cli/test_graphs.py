@@ -143,6 +143,7 @@ def test_show_args(machine: Machine, tmp_path: Path) -> None:
         assert (problem or "no arguments") in machine.look("up", "-s", str(file), code=2 if problem else 0)
 
 
+@slow
 def test_a_part_of_a_graph_and_in_place_of_it(machine: Machine) -> None:
     """`--only` starts a node and what it needs; `--replace` stops what runs of the file first; logs can be chosen."""
     project = make_project(machine.run_directory / "lab")

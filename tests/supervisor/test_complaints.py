@@ -10,7 +10,7 @@ import psutil
 import pytest
 
 from graphflow.system import is_portable
-from tests.cases import some
+from tests.cases import slow, some
 from tests.conftest import Machine, alive
 from tests.supervisor.running import nothing_is_left, rows, write
 
@@ -28,6 +28,7 @@ nodes:
 """
 
 
+@slow
 @pytest.mark.skipif(is_portable(), reason="the portable way has no signals for groups of processes")
 @pytest.mark.parametrize("number", some(["SIGINT", "SIGTERM", "SIGHUP"], "SIGINT"))
 def test_the_end_of_a_graph(machine: Machine, project: Path, number: str) -> None:
@@ -109,6 +110,7 @@ def test_where_a_name_comes_from(machine: Machine, project: Path) -> None:
     assert "by the remap chatter:=news (lab.yaml:4:" in told
 
 
+@slow
 def test_two_nodes_of_one_name(machine: Machine, project: Path) -> None:
     """In one file, in two graphs, and by hand: the second is refused, and says who has the name. launch_ros#124."""
     twice = "nodes:\n  /talker: {class: nodes.talker:Talker}\n  talker: {class: nodes.listener:Listener}\n"

@@ -170,8 +170,23 @@ async def test_orders_to_one_process_wait_for_each_other() -> None:
     tasks = [asyncio.create_task(stage.components.load("/c", node(name))) for name in ("/x", "/y")]
     await asyncio.sleep(0.01)
     assert len(stage.worker.orders) == 1
+    stage.processes[1].state = State.ENDED
     stage.components.lost(stage.processes[1])
-    await asyncio.gather(*tasks, return_exceptions=True)
+    first, second = await asyncio.gather(*tasks, return_exceptions=True)
+    assert str(first) == "its process has ended"
+    assert str(second).startswith("/c is not running")
+    assert len(stage.worker.orders) == 1
+
+
+async def test_two_nodes_of_one_name_at_once() -> None:
+    """The second is refused while the first is on its way."""
+    stage = Stage()
+    stage.worker.is_silent = True
+    first = asyncio.create_task(stage.components.load("/c", node("/x")))
+    await asyncio.sleep(0)
+    with pytest.raises(SupervisorError, match="the graph has a node /x already"):
+        await stage.components.load("tutorial", node("/x"))
+    first.cancel()
 
 
 async def test_what_joins_without_an_order() -> None:

@@ -143,6 +143,7 @@ def test_a_graph_outlives_its_guardian(machine: Machine, nursery: list[int]) -> 
     nothing_is_left(machine, nursery)
 
 
+@slow
 @pytest.mark.parametrize("name", some(["supervisor", "preload"], "supervisor"))
 def test_down_ends_a_graph_whose_processes_are_stopped(machine: Machine, nursery: list[int], name: str) -> None:
     """It says which one does not answer."""

@@ -238,6 +238,7 @@ def test_ctrl_c_while_a_program_prints_what_the_file_needs(machine: Machine, pro
     nothing_is_left(machine, [int((project / "pid").read_text())])
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.skipif(is_portable(), reason="the portable way has no signals")
 def test_a_stopped_rendezvous_is_named(machine: Machine, project: Path) -> None:

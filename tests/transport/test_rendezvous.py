@@ -14,6 +14,7 @@ from graphflow.errors import TransportError
 from graphflow.transport import rendezvous
 from graphflow.transport.client import Client
 from graphflow.transport.config import close_session
+from tests.cases import slow
 
 pytestmark = pytest.mark.real
 
@@ -73,6 +74,7 @@ def test_who_listens(port: int) -> None:
     assert rendezvous.address("tcp/[::1]:7447") == ("::1", 7447)
 
 
+@slow
 @pytest.mark.parametrize("greeting", [b"", b"SSH-2.0-OpenSSH_9.2\r\n"])
 def test_a_listener_that_is_no_zenoh_is_named(port: int, greeting: bytes) -> None:
     """Whether it says nothing or something else, its process is named, and what to do."""

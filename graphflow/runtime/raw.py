@@ -1,0 +1,192 @@
+"""Publishers and subscriptions of serialized messages: of any type, also one whose definition is not known here.
+
+Recorders, players and meters use them: nothing is decoded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from graphflow.errors import DecodeError
+from graphflow.msgs import registry
+from graphflow.qos import Durability, History, Qos
+from graphflow.runtime.core import core_of
+from graphflow.runtime.endpoints import Endpoint
+from graphflow.runtime.events import OnEvent
+from graphflow.runtime.handover import Handed, Receiver
+from graphflow.runtime.host import Host
+from graphflow.runtime.node import Node
+from graphflow.runtime.subscriptions import KEEP_ALL_BOUND
+from graphflow.transport.base import Inbox, Sender
+from graphflow.wire import attachment
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Kind
+
+AT_ONCE = 64
+"""Messages that are handed on before others have a turn of the loop."""
+UNKNOWN = MessageInfo(0, 0, bytes(16))
+"""Stands for what a message without a readable attachment does not say."""
+
+Callback = Callable[[bytes, MessageInfo], object]
+"""Takes a serialized message (CDR, with its header of four bytes), and what came beside it."""
+
+
+class RawSubscription(Endpoint):
+    """A subscription that hands on messages as they came. Make it by `subscribe`."""
+
+    kind = Kind.SUBSCRIPTION
+
+    def __init__(
+        self,
+        host: Host,
+        type_name: str,
+        name: str,
+        qos: Qos,
+        callback: Callback,
+        type_hash: str = "",
+        on_event: OnEvent | None = None,
+    ) -> None:
+        super().__init__(host, type_name, name, qos, on_event, type_hash)
+        self.received = 0
+        """Messages handed on."""
+        self._callback = callback
+        self._inbox: Inbox | None = None
+        self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unread
+
+    @property
+    def dropped(self) -> int:
+        """Messages lost because the queue (`qos.depth`) was full."""
+        return self._inbox.dropped if self._inbox is not None else 0
+
+    def _open(self, key: str) -> None:
+        context = self.host.context
+        self._read = context.session.read
+        bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
+        self._inbox = Inbox(context.session.bell, bound, self._arrived)
+        # What nodes of this process publish comes by hand, as for other subscriptions.
+        ignore_local = self.qos.durability is Durability.VOLATILE
+        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))
+        context.handover.join(key, self)
+
+    def hand(self, handed: Handed) -> None:
+        """Take a message of a publisher of this process."""
+        if self._inbox is not None:
+            self._inbox.put(handed)
+
+    def _arrived(self) -> None:
+        inbox = self._inbox
+        if inbox is None or self.entity is None:
+            return
+        items = inbox.items
+        for _ in range(min(AT_ONCE, len(items))):
+            arrival = items.popleft()
+            self.received += 1
+            if arrival.__class__ is Handed:
+                self._callback(arrival.take().to_bytes(), MessageInfo._make(arrival.fields))
+                continue
+            payload, beside = self._read(arrival)
+            try:
+                info = MessageInfo._make(attachment.fields(beside or b""))
+            except DecodeError:  # peers that send none, or one of another layout, are heard anyway
+                info = UNKNOWN
+            self._callback(payload, info)
+        if items:
+            self.host.context.loop.call_soon(self._arrived)
+
+    def statistics(self) -> dict[str, Any]:
+        return {"received": self.received, "dropped": self.dropped, **super().statistics()}
+
+    def close(self) -> None:
+        if self.entity is not None:
+            self.host.context.handover.leave(self.entity.data_key, self)
+        super().close()
+
+
+class RawPublisher(Endpoint):
+    """A publisher of messages that are serialized already. Make it by `advertise`."""
+
+    kind = Kind.PUBLISHER
+
+    def __init__(
+        self,
+        host: Host,
+        type_name: str,
+        name: str,
+        qos: Qos,
+        type_hash: str = "",
+        on_event: OnEvent | None = None,
+    ) -> None:
+        super().__init__(host, type_name, name, qos, on_event, type_hash)
+        self.published = 0
+        """Messages sent since the start; also the last sequence number."""
+        self._sender: Sender | None = None
+        self._here: Sequence[Receiver] = ()
+
+    def _open(self, key: str) -> None:
+        self._sender = self.host.context.session.open_sender(key, self.qos, only_others=True)
+        self._declared.append(self._sender)
+        self._here = self.host.context.handover.receivers(key, self.qos.durability)
+
+    def publish(self, payload: bytes) -> None:
+        """Send a serialized message. Never waits.
+
+        Args:
+            payload: CDR, with its header of four bytes. Nothing looks at it, unless subscriptions of this process
+                are to get it.
+
+        Raises:
+            DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
+            ClosedError: The node is not running.
+        """
+        fields = (self.published + 1, self.host.context.clock.time_ns(), self._announced().gid)
+        if self._here:
+            codec, receivers = registry.codec(self.type_name), tuple(self._here)
+            handed = Handed(codec.decode(payload), fields, len(receivers), codec.clone)
+            for receiver in receivers:
+                receiver.hand(handed)
+        self.published += 1
+        if self._sender is not None and self._sender.is_wanted:
+            self._sender.put(payload, attachment=attachment.pack(*fields))
+
+    def statistics(self) -> dict[str, Any]:
+        return {"published": self.published, **super().statistics()}
+
+    def close(self) -> None:
+        self._sender, self._here = None, ()
+        super().close()
+
+
+def subscribe(
+    node: Node,
+    type_name: str,
+    topic: str,
+    callback: Callback,
+    qos: Qos,
+    *,
+    type_hash: str = "",
+    on_event: OnEvent | None = None,
+) -> RawSubscription:
+    """A subscription of serialized messages.
+
+    Args:
+        type_name: `package/msg/Name`.
+        topic: Its full name; it is not remapped.
+        callback: Called on the loop with each message, and not in a group: it must not wait.
+        type_hash: RIHS01 of the type, where its definition is not known here.
+        on_event: Called with each `QosEvent`.
+    """
+    core = core_of(node)
+    return core.add(RawSubscription(core, type_name, topic, qos, callback, type_hash, on_event))
+
+
+def advertise(
+    node: Node, type_name: str, topic: str, qos: Qos, *, type_hash: str = "", on_event: OnEvent | None = None
+) -> RawPublisher:
+    """A publisher of serialized messages. Arguments as for `subscribe`."""
+    core = core_of(node)
+    return core.add(RawPublisher(core, type_name, topic, qos, type_hash, on_event))
+
+
+def _unread(arrival: Any) -> tuple[bytes, bytes | None]:
+    return b"", None
