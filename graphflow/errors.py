@@ -77,6 +77,10 @@ class TransportError(GraphflowError):
     """The network, or something that listens in its place, refused."""
 
 
+class BagError(GraphflowError):
+    """A bag cannot be read or written."""
+
+
 class ClosedError(GraphflowError):
     """The node, session or endpoint was closed before this use."""
 

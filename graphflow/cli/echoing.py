@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import Any
 
 from graphflow.cli import exits, output
+from graphflow.cli.conditions import compiled
+from graphflow.cli.echo_options import EchoOptions
 from graphflow.cli.visiting import visit
 from graphflow.errors import UsageFault
 from graphflow.introspect.echo import block, csv, flow, plain, truncated
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
-from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime.events import QosEvent
 from graphflow.runtime.node import Node
 from graphflow.runtime.subscriptions import TopicSubscription
@@ -25,25 +25,6 @@ DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be discovered."""
 
 
-@dataclass
-class EchoOptions:
-    """The options of `topic echo`, by the names click gives them."""
-
-    once: bool = False
-    timeout: float | None = None
-    field: str | None = None
-    flow_style: bool = False
-    csv: bool = False
-    no_arr: bool = False
-    no_str: bool = False
-    full_length: bool = False
-    truncate_length: int = 128
-    include_message_info: bool = False
-    no_lost_messages: bool = False
-    as_json: bool = False
-    qos: Qos = BEST_AVAILABLE
-
-
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
     """Print messages until done or stopped; returns the exit code."""
     path = _field_path(options.field, type_name) if options.field else []
@@ -51,11 +32,12 @@ def run(topic: str, type_name: str, options: EchoOptions) -> int:
     async def work(node: Node) -> int:
         return await _echo(node, topic, type_name, options, path)
 
-    return visit(work)
+    return visit(work, options.node_name)
 
 
 async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, path: list[str | int]) -> int:
     await _known(node, topic)
+    wanted = compiled(options.condition) if options.condition else None
     type_: Any = registry.interface_class(type_name)
     subscription: TopicSubscription[Any] = node.create_subscription(
         type_, topic, None, options.qos, on_event=None if options.no_lost_messages else _tell_loss
@@ -67,9 +49,12 @@ async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, pa
         output.error(f"no message on {topic} within {options.timeout:g} s")
         return exits.TIMEOUT
     while True:
-        output.data(render(message, info, options, path))
-        if options.once:
-            return exits.OK
+        if wanted is None or wanted(message):
+            if options.clear:
+                output.clear()
+            output.data(render(message, info, options, path))
+            if options.once:
+                return exits.OK
         message, info = await subscription.next_with_info()
 
 
@@ -89,6 +74,8 @@ async def _known(node: Node, topic: str) -> None:
 
 def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str | int]) -> str:
     """One message as text."""
+    if options.raw:
+        return f"{message.to_bytes()!r}\n---"
     value = message
     for part in path:
         try:

@@ -30,7 +30,7 @@ def show(type_name: str, no_comments: bool) -> None:
     name = registry.full_name(type_name)
     registry.interface(name)
     package = name.partition("/")[0]
-    for line in registry.definition_file(name).read_text(encoding="utf-8").splitlines():
+    for line in registry.definition(name).splitlines():
         text = line.partition("#")[0].rstrip() if no_comments else line
         if not text and line:
             continue

@@ -39,6 +39,18 @@ def colored(head: str, colour: int, texts: Iterable[str]) -> None:
     sys.stdout.flush()
 
 
+def progress(text: str) -> None:
+    """A line of how it goes, in place of the last one; only on a terminal, and empty to take it away."""
+    if sys.stderr.isatty():
+        print(f"\r\x1b[2K{harmless(text)}", end="", file=sys.stderr, flush=True)
+
+
+def clear() -> None:
+    """Empty the terminal, if there is one."""
+    if sys.stdout.isatty():
+        print("\x1b[2J\x1b[H", end="")
+
+
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:
     """Rows as lines, each column as wide as it must be."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]

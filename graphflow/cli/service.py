@@ -1,19 +1,22 @@
-"""`graphflow service list` and `service call`."""
+"""`graphflow service list`, `type`, `find`, `info`, `call` and `echo`."""
 
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.types import agree, use_project
+from graphflow.cli.echo_options import echo_options, taken
+from graphflow.cli.types import agree, names_of_type, use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
 from graphflow.errors import ServiceUnavailable, UsageFault
 from graphflow.introspect.view import View
 from graphflow.names import expand
+from graphflow.wire.liveliness import Kind
 
 
 @click.group(cls=Verbs)
@@ -36,6 +39,60 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
         output.data(str(len(services)))
     else:
         output.lines(f"{name} [{', '.join(types)}]" if show_types else name for name, types in services.items())
+
+
+@service.command("type")
+@click.argument("name", metavar="SERVICE")
+def type_(name: str) -> None:
+    """Print a service's type."""
+    with View(domain_id()) as view:
+        output.data(view.service_type(expand(name, "/", "cli")))
+
+
+@service.command()
+@click.argument("type_name", metavar="TYPE")
+@click.option("-c", "--count-services", is_flag=True, help="Only the count.")
+@click.option("--include-hidden-services", is_flag=True, help="Include hidden services.")
+def find(type_name: str, count_services: bool, include_hidden_services: bool) -> None:
+    """List the services of a type."""
+    with View(domain_id()) as view:
+        services = view.cache.services(hidden=include_hidden_services)
+    output.lines(names_of_type(services, type_name, only_count=count_services))
+
+
+@service.command()
+@click.argument("name", metavar="SERVICE")
+@click.option("-v", "--verbose", is_flag=True, help="Also name the nodes that offer and call it.")
+def info(name: str, verbose: bool) -> None:
+    """Show a service's type, and how many nodes offer and call it."""
+    full = expand(name, "/", "cli")
+    with View(domain_id()) as view:
+        output.data(f"Type: {view.service_type(full)}")
+        for title, kind in (("Clients count", Kind.CLIENT), ("Services count", Kind.SERVICE)):
+            ends = view.cache.endpoints(kind, full)
+            output.data(f"{title}: {len(ends)}")
+            output.lines(f"    {end.node_name}" for end in ends if verbose)
+
+
+@service.command()
+@click.argument("name", metavar="SERVICE")
+@echo_options
+def echo(name: str, **options: Any) -> int:
+    """Show the calls of a service that has introspection, as they are made. Ctrl-C stops it."""
+    from graphflow.cli import echoing
+    from graphflow.introspect.definitions import learn
+
+    full = expand(name, "/", "cli")
+    use_project()
+    with View(domain_id()) as view:
+        type_name = view.service_type(full)
+        learn(view, full, type_name, (Kind.SERVICE,))
+        if not view.cache.endpoints(Kind.PUBLISHER, f"{full}/_service_event"):
+            output.talk(
+                f"WARNING: {full} does not tell of its calls yet; its node must call "
+                f"configure_introspection('contents'), or give the service introspection='contents'"
+            )
+    return echoing.run(f"{full}/_service_event", f"{type_name}_Event", taken(options))
 
 
 @service.command(cls=ValueCommand, short_help="Call a service with a request in YAML.")

@@ -1,14 +1,15 @@
-"""`graphflow topic list`, `info`, `echo` and `pub`."""
+"""`graphflow topic list`, `info`, `type`, `find`, `echo`, `hz`, `bw`, `delay` and `pub`."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.profiles import qos_options, take_qos
+from graphflow.cli.types import names_of_type
 from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values
 from graphflow.domain import domain_id
@@ -18,7 +19,7 @@ from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.matching import verdict
 from graphflow.names import did_you_mean, expand, is_hidden
-from graphflow.qos import BEST_AVAILABLE, DEFAULT, INFINITE_NS
+from graphflow.qos import DEFAULT, INFINITE_NS
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -145,19 +146,7 @@ def _described(e: Entity, cache: GraphCache) -> str:
 @topic.command()
 @click.argument("name", metavar="TOPIC")
 @click.argument("type_name", metavar="[TYPE]", required=False)
-@click.option("--once", is_flag=True, help="Exit after the first message.")
-@click.option("--timeout", type=click.FloatRange(0, min_open=True), help="Seconds to wait for the first message.")
-@click.option("--field", help="Show only this part, such as linear.x or ranges[0].")
-@click.option("--flow-style", is_flag=True, help="Each field on one line.")
-@click.option("--csv", is_flag=True, help="Values separated by commas.")
-@click.option("--no-arr", is_flag=True, help="Leave out the elements of arrays.")
-@click.option("--no-str", is_flag=True, help="Leave out the text of strings.")
-@click.option("-f", "--full-length", is_flag=True, help="Show long arrays and strings in full.")
-@click.option("-l", "--truncate-length", type=click.IntRange(1), default=128, show_default=True, help="Length to keep.")
-@click.option("-i", "--include-message-info", is_flag=True, help="Also show sequence number, time and sender.")
-@click.option("--no-lost-messages", is_flag=True, help="Do not report messages lost on the way.")
-@qos_options
-@click.option("--json", "as_json", is_flag=True, help="One JSON object per line.")
+@echo_options
 def echo(name: str, type_name: str | None, **options: Any) -> int:
     """Show the messages of a topic as they arrive. Ctrl-C stops it."""
     from graphflow.cli import echoing
@@ -165,27 +154,27 @@ def echo(name: str, type_name: str | None, **options: Any) -> int:
 
     use_project()
     full = expand(name, "/", "cli")
-    # Unless told otherwise, whatever fits all current publishers.
-    options["qos"] = take_qos(options, replace(BEST_AVAILABLE, depth=100))
-    chosen = echoing.EchoOptions(**options)
-    return echoing.run(full, _echo_type(full, type_name), chosen)
+    return echoing.run(full, _echo_type(full, type_name), taken(options))
 
 
 def _echo_type(full: str, given: str | None) -> str:
     """The type to listen for: the one in the graph, else the given one."""
     from graphflow.cli.types import agree
     from graphflow.errors import SupervisorError
+    from graphflow.introspect.definitions import learn
     from graphflow.msgs import registry
 
-    wanted = registry.full_name(given) if given else None
     try:
         with View(domain_id()) as view:
             topics = view.cache.topics(hidden=True)
+            types = topics.get(full, [])
+            if len(types) == 1:
+                learn(view, full, types[0])
     except SupervisorError:
-        if wanted is None:
+        if given is None:
             raise
-        topics = {}
-    types = topics.get(full, [])
+        topics, types = {}, []
+    wanted = registry.full_name(given) if given else None
     if wanted is None and not types:
         visible = [t for t in topics if not is_hidden(t)]
         raise CallError(
@@ -199,6 +188,83 @@ def _echo_type(full: str, given: str | None) -> str:
     if len(types) > 1 and wanted is None:
         raise UsageFault(f"{full} has several types: {', '.join(types)}; say which")
     return agree(wanted, types[0], full) if wanted is not None and wanted not in types else (wanted or types[0])
+
+
+@topic.command("type")
+@click.argument("name", metavar="TOPIC")
+def type_(name: str) -> int:
+    """Print a topic's type."""
+    full = expand(name, "/", "cli")
+    with View(domain_id()) as view:
+        topics = view.cache.topics(hidden=True)
+    output.lines(topics.get(full, []))
+    if full not in topics:
+        output.error(f"Unknown topic '{full}'{did_you_mean(full, topics)}")
+    return exits.OK if full in topics else exits.FAILED
+
+
+@topic.command()
+@click.argument("type_name", metavar="TYPE")
+@click.option("-c", "--count-topics", is_flag=True, help="Only the count.")
+@click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics.")
+def find(type_name: str, count_topics: bool, include_hidden_topics: bool) -> None:
+    """List the topics of a type."""
+    with View(domain_id()) as view:
+        topics = view.cache.topics(hidden=include_hidden_topics)
+    output.lines(names_of_type(topics, type_name, only_count=count_topics))
+
+
+@topic.command()
+@click.argument("names", metavar="TOPIC...", nargs=-1, required=True)
+@click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
+@click.option("--filter", "expression", default="", help="Count only messages m for which this holds: 'm.data > 3'.")
+@click.option("--wall-time", is_flag=True, help="By the wall clock, as always here.")
+def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool) -> int:  # noqa: ARG001 - ROS 2's word
+    """Show how often messages are published. Ctrl-C stops it."""
+    from graphflow.cli import measuring
+
+    topics = list(dict.fromkeys(expand(name, "/", "cli") for name in names))
+    _learn(*topics if expression else ())
+    return measuring.hz(topics, window, expression)
+
+
+@topic.command()
+@click.argument("name", metavar="TOPIC")
+@click.option("-w", "--window", type=click.IntRange(1), default=100, show_default=True, help="Messages to average.")
+def bw(name: str, window: int) -> int:
+    """Show how many bytes are published. Ctrl-C stops it."""
+    from graphflow.cli import measuring
+
+    return measuring.bw(expand(name, "/", "cli"), window)
+
+
+@topic.command()
+@click.argument("name", metavar="TOPIC")
+@click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
+def delay(name: str, window: int) -> int:
+    """Show how old messages are when they come, by the stamps in their headers. Ctrl-C stops it."""
+    from graphflow.cli import measuring
+
+    full = expand(name, "/", "cli")
+    _learn(full)
+    return measuring.delay(full, window)
+
+
+def _learn(*topics: str) -> None:
+    """Make the types of topics known, as far as they are there."""
+    from graphflow.cli.types import use_project
+    from graphflow.errors import SupervisorError
+    from graphflow.introspect.definitions import learn
+
+    use_project()
+    try:
+        with View(domain_id()) as view:
+            for topic_name in topics:
+                for type_name in view.cache.topics(hidden=True).get(topic_name, [])[:1]:
+                    learn(view, topic_name, type_name)
+    except SupervisorError as error:  # nothing is running yet; it is waited for
+        if error.exit_code != exits.NOT_RUNNING:
+            raise
 
 
 @topic.command(cls=ValueCommand, short_help="Publish messages given in YAML.")
@@ -221,6 +287,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     from graphflow.cli import publishing
     from graphflow.cli.types import agree, use_project
     from graphflow.errors import SupervisorError
+    from graphflow.introspect.definitions import learn
     from graphflow.msgs import registry
     from graphflow.msgs.values import from_plain
 
@@ -229,6 +296,8 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     try:
         with View(domain_id()) as view:
             known = view.cache.topics(hidden=True).get(full, [])
+            if len(known) == 1:
+                learn(view, full, known[0])
     except SupervisorError:  # nothing is running yet; others may come
         known = []
     if not type_name or type_name.startswith("{"):

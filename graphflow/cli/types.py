@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from graphflow.cli import output
 from graphflow.errors import UsageFault
 
@@ -15,6 +17,19 @@ def use_project() -> None:
     add_interfaces(project_root(Path.cwd()))
 
 
+def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count: bool) -> list[str]:
+    """What `find` prints: the names that have a type, or how many.
+
+    Args:
+        names: Names with their types.
+        type_name: `package/kind/Name` or `package/Name`.
+    """
+    package, _, base = type_name.partition("/")
+    wanted = {type_name, *(f"{package}/{kind}/{base}" for kind in ("msg", "srv", "action"))}
+    found = [name for name, types in names.items() if wanted & {*types}]
+    return [str(len(found))] if only_count else found
+
+
 def agree(given: str, actual: str, name: str) -> str:
     """The type to use: the graph's, when the given one has the same definition under another name.
 
@@ -26,7 +41,8 @@ def agree(given: str, actual: str, name: str) -> str:
     from graphflow.msgs import registry
 
     # turtlesim and turtlesim_msgs hold the same types under two names.
-    if registry.definition_file(given) == registry.definition_file(actual):
+    same = given.split("/")[1:] == actual.split("/")[1:]
+    if same and registry.definition(given) == registry.definition(actual):
         output.talk(f"note: {name} is of type {actual}; using that")
         return actual
     raise UsageFault(f"{name} is of type {actual}, not {given}")

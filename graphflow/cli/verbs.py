@@ -7,22 +7,12 @@ import click
 from graphflow.names import did_you_mean
 
 NOT_YET = {
-    "bag": "`graphflow topic echo TOPIC > FILE` keeps messages as text; `ros2 bag` records a graph over rmw_zenoh",
     "component standalone": "`graphflow run PACKAGE PLUGIN`",
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     "pkg": "`graphflow init NAME` makes a project; a node is a .py file",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
     "wtf": "the same is `graphflow doctor`",
-    "topic hz": "the console has it: `graphflow attach`, then `^b :` and `view hz TOPIC`",
-    "topic bw": "the console's view `topics` has rates: `graphflow attach`",
-    "topic delay": "`graphflow topic echo TOPIC --field header.stamp` shows the stamps",
-    "topic type": "`graphflow topic list -t`, or `graphflow topic info TOPIC`",
-    "topic find": "`graphflow topic list -t`",
-    "service type": "`graphflow service list -t`",
-    "service find": "`graphflow service list -t`",
-    "service info": "`graphflow service list -t` and `graphflow node info NODE`",
-    "service echo": "`graphflow topic echo SERVICE/_service_event`, of a service with introspection",
     "interface proto": "`graphflow interface show TYPE`",
 }
 """What `ros2` has and graphflow has not yet, and what to use meanwhile."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -25,12 +25,44 @@ _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
 """Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same text."""
 
 _roots: list[Path] = []
+_given: dict[str, str] = {}
+"""Definitions from elsewhere, by name."""
 
 
 def add_root(folder: Path) -> None:
     """Also search `folder`, a project's `interfaces/`, for packages."""
     if folder not in _roots:
         _roots.append(folder)
+
+
+def give(definitions: Mapping[str, str]) -> None:
+    """Make definitions known that are in no file here. Where there is a file, it stands.
+
+    Args:
+        definitions: Their texts, by `package/kind/Name`.
+    """
+    for name, text in definitions.items():
+        try:
+            definition_file(name)
+        except UnknownInterface:
+            _given[name] = text
+    forget()
+
+
+def definition(name: str) -> str:
+    """The text that defines `package/kind/Name`.
+
+    Raises:
+        UnknownInterface: There is none; the text names the nearest.
+        InterfaceError: It cannot be read.
+    """
+    if name in _given:
+        return _given[name]
+    path = definition_file(name)
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InterfaceError(f"{path}: {error}") from None
 
 
 def roots() -> Iterator[Path]:
@@ -78,14 +110,14 @@ def full_name(text: str) -> str:
     """
     parts = text.replace(".", "/").split("/")
     if len(parts) == 3:
-        definition_file("/".join(parts))
+        definition("/".join(parts))
         return "/".join(parts)
     if len(parts) != 2:
         raise UnknownInterface(
             f"{text!r} is not an interface name; write package/msg/Name, for example std_msgs/msg/String"
         )
     package, name = parts
-    found = [kind for kind in KINDS if name in names_in(package, kind)]
+    found = [kind for kind in KINDS if name in names_in(package, kind) or f"{package}/{kind}/{name}" in _given]
     if not found:
         raise UnknownInterface(_unknown(package, name, [n for k in KINDS for n in names_in(package, k)]))
     if len(found) > 1:
@@ -145,13 +177,12 @@ def interface(name: str) -> Interface:
         UnknownInterface: There is no such definition.
         InterfaceError: Its text is wrong.
     """
-    path = definition_file(name)
+    text = definition(name)
     try:
-        return idl.parse(name, path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InterfaceError(f"{path}: {error}") from None
+        return idl.parse(name, text)
     except InterfaceError as error:
-        raise InterfaceError(f"{path}: {error}") from None
+        place = "" if name in _given else f"{definition_file(name)}: "
+        raise InterfaceError(f"{place}{error}") from None
 
 
 @cache

@@ -17,7 +17,7 @@ from graphflow.runtime.events import OnEvent
 from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
 from graphflow.runtime.node import Node
-from graphflow.runtime.subscriptions import KEEP_ALL_BOUND
+from graphflow.runtime.subscriptions import KEEP_ALL_BOUND, unreadable
 from graphflow.transport.base import Inbox, Sender
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
@@ -52,7 +52,12 @@ class RawSubscription(Endpoint):
         """Messages handed on."""
         self._callback = callback
         self._inbox: Inbox | None = None
-        self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unread
+        self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
+
+    @property
+    def type_hash(self) -> str:
+        """RIHS01 of the type."""
+        return self._type_hash or registry.hash_of(self.type_name)
 
     @property
     def dropped(self) -> int:
@@ -186,7 +191,3 @@ def advertise(
     """A publisher of serialized messages. Arguments as for `subscribe`."""
     core = core_of(node)
     return core.add(RawPublisher(core, type_name, topic, qos, type_hash, on_event))
-
-
-def _unread(arrival: Any) -> tuple[bytes, bytes | None]:
-    return b"", None

@@ -88,7 +88,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._group = group
         self._on_error = on_error
         self._codec = registry.codec(self.type_name)
-        self._read: Callable[[Any], tuple[bytes, bytes | None]] = _unreadable
+        self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
         self._taken = 0
@@ -397,7 +397,7 @@ def _gid_of(arrival: Any, read: Callable[[Any], tuple[bytes, bytes | None]]) -> 
     return beside[-16:] if beside is not None else b""
 
 
-def _unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
+def unreadable(arrival: Any) -> tuple[bytes, bytes | None]:
     raise ClosedError(f"{arrival!r} arrived before the subscription was open")
 
 

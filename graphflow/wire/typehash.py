@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterable
 from graphflow.wire.schema import FieldType, Message
 
 PREFIX = "RIHS01_"
+HIDDEN = "structure_needs_at_least_one_member"
+"""The field that a type without fields is described with."""
 
 _IDS = {
     "int8": 2,
@@ -31,6 +33,7 @@ _IDS = {
     "wstring": 18,
 }
 _BOUNDED_STRING_IDS = {"string": 21, "wstring": 22}
+_BASES = {number: base for base, number in (*_IDS.items(), *_BOUNDED_STRING_IDS.items()) if base != "char"}
 _ARRAY_OFFSETS = {"": 0, "fixed": 48, "bounded": 96, "unbounded": 144}
 
 Lookup = Callable[[str], Message]
@@ -43,10 +46,20 @@ def type_id(type_: FieldType) -> int:
     return base + _ARRAY_OFFSETS[type_.array]
 
 
+def base_of(number: int) -> tuple[str, str] | None:
+    """The reverse of `type_id`: the base, empty for a nested type, and the kind of array; None for no type's number.
+
+    A `char` is described as a `uint8`, and reads back as one.
+    """
+    kinds = [kind for kind, offset in _ARRAY_OFFSETS.items() if offset // 48 == number // 48]
+    base = "" if number % 48 == 1 else _BASES.get(number % 48)
+    return (base, kinds[0]) if kinds and base is not None and number >= 0 else None
+
+
 def _describe(message: Message) -> dict[str, object]:
     fields: Iterable[tuple[str, FieldType]] = [(f.name, f.type) for f in message.fields]
     # A type without fields is described, and sent, as one hidden byte.
-    fields = fields or [("structure_needs_at_least_one_member", FieldType("uint8"))]
+    fields = fields or [(HIDDEN, FieldType("uint8"))]
     return {
         "type_name": message.name,
         "fields": [

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from graphflow.cli.echoing import EchoOptions, _field_path, render
+from graphflow.cli.echo_options import EchoOptions
+from graphflow.cli.echoing import _field_path, render
 from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Point, Polygon, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue

@@ -1,0 +1,65 @@
+"""Bags made of bags: recovered, cut, filtered, merged, packed otherwise."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from graphflow.bag.choice import Choice
+from graphflow.bag.contents import Contents, Topic
+from graphflow.bag.reader import Bag
+from graphflow.bag.writer import BagWriter
+from graphflow.errors import BagError
+
+
+def copy(
+    bags: Sequence[Bag],
+    writer: BagWriter,
+    choice: Choice,
+    *,
+    remaps: Mapping[str, str] | None = None,
+    start_ns: int = 0,
+    end_ns: int | None = None,
+) -> Contents:
+    """Write the messages of bags into another, in the order of their times; returns what is in it then.
+
+    Args:
+        bags: Topics of one name become one.
+        writer: It is not closed.
+        choice: Which topics.
+        remaps: New names by those in the bags.
+        start_ns: From this time on, nanoseconds since 1970.
+        end_ns: Up to this time, which does not belong to it.
+
+    Raises:
+        BagError: One cannot be read, or the other not written.
+    """
+    topics: dict[str, Topic] = {}
+    for bag in bags:
+        for name, topic in bag.contents.topics.items():
+            if choice.wants(name, topic.type):
+                if name in topics and topics[name].type != topic.type:
+                    raise BagError(f"{bag.path}: {name} is of type {topic.type}, and of {topics[name].type} in another")
+                renamed = topic._replace(name=(remaps or {}).get(name, name))
+                writer.declare(topics.setdefault(name, renamed))
+    parts = [bag.records(topics, start_ns, end_ns) for bag in bags]
+    for record in heapq.merge(*parts, key=lambda record: record.log_ns):
+        writer.add(record._replace(topic=topics[record.topic.name]))
+    return writer.contents
+
+
+def times(bags: Sequence[Bag], start: float | None, end: float | None) -> tuple[int, int | None]:
+    """Seconds as nanoseconds since 1970: since 1970 themselves, or from the beginning of the first bag."""
+    first = min((bag.contents.start_ns for bag in bags if bag.contents.message_count), default=0)
+
+    def absolute(seconds: float) -> int:
+        ns = round(seconds * 1e9)
+        return ns if seconds >= 1e8 else first + ns
+
+    return 0 if start is None else absolute(start), None if end is None else absolute(end)
+
+
+def beside(path: Path, word: str) -> Path:
+    """A folder beside a bag for what is made of it."""
+    return path.with_name(f"{path.stem}_{word}")

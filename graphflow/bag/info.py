@@ -1,0 +1,106 @@
+"""What `bag info` prints, in the words of `ros2 bag info`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from graphflow.bag.choice import EVENTS
+from graphflow.bag.contents import Topic
+from graphflow.bag.reader import Bag
+
+SORTS = ("name", "type", "count")
+
+
+def lines(bag: Bag, sort: str = "name", *, verbose: bool = False) -> Iterator[str]:
+    """The lines.
+
+    Args:
+        sort: One of `SORTS`.
+        verbose: Whether QoS, hash and definition are told, too.
+    """
+    whole = bag.contents
+    topics = sorted(whole.topics.values(), key=lambda t: (_key(t, whole.counts, sort), t.name))
+    yield ""
+    yield from _listed("Files:", [file.path.name for file in bag.files])
+    yield f"Bag size:          {size(bag.size)}"
+    yield f"Storage id:        {bag.storage}"
+    yield f"ROS Distro:        {bag.distro or 'unknown'}"
+    yield f"Duration:          {(whole.end_ns - whole.start_ns) / 1e9:.9f}s"
+    yield f"Start:             {moment(whole.start_ns)}"
+    yield f"End:               {moment(whole.end_ns)}"
+    yield f"Messages:          {sum(n for name, n in whole.counts.items() if not name.endswith(EVENTS))}"
+    plain = [topic for topic in topics if not topic.name.endswith(EVENTS)]
+    yield from _listed("Topic information:", [_row(topic, whole.counts) for topic in plain])
+    services = [topic for topic in topics if topic.name.endswith(EVENTS)]
+    yield f"Services:          {len(services)}"
+    yield from _listed("Service information:", [_service(topic, whole.counts) for topic in services])
+    if not whole.is_whole:
+        yield "Note:              it was not closed properly; this is what can be read: graphflow bag recover mends it"
+    for topic in plain if verbose else ():
+        yield ""
+        yield f"{topic.name}: {topic.type} {topic.hash}"
+        yield from (f"  {_qos(qos)}" for qos in topic.qos)
+        yield from (f"  | {line}" for line in topic.definition.splitlines())
+
+
+def as_json(bag: Bag) -> dict[str, Any]:
+    """The same for programs."""
+    whole = bag.contents
+    return {
+        "files": [str(file.path) for file in bag.files],
+        "size": bag.size,
+        "storage": bag.storage,
+        "distro": bag.distro,
+        "start_ns": whole.start_ns,
+        "end_ns": whole.end_ns,
+        "messages": whole.message_count,
+        "whole": whole.is_whole,
+        "topics": [
+            {"name": t.name, "type": t.type, "hash": t.hash, "messages": whole.counts[t.name], "encoding": t.encoding}
+            for t in whole.topics.values()
+        ],
+    }
+
+
+def size(count: float) -> str:
+    """Bytes, 1024-based as rosbag2 tells them."""
+    for unit in ("B", "KiB", "MiB"):
+        if count < 1024:
+            return f"{count:.1f} {unit}" if unit != "B" else f"{count:.0f} B"
+        count /= 1024
+    return f"{count:.1f} GiB"
+
+
+def moment(ns: int) -> str:
+    """A time in words, and in seconds since 1970."""
+    if ns <= 0 or ns >= 1 << 63:
+        return "none"
+    text = time.strftime("%b %d %Y %H:%M:%S", time.localtime(ns // 10**9))
+    return f"{text}.{ns % 10**9:09d} ({ns // 10**9}.{ns % 10**9:09d})"
+
+
+def _key(topic: Topic, counts: dict[str, int], sort: str) -> Any:
+    return {"name": topic.name, "type": topic.type, "count": counts[topic.name]}[sort]
+
+
+def _listed(head: str, rows: list[str]) -> Iterator[str]:
+    yield f"{head:<18} {rows[0]}" if rows else head
+    yield from (f"{'':<18} {row}" for row in rows[1:])
+
+
+def _row(topic: Topic, counts: dict[str, int]) -> str:
+    form = f"Serialization Format: {topic.encoding}"
+    return f"Topic: {topic.name} | Type: {topic.type} | Count: {counts[topic.name]} | {form}"
+
+
+def _service(topic: Topic, counts: dict[str, int]) -> str:
+    name, type_ = topic.name.removesuffix(EVENTS), topic.type.removesuffix("_Event")
+    return (
+        f"Service: {name} | Type: {type_} | Event Count: {counts[topic.name]} | Serialization Format: {topic.encoding}"
+    )
+
+
+def _qos(qos: Any) -> str:
+    return f"{qos.reliability.name} {qos.durability.name} {qos.history.name} ({qos.depth})".lower()

@@ -1,0 +1,112 @@
+"""A bag, read: a folder as `ros2 bag record` makes it, or a single file, MCAP or `.db3`."""
+
+from __future__ import annotations
+
+import heapq
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Protocol
+
+from graphflow.bag import metadata
+from graphflow.bag.contents import Contents, Record, together
+from graphflow.bag.db3_file import Db3File
+from graphflow.bag.mcap_file import McapFile
+from graphflow.bag.metadata import FileContents
+from graphflow.errors import BagError
+
+_FILES_BOUND = 10_000
+
+
+class File(Protocol):
+    """One file of a bag."""
+
+    path: Path
+
+    @property
+    def contents(self) -> Contents: ...
+
+    def records(
+        self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
+    ) -> Iterator[Record]: ...
+
+
+class Bag:
+    """Reads a bag.
+
+    Args:
+        path: A folder, or a file.
+
+    Raises:
+        BagError: There is none, or it cannot be read.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        said = metadata.read(self.path) if self.path.is_dir() else {}
+        self.distro = str(said.get("ros_distro") or "")
+        if said.get("compression_mode"):
+            how = f"{said.get('compression_mode')} by {said.get('compression_format')}"
+            raise BagError(f"{self.path}: it is compressed as a {how}; decompress it with `ros2 bag convert`")
+        self.files: list[File] = [_file(file) for file in self._paths(said)]
+        self.contents = together([file.contents for file in self.files])
+
+    @property
+    def storage(self) -> str:
+        """`mcap` or `sqlite3`."""
+        return "sqlite3" if any(isinstance(file, Db3File) for file in self.files) else "mcap"
+
+    @property
+    def size(self) -> int:
+        """Bytes of all files."""
+        return sum(file.path.stat().st_size for file in self.files)
+
+    @property
+    def parts(self) -> list[FileContents]:
+        """What is in each file."""
+        return [FileContents(file.path.name, file.contents) for file in self.files]
+
+    def records(
+        self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
+    ) -> Iterator[Record]:
+        """Messages in the order of their times.
+
+        Args:
+            names: Topics; None for all.
+            start_ns: From this time on, nanoseconds since 1970.
+            end_ns: Up to this time, which does not belong to it.
+
+        Raises:
+            BagError: What is in a file cannot be read.
+        """
+        parts = [file.records(names, start_ns, end_ns) for file in self.files if file.contents.end_ns >= start_ns]
+        return (
+            heapq.merge(*parts, key=lambda record: record.log_ns) if len(parts) > 1 else iter(parts[0] if parts else ())
+        )
+
+    def _paths(self, said: dict[str, object]) -> list[Path]:
+        if self.path.is_file():
+            return [self.path]
+        if not self.path.is_dir():
+            raise BagError(f"{self.path}: there is no such file or folder")
+        named = said.get("relative_file_paths")
+        names = [Path(str(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
+        there = [self.path / name for name in names if (self.path / name).is_file()]
+        # What a recorder that was killed wrote last is in no metadata.
+        more = [f for f in self.path.iterdir() if f.suffix in (".mcap", ".db3") and f not in there]
+        found = [*there, *sorted(more, key=_natural)]
+        if not found:
+            missing = f"; its {metadata.FILE} names {', '.join(names)}" if names else ""
+            raise BagError(f"{self.path}: it has no .mcap or .db3 file{missing}")
+        return found
+
+
+def _file(path: Path) -> File:
+    if path.suffix in (".zstd", ".lz4"):
+        raise BagError(f"{path}: the whole file is compressed; decompress it first, by `zstd -d` for example")
+    return Db3File(path) if path.suffix == ".db3" else McapFile(path)
+
+
+def _natural(path: Path) -> list[object]:
+    """A key that sorts `x_10` after `x_9`."""
+    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]

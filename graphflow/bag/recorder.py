@@ -1,0 +1,294 @@
+"""Records topics of a running graph: serialized messages go from the network into the files as they are.
+
+The loop takes messages in; a thread packs and writes them. Between the two is a cache of limited size: when the disk
+cannot keep up messages are dropped and counted, and nothing else waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from graphflow.bag.choice import Choice
+from graphflow.bag.contents import Record, Topic
+from graphflow.bag.definitions import joined, known
+from graphflow.bag.writer import FLUSH_EVERY, BagWriter
+from graphflow.errors import BagError, CallError, GraphflowError, InterfaceError
+from graphflow.introspect.definitions import LIMIT, SERVICE, endpoints_of, request_for, service_of, sources_in
+from graphflow.msgs import registry
+from graphflow.qos import BEST_AVAILABLE
+from graphflow.runtime import raw
+from graphflow.runtime.node import Node
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Entity, Kind
+
+logger = logging.getLogger("graphflow")
+
+CACHE = 100 << 20
+"""Bytes that may wait to be written."""
+LOOK_EVERY = 0.1
+"""Seconds between two looks for new topics."""
+HEARD = replace(BEST_AVAILABLE, depth=1000)
+SENDERS_BOUND = 10_000
+"""Publishers whose sequence numbers are followed."""
+
+
+class Recorder:
+    """Records from a node's graph into a bag.
+
+    Args:
+        node: It runs.
+        writer: Where to. The recorder closes it.
+        choice: What is recorded.
+        cache: Bytes that may wait to be written.
+        discovery: Whether topics that appear later are recorded, too.
+        snapshot: Whether nothing is written before `take_snapshot`; the cache holds the last messages until then.
+        told: Called with a line on each topic.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        writer: BagWriter,
+        choice: Choice,
+        *,
+        cache: int = CACHE,
+        discovery: bool = True,
+        snapshot: bool = False,
+        told: Callable[[str], object] = logger.info,
+    ) -> None:
+        self._node, self._writer, self._choice = node, writer, choice
+        self._cache, self._is_discovering, self._is_snapshot, self._tell = cache, discovery, snapshot, told
+        self.is_paused = False
+        """Whether what comes is left out."""
+        self.recorded = self.dropped = self.lost = 0
+        """Messages taken in; those that found the cache full; gaps in the numbers of publishers."""
+        self.failed: asyncio.Future[BagError] = asyncio.get_running_loop().create_future()
+        """Has why nothing can be written any more."""
+        self._loop = asyncio.get_running_loop()
+        self._subscriptions: dict[str, raw.RawSubscription] = {}
+        self._topics: dict[str, Topic] = {}
+        self._held: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
+        """Messages of topics whose definitions have not come yet."""
+        self._last: dict[tuple[str, bytes], int] = {}
+        self._new: list[Topic] = []
+        """Topics that are not in the bag yet."""
+        self._queue: deque[Record] = deque()
+        self._waiting = 0
+        """Bytes in the queue."""
+        self._work = threading.Condition()
+        self._is_ending = self._is_writing_snapshot = self._is_splitting = False
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._thread = threading.Thread(target=self._write, name="graphflow-recorder", daemon=True)
+
+    @property
+    def topics(self) -> int:
+        """How many topics are recorded."""
+        return len(self._subscriptions)
+
+    @property
+    def size(self) -> int:
+        """Bytes of the bag so far."""
+        return self._writer.size
+
+    async def run(self) -> None:
+        """Record until cancelled, or until nothing can be written; then finish the bag.
+
+        Raises:
+            BagError: The bag could not be written to its end.
+        """
+        cache, is_new = self._node.context.cache, asyncio.Event()
+        stop = self._node.context.on_change(lambda _: is_new.set())
+        self.failed.add_done_callback(lambda _: is_new.set())
+        self._thread.start()
+        try:
+            while not self.failed.done():
+                for entity in cache.endpoints(Kind.PUBLISHER):
+                    self._consider(entity)
+                if not self._is_discovering:
+                    await self.failed
+                is_new.clear()
+                await is_new.wait()
+                await asyncio.wait([self.failed], timeout=LOOK_EVERY)
+        finally:
+            stop()
+            await self._end()
+            await asyncio.sleep(0)  # the thread's last word is on its way
+            if self.failed.done():
+                raise self.failed.result()
+
+    async def _end(self) -> None:
+        for subscription in self._subscriptions.values():
+            self.dropped += subscription.dropped
+            subscription.close()
+        for task in self._tasks:
+            task.cancel()
+        for name in list(self._held):
+            self._release(name, self._topic(name, ""))
+        with self._work:
+            self._is_ending = True
+            self._work.notify()
+        await asyncio.to_thread(self._thread.join)
+
+    # commands
+
+    def split(self) -> None:
+        """Go on in a new file."""
+        with self._work:
+            self._is_splitting = True
+            self._work.notify()
+
+    def take_snapshot(self) -> bool:
+        """Write what the cache holds; False where everything is written anyway."""
+        with self._work:
+            self._is_writing_snapshot = self._is_snapshot
+            self._work.notify()
+        return self._is_snapshot
+
+    # topics
+
+    def _consider(self, entity: Entity) -> None:
+        if entity.name in self._subscriptions or not self._choice.wants(entity.name, entity.type):
+            return
+        if entity.zid == self._node.context.session.zid:  # what the recorder itself says
+            return
+
+        def arrived(payload: bytes, info: MessageInfo) -> None:
+            self._arrived(entity.name, payload, info)
+
+        self._held[entity.name] = []
+        self._subscriptions[entity.name] = raw.subscribe(
+            self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash
+        )
+        self._tell(f"Subscribed to topic '{entity.name}'")
+        task = asyncio.ensure_future(self._define(entity))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _define(self, entity: Entity) -> None:
+        """Find the definition of a topic's type, and let its messages go on."""
+        try:
+            definition = await self._definition(entity)
+        except GraphflowError as error:
+            definition = ""
+            logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, error)
+        self._release(entity.name, self._topic(entity.name, definition))
+
+    async def _definition(self, entity: Entity) -> str:
+        try:
+            if not entity.hash or registry.hash_of(entity.type) == entity.hash:
+                return known(entity.type)
+        except InterfaceError as error:
+            if entity.type.split("/")[1:2] != ["msg"]:  # a service's events, whose type is in no file
+                raise
+            unknown = error
+        else:
+            unknown = InterfaceError("its definition here is another")
+        reasons = [str(unknown)]
+        for user in endpoints_of(self._node.context.cache, entity.name, (Kind.PUBLISHER,))[:3]:
+            client: Any = self._node.create_client(registry.interface_class(SERVICE), service_of(user))
+            try:
+                response = await client.call(request_for(user), timeout=LIMIT)
+                return joined(entity.type, sources_in(response, user))
+            except (CallError, InterfaceError) as error:
+                reasons.append(str(error))
+            finally:
+                client.close()
+        raise InterfaceError("; ".join(reasons))
+
+    def _topic(self, name: str, definition: str) -> Topic:
+        publishers = self._node.context.cache.endpoints(Kind.PUBLISHER, name)
+        subscription = self._subscriptions[name]
+        offered = tuple(dict.fromkeys(entity.qos for entity in publishers))
+        return Topic(name, subscription.type_name, subscription.type_hash, definition, offered)
+
+    # messages
+
+    def _arrived(self, name: str, payload: bytes, info: MessageInfo) -> None:
+        if self.is_paused:
+            self._last.clear()
+            return
+        self._follow(name, info)
+        now_ns = self._node.clock.time_ns()
+        held = self._held.get(name)
+        if held is None:
+            self._take(Record(self._topics[name], now_ns, info.source_ns or now_ns, info.sequence, payload))
+        elif sum(len(data) for data, _, _ in held) + len(payload) <= self._cache:
+            held.append((payload, now_ns, info))
+        else:
+            self.dropped += 1
+
+    def _follow(self, name: str, info: MessageInfo) -> None:
+        """Count what the numbers of a publisher leave out."""
+        key = (name, info.gid)
+        last = self._last.get(key)
+        if last is None and len(self._last) >= SENDERS_BOUND:
+            return
+        if last is not None and info.sequence > last + 1:
+            self.lost += info.sequence - last - 1
+        self._last[key] = info.sequence
+
+    def _release(self, name: str, topic: Topic) -> None:
+        """Let the messages of a topic go on that waited for its definition."""
+        self._topics[name] = topic
+        with self._work:
+            self._new.append(topic)
+        for payload, now_ns, info in self._held.pop(name, []):
+            self._take(Record(topic, now_ns, info.source_ns or now_ns, info.sequence, payload))
+
+    def _take(self, record: Record) -> None:
+        with self._work:
+            size = len(record.data)
+            if self._is_snapshot:
+                while self._queue and self._waiting + size > self._cache:
+                    self._waiting -= len(self._queue.popleft().data)
+            elif self._waiting + size > self._cache:
+                self.dropped += 1
+                return
+            self._queue.append(record)
+            self._waiting += size
+            self.recorded += 1
+            if len(self._queue) == 1:
+                self._work.notify()
+
+    # the thread
+
+    def _write(self) -> None:
+        try:
+            while self._write_some():
+                pass
+            self._writer.close()
+        except BagError as error:
+            self._writer.salvage()
+            self._loop.call_soon_threadsafe(self._fail, error)
+
+    def _fail(self, error: BagError) -> None:
+        if not self.failed.done():
+            self.failed.set_result(error)
+
+    def _write_some(self) -> bool:
+        """Write what waits; False when that was the last."""
+        with self._work:
+            if not (self._queue and not self._is_snapshot) and not self._is_ending:
+                self._work.wait(FLUSH_EVERY)
+            is_ending, is_splitting = self._is_ending, self._is_splitting
+            topics, self._new = self._new, []
+            batch: list[Record] = []
+            if not self._is_snapshot or self._is_writing_snapshot:
+                batch = list(self._queue)
+                self._queue.clear()
+                self._waiting = 0
+            self._is_splitting = self._is_writing_snapshot = False
+        if is_splitting:
+            self._writer.split()
+        for topic in topics:
+            self._writer.declare(topic)
+        for record in batch:
+            self._writer.add(record)
+        self._writer.keep_up()
+        return not is_ending

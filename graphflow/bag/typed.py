@@ -1,0 +1,87 @@
+"""The messages of a bag as objects. Types that are not installed are made from what the bag says of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from graphflow.bag.contents import Record, Topic
+from graphflow.bag.definitions import parted
+from graphflow.bag.reader import Bag
+from graphflow.errors import BagError, InterfaceError, UnknownInterface
+from graphflow.msgs import registry
+from graphflow.wire.described import verified
+
+
+class Said(NamedTuple):
+    """One message of a bag."""
+
+    topic: str
+    message: Any
+    time_ns: int
+    """When it was received, nanoseconds since 1970."""
+
+
+def read(
+    path: Path | str,
+    topics: Collection[str] | None = None,
+    *,
+    start_ns: int = 0,
+    end_ns: int | None = None,
+) -> Iterator[Said]:
+    """The messages of a bag, in the order of their times.
+
+    Args:
+        path: The bag: a folder, or a file, MCAP or `.db3`.
+        topics: Those that are wanted; None for all.
+        start_ns: From this time on, nanoseconds since 1970.
+        end_ns: Up to this time, which does not belong to it.
+
+    Raises:
+        BagError: The bag cannot be read, or has a type that is not known and not defined in it.
+        DecodeError: A message is not of its type.
+    """
+    return said(Bag(path).records(topics, start_ns, end_ns))
+
+
+def decoder(topic: Topic) -> Callable[[bytes], Any]:
+    """What makes messages of a topic's records.
+
+    Raises:
+        BagError: Its type is not known, and not defined in the bag, or it is not serialized as CDR.
+    """
+    if topic.encoding != "cdr":
+        raise BagError(f"{topic.name}: its messages are serialized as {topic.encoding!r}, not as CDR")
+    learn(topic)
+    return registry.codec(topic.type).decode
+
+
+def learn(topic: Topic) -> None:
+    """Make a topic's type known, from its definition in the bag, if it is not known here.
+
+    Raises:
+        BagError: There is no definition that can be used.
+    """
+    try:
+        registry.hash_of(registry.full_name(topic.type))
+    except UnknownInterface as unknown:
+        if not topic.definition:
+            raise BagError(f"{topic.name}: {unknown}; the bag has no definition of it") from None
+        try:
+            sources = parted(topic.type, topic.definition)
+            verified(topic.type, topic.hash, sources)
+            registry.give(sources)
+            registry.hash_of(topic.type)
+        except InterfaceError as error:
+            raise BagError(f"{topic.name}: the bag's definition cannot be used: {error}") from None
+
+
+def said(records: Iterator[Record]) -> Iterator[Said]:
+    """Records as messages."""
+    decoders: dict[str, Callable[[bytes], Any]] = {}
+    for record in records:
+        decode = decoders.get(record.topic.name)
+        if decode is None:
+            decode = decoders[record.topic.name] = decoder(record.topic)
+        yield Said(record.topic.name, decode(record.data), record.log_ns)

@@ -1,0 +1,292 @@
+"""A bag, written: a folder with `metadata.yaml` and one or more MCAP files, as rosbag2 makes it.
+
+What is on disk can be read at any time: chunks are closed every half second, and `metadata.yaml` follows, so that a
+recorder that is killed loses no more than that.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import logging
+import os
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Any, Self, cast
+
+from graphflow import __version__
+from graphflow.bag import metadata
+from graphflow.bag.contents import Contents, Record, Topic, together
+from graphflow.bag.metadata import FileContents
+from graphflow.errors import BagError
+
+logger = logging.getLogger("graphflow")
+
+FLUSH_EVERY = 0.5
+"""Seconds that a message may be on its way to the file."""
+SYNC_EVERY = 5.0
+"""Seconds that what is in the file may be on its way to the disk."""
+CHUNK_SIZE = 1 << 20
+"""Bytes of messages that are packed together."""
+RESERVE = 4 << 20
+"""Bytes that are kept free on the disk to finish the bag when it is full."""
+COMPRESSIONS = ("zstd", "lz4", "none")
+
+
+class _Stream:
+    """A file to which a piece is written whole or not at all, so that it stays readable on a full disk."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("xb", buffering=0)
+        self._end = 0
+
+    def write(self, data: bytes) -> int:
+        left = memoryview(data)
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError:
+            self._file.truncate(self._end)
+            self._file.seek(self._end)
+            raise
+        self._end += len(data)
+        return len(data)
+
+    def tell(self) -> int:
+        return self._end
+
+    def flush(self) -> None:
+        """Nothing is kept back."""
+
+    def sync(self) -> None:
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class _Part:
+    """One file as it is being written."""
+
+    def __init__(self, path: Path, compression: str) -> None:
+        from mcap.writer import CompressionType, Writer
+
+        self.path = path
+        self._file = _Stream(path)
+        self._writer: Any = Writer(
+            cast(IO[bytes], self._file),
+            CHUNK_SIZE,
+            CompressionType[compression.upper()] if compression else CompressionType.NONE,
+        )
+        self._writer.start("ros2", f"graphflow {__version__}")
+        self._schemas: dict[tuple[str, str], int] = {}
+        self._channels: dict[str, int] = {}
+        self.topics: dict[str, Topic] = {}
+        self.counts: dict[str, int] = {}
+        self.start_ns = self.end_ns = 0
+        self.written = 0
+        """Bytes of messages."""
+
+    @property
+    def contents(self) -> Contents:
+        return Contents(dict(self.topics), dict(self.counts), self.start_ns, self.end_ns)
+
+    @property
+    def size(self) -> int:
+        """Bytes of the file so far."""
+        return self._file.tell()
+
+    def declare(self, topic: Topic) -> int:
+        """The channel of a topic."""
+        channel = self._channels.get(topic.name)
+        if channel is None:
+            key = (topic.type, topic.definition)
+            if key not in self._schemas:
+                form = "ros2msg" if topic.definition else ""
+                self._schemas[key] = self._writer.register_schema(topic.type, form, topic.definition.encode())
+            about = {"offered_qos_profiles": metadata.as_text(topic.qos), "topic_type_hash": topic.hash}
+            channel = self._writer.register_channel(topic.name, topic.encoding, self._schemas[key], about)
+            self._channels[topic.name] = channel
+            self.topics[topic.name], self.counts[topic.name] = topic, 0
+        return channel
+
+    def add(self, record: Record) -> None:
+        name = record.topic.name
+        channel = self.declare(record.topic)
+        self._writer.add_message(channel, record.log_ns, record.data, record.publish_ns, record.sequence % (1 << 32))
+        self.start_ns = min(self.start_ns or record.log_ns, record.log_ns)
+        self.end_ns = max(self.end_ns, record.log_ns)
+        self.counts[name] += 1
+        self.written += len(record.data)
+
+    def flush(self) -> None:
+        self._writer.flush()
+
+    def sync(self) -> None:
+        self._file.sync()
+
+    def finish(self, said: str) -> None:
+        self._writer.add_metadata("rosbag2", {"serialized_metadata": said})
+        self._writer.finish()
+        self._file.sync()
+        self._file.close()
+
+    def abandon(self) -> None:
+        """Close the file as it is."""
+        self._file.close()
+
+
+class BagWriter:
+    """Writes a bag. A context manager.
+
+    Args:
+        folder: Made here; there must be none of that name.
+        compression: One of `COMPRESSIONS`, of the chunks in a file.
+        max_size: Bytes after which a new file is begun; 0 for never.
+        max_seconds: Seconds of recording after which a new file is begun; 0 for never.
+        monotonic_ns: The clock by which files are flushed.
+
+    Raises:
+        BagError: The folder is there, or cannot be made.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        compression: str = "zstd",
+        max_size: int = 0,
+        max_seconds: float = 0.0,
+        monotonic_ns: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self.folder = folder
+        self._compression = "" if compression == "none" else compression
+        self._max_size, self._max_ns = max_size, round(max_seconds * 1e9)
+        self._now_ns = monotonic_ns
+        self._done: list[FileContents] = []
+        self._is_finished = False
+        """Whether the last file is among those that are done."""
+        self._sizes = 0
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            raise BagError(f"{folder} is there already; choose another name with -o") from None
+        except OSError as error:
+            raise BagError(f"{folder}: {error.strerror}") from None
+        self._flushed_ns = self._synced_ns = self._now_ns()
+        self._reserve = folder / ".reserve"
+        with _told(folder):
+            self._reserve.write_bytes(bytes(RESERVE))
+        self._part = self._next()
+        with _told(folder):
+            self._write_metadata()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def contents(self) -> Contents:
+        """What has been written."""
+        return together([file.contents for file in self._files()])
+
+    @property
+    def size(self) -> int:
+        """Bytes of all files so far."""
+        return self._sizes + (0 if self._is_finished else self._part.size)
+
+    def declare(self, topic: Topic) -> None:
+        """Say that there is a topic, though it may never have a message."""
+        with _told(self.folder):
+            self._part.declare(topic)
+
+    def add(self, record: Record) -> None:
+        """Write a message.
+
+        Raises:
+            BagError: It cannot be written; what is in the bag can be read.
+        """
+        with _told(self.folder):
+            part = self._part
+            if (self._max_size and part.written >= self._max_size) or (
+                self._max_ns and part.written and record.log_ns - part.start_ns >= self._max_ns
+            ):
+                self.split()
+            self._part.add(record)
+
+    def split(self) -> None:
+        """Go on in a new file."""
+        with _told(self.folder):
+            topics = list(self._part.topics.values())
+            self._finish()
+            self._part, self._is_finished = self._next(), False
+            self._write_metadata()
+            for topic in topics:
+                self._part.declare(topic)
+
+    def keep_up(self) -> None:
+        """Put what has been written on disk, where it is time for that. To be called now and then."""
+        now_ns = self._now_ns()
+        with _told(self.folder):
+            if now_ns - self._flushed_ns >= FLUSH_EVERY * 1e9:
+                self._flushed_ns = now_ns
+                self._part.flush()
+            if now_ns - self._synced_ns >= SYNC_EVERY * 1e9:
+                self._synced_ns = now_ns
+                self._part.sync()
+                self._write_metadata()
+
+    def close(self) -> None:
+        """Finish the bag.
+
+        Raises:
+            BagError: The end cannot be written; what is in the bag can be read.
+        """
+        with _told(self.folder):
+            self._reserve.unlink(missing_ok=True)
+            if not self._is_finished:
+                self._finish()
+            self._write_metadata()
+
+    def salvage(self) -> None:
+        """Finish the bag after an error, if that can be done; else leave it as it is."""
+        try:
+            self.close()
+        except BagError as error:
+            logger.warning("%s", error)
+            self._part.abandon()
+
+    def _next(self) -> _Part:
+        with _told(self.folder):
+            return _Part(self.folder / f"{self.folder.name}_{len(self._done)}.mcap", self._compression)
+
+    def _finish(self) -> None:
+        mine = FileContents(self._part.path.name, self._part.contents)
+        self._part.finish(metadata.written([mine], mine.contents))
+        self._sizes += self._part.size
+        self._done.append(mine)
+        self._is_finished = True
+
+    def _files(self) -> list[FileContents]:
+        more = [] if self._is_finished else [FileContents(self._part.path.name, self._part.contents)]
+        return [*self._done, *more]
+
+    def _write_metadata(self) -> None:
+        files = self._files()
+        text = metadata.written(files, together([file.contents for file in files]))
+        fresh = self.folder / f".{metadata.FILE}"
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(self.folder / metadata.FILE)
+
+
+@contextlib.contextmanager
+def _told(folder: Path) -> Iterator[None]:
+    """Tells an error of the system as one of the bag."""
+    try:
+        yield
+    except OSError as error:
+        why = "the disk is full" if error.errno in (errno.ENOSPC, errno.EDQUOT) else error.strerror or str(error)
+        raise BagError(f"{folder}: {why}; what has been recorded can be read") from None

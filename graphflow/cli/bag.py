@@ -1,0 +1,287 @@
+"""`graphflow bag record`, `play`, `info`, `echo`, `recover`, `convert`, `filter` and `merge`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.types import use_project
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import UsageFault
+from graphflow.names import expand
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@click.group(cls=Verbs)
+def bag() -> None:
+    """Record topics into bags, and play and change bags."""
+
+
+def _pattern(_: click.Context, __: click.Parameter, value: str) -> str:
+    try:
+        re.compile(value)
+    except re.error as error:
+        raise click.BadParameter(f"{value!r} is no regular expression: {error}") from None
+    return value
+
+
+def _names(words: tuple[str, ...]) -> frozenset[str]:
+    """Full names, of words that may have several each."""
+    return frozenset(expand(name, "/", "cli") for word in words for name in word.split())
+
+
+def _chosen(command: F) -> F:
+    """Add what says which topics are meant."""
+    option = click.option
+    for add in (
+        option("--exclude-services", multiple=True, help="Leave these services out."),
+        option("--exclude-topic-types", multiple=True, help="Leave topics of these types out."),
+        option("--exclude-topics", multiple=True, help="Leave these topics out."),
+        option("-x", "--exclude-regex", default="", callback=_pattern, help="Leave out topics that match."),
+        option("-e", "--regex", default="", callback=_pattern, help="Topics that match."),
+        option("--services", multiple=True, help="Calls of these services, which must have introspection."),
+        option("--topics", "named", multiple=True, help="These topics."),
+    ):
+        command = add(command)
+    return command
+
+
+def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) -> Any:
+    """Take out of the options which topics are meant."""
+    from graphflow.bag.choice import Choice
+
+    named = _names((*topics, *options.pop("named")))
+    services = _names(options.pop("services"))
+    regex = options.pop("regex")
+    excluded = {
+        "exclude": _names(options.pop("exclude_topics")),
+        "exclude_types": frozenset(options.pop("exclude_topic_types")),
+        "exclude_regex": options.pop("exclude_regex"),
+        "exclude_services": _names(options.pop("exclude_services")),
+    }
+    is_open = not (named or services or regex)
+    more.setdefault("all", is_open)
+    return Choice(topics=named, services=services, regex=regex, **excluded, **more)
+
+
+@bag.command(short_help="Record topics of the running graph.")
+@click.argument("topics", nargs=-1, metavar="[TOPIC...]")
+@click.option("-a", "--all", "everything", is_flag=True, help="All topics, and those that appear later.")
+@click.option("--all-topics", is_flag=True, help="The same.")
+@click.option("--all-services", is_flag=True, help="The calls of all services that have introspection.")
+@click.option("--topic-types", multiple=True, help="Topics of these types.")
+@_chosen
+@click.option("-o", "--output", "folder", type=click.Path(path_type=Path), help="The bag's folder. [rosbag2_DATE-TIME]")
+@click.option("-s", "--storage", type=click.Choice(["mcap"]), default="mcap", help="The format of files.")
+@click.option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes before a new file. [0: never]")
+@click.option("-d", "--max-bag-duration", type=click.FloatRange(0), default=0.0, help="Seconds before a new file.")
+@click.option("--max-cache-size", type=click.IntRange(1), help="Bytes that may wait to be written. [104857600]")
+@click.option("--compression", type=click.Choice(["zstd", "lz4", "none"]), default="zstd", help="Of chunks. [zstd]")
+@click.option("--include-hidden-topics", is_flag=True, help="Hidden topics, too.")
+@click.option("--no-discovery", is_flag=True, help="Only topics that are there at the start.")
+@click.option("--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
+@click.option("--snapshot-mode", is_flag=True, help="Write the last messages when ~/snapshot is called or S pressed.")
+@click.option("--duration", type=click.FloatRange(0, min_open=True), help="Seconds to record.")
+@click.option("--node-name", default="rosbag2_recorder", show_default=True, help="Name of the recording node.")
+@click.option(
+    "-p", "--polling-interval", type=int, hidden=True, help="For ROS 2's commands: the graph tells by itself."
+)
+def record(topics: tuple[str, ...], **options: Any) -> int:
+    """Record topics of the running graph into a folder, in MCAP files. Ctrl-C ends it, SPACE pauses it."""
+    from graphflow.cli import recording
+
+    use_project()
+    everything = options.pop("everything") or options.pop("all_topics")
+    options.pop("all_topics", None)
+    types = frozenset(options.pop("topic_types"))
+    more = {"all": everything, "types": types, "all_services": options.pop("all_services")}
+    choice = _choice(options, topics, **more, hidden=options.pop("include_hidden_topics"))
+    if not (everything or types or choice.all_services or choice.topics or choice.services or choice.regex):
+        raise UsageFault("nothing to record was named; write topics, or -a for all: graphflow bag record -a")
+    for unused in ("storage", "polling_interval"):
+        options.pop(unused)
+    return recording.run(choice, recording.RecordOptions(**options))
+
+
+@bag.command(short_help="Play a bag into the running graph.")
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@_chosen
+@click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Speed.")
+@click.option("-l", "--loop", is_flag=True, help="Again and again.")
+@click.option("-p", "--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
+@click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
+@click.option("--playback-duration", type=click.FloatRange(0, min_open=True), help="Seconds of the bag to play.")
+@click.option(
+    "-d", "--delay", type=click.FloatRange(0), default=0.5, show_default=True, help="Seconds before the start."
+)
+@click.option("--clock", "clock", is_flag=False, flag_value="40", default="0", help="Publish /clock, so often. [40 Hz]")
+@click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
+@click.option("--allow-commands", is_flag=True, help="Play what makes others act: goals of actions, calls of services.")
+@click.option("--node-name", default="rosbag2_player", show_default=True, help="Name of the playing node.")
+@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@click.option("--read-ahead-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
+@click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")
+def play(path: Path, **options: Any) -> int:
+    """Play a bag into the running graph: a folder, an MCAP file or a .db3 file.
+
+    \b
+    SPACE        pause and go on
+    RIGHT, or s  send the next message while paused
+    UP, DOWN     faster, slower, by a tenth
+    """  # noqa: D301 - click wants the character
+    from graphflow.bag.player import PlayOptions
+    from graphflow.cli import playing
+
+    use_project()
+    for unused in ("storage", "read_ahead_queue_size"):
+        options.pop(unused)
+    try:
+        clock_hz = float(options.pop("clock"))
+    except ValueError:
+        raise UsageFault("--clock takes a number of Hz; write it as --clock=40, or behind the bag") from None
+    chosen = PlayOptions(
+        rate=options["rate"],
+        loop=options["loop"],
+        start_offset=options["start_offset"],
+        duration=options["playback_duration"],
+        delay=options["delay"],
+        clock_hz=clock_hz,
+        is_paused=options["start_paused"],
+        allows_commands=options["allow_commands"],
+        choice=_choice(options, hidden=True),
+        remaps=_remaps(options["remaps"]),
+    )
+    return playing.run(path, chosen, options["node_name"], keys=not options["disable_keyboard_controls"])
+
+
+def _remaps(words: tuple[str, ...]) -> dict[str, str]:
+    found = {}
+    for word in " ".join(words).split():
+        old, arrow, new = word.partition(":=")
+        if not (old and arrow and new):
+            raise UsageFault(
+                f"{word!r} is no remap rule; write OLD:=NEW, for example /turtle1/cmd_vel:=/turtle2/cmd_vel"
+            )
+        found[expand(old, "/", "cli")] = expand(new, "/", "cli")
+    return found
+
+
+@bag.command()
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@click.option("-t", "--topic-name", is_flag=True, help="Only the names of topics.")
+@click.option("-v", "--verbose", is_flag=True, help="Also QoS, hash and definition of each topic.")
+@click.option("--sort", type=click.Choice(["name", "type", "count"]), default="name", help="Order of topics. [name]")
+@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@click.option("--json", "json_", is_flag=True, help="Print JSON.")
+def info(path: Path, topic_name: bool, verbose: bool, sort: str, storage: str, json_: bool) -> int:  # noqa: ARG001
+    """Show what is in a bag."""
+    from graphflow.bag import info as about
+    from graphflow.bag.reader import Bag
+
+    found = Bag(path)
+    if json_:
+        output.as_json(about.as_json(found))
+    elif topic_name:
+        output.lines(sorted(found.contents.topics))
+    else:
+        output.lines(about.lines(found, sort, verbose=verbose))
+    return exits.OK
+
+
+@bag.command()
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@click.argument("topics", nargs=-1, metavar="[TOPIC...]")
+@click.option("-n", "--count", type=click.IntRange(1), help="Only so many messages.")
+@click.option("--csv", is_flag=True, help="Time, topic and values, separated by commas.")
+@click.option("--json", "json_", is_flag=True, help="One JSON object per line.")
+@click.option("-f", "--full-length", is_flag=True, help="Show long arrays and strings in full.")
+def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json_: bool, full_length: bool) -> int:
+    """Show the messages of a bag."""
+    from itertools import islice
+
+    from graphflow.bag.typed import read
+    from graphflow.introspect import echo as texts
+
+    use_project()
+    for said in islice(read(path, _names(topics) or None), count):
+        data = texts.plain(said.message)
+        if json_:
+            output.as_json({"topic": said.topic, "time_ns": said.time_ns, "message": data})
+        elif csv:
+            output.data(f"{said.time_ns},{said.topic},{texts.csv(data)}")
+        else:
+            shown = data if full_length else texts.truncated(data)
+            output.data(f"# {said.topic} {said.time_ns / 1e9:.9f}\n{texts.block(shown)}\n---")
+    return exits.OK
+
+
+def _made(command: F) -> F:
+    """Add what says where a bag that is made of others goes, and how it is packed."""
+    option = click.option
+    for add in (
+        option("--compression", type=click.Choice(["zstd", "lz4", "none"]), default="zstd", help="Of chunks. [zstd]"),
+        option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes before a new file. [0: never]"),
+        option("-o", "--output", "folder", type=click.Path(path_type=Path), help="The new bag's folder."),
+    ):
+        command = add(command)
+    return command
+
+
+@bag.command()
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@_made
+def recover(path: Path, **options: Any) -> int:
+    """Make a whole bag of one that was not closed properly."""
+    return _copied((path,), "recovered", options)
+
+
+@bag.command()
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@_made
+def convert(path: Path, **options: Any) -> int:
+    """Write a bag anew: a .db3 as MCAP, compressed otherwise, in one file or several."""
+    return _copied((path,), "converted", options)
+
+
+@bag.command("filter")
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@_chosen
+@click.option("--start", type=float, help="From here on: seconds from the beginning of the bag, or since 1970.")
+@click.option("--end", type=float, help="Up to here.")
+@click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
+@_made
+def filter_(path: Path, **options: Any) -> int:
+    """Write some topics of a bag, or some time of it, into a new one."""
+    choice = _choice(options, hidden=True, all_services=True)
+    return _copied((path,), "filtered", options, choice)
+
+
+@bag.command()
+@click.argument("paths", metavar="BAG...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@_made
+def merge(paths: tuple[Path, ...], **options: Any) -> int:
+    """Write several bags into a new one, in the order of their times."""
+    return _copied(paths, "merged", options)
+
+
+def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Any = None) -> int:
+    from graphflow.bag.choice import Choice
+    from graphflow.bag.copying import beside, copy, times
+    from graphflow.bag.info import size
+    from graphflow.bag.reader import Bag
+    from graphflow.bag.writer import BagWriter
+
+    bags = [Bag(path) for path in paths]
+    start_ns, end_ns = times(bags, options.get("start"), options.get("end"))
+    folder = options["folder"] or beside(paths[0], word)
+    with BagWriter(folder, compression=options["compression"], max_size=options["max_bag_size"]) as writer:
+        every = choice or Choice(all=True, hidden=True, all_services=True)
+        copied = copy(bags, writer, every, remaps=_remaps(options.get("remaps", ())), start_ns=start_ns, end_ns=end_ns)
+    output.data(f"{folder}: {copied.message_count:,} messages of {len(copied.topics)} topics, {size(writer.size)}")
+    return exits.OK

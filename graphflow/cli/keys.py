@@ -1,0 +1,45 @@
+"""Single keys of the terminal, for commands that go on while they are pressed."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+
+UP, DOWN, RIGHT = "\x1b[A", "\x1b[B", "\x1b[C"
+_KEYS = {UP: UP, DOWN: DOWN, RIGHT: RIGHT, "\x1bOA": UP, "\x1bOB": DOWN, "\x1bOC": RIGHT}
+
+
+@contextlib.contextmanager
+def pressed(handle: Callable[[str], object]) -> Iterator[bool]:
+    """Call `handle` with each key that is pressed meanwhile; gives whether there is a terminal to press them at.
+
+    The terminal still turns Ctrl-C into a signal, and is afterwards as it was.
+    """
+    if not sys.stdin.isatty() or sys.platform == "win32" or os.tcgetpgrp(sys.stdin.fileno()) != os.getpgrp():
+        yield False  # in the background it would be stopped for asking
+        return
+    import termios
+    import tty
+
+    fd = sys.stdin.fileno()
+    before = termios.tcgetattr(fd)
+    loop = asyncio.get_running_loop()
+
+    def read() -> None:
+        data = os.read(fd, 64).decode(errors="ignore")
+        if data in _KEYS:
+            handle(_KEYS[data])
+        else:
+            for key in data:
+                handle(key)
+
+    tty.setcbreak(fd)
+    loop.add_reader(fd, read)
+    try:
+        yield True
+    finally:
+        loop.remove_reader(fd)
+        termios.tcsetattr(fd, termios.TCSADRAIN, before)

@@ -1,0 +1,159 @@
+"""What `topic hz`, `topic bw` and `topic delay` do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from graphflow.cli import output
+from graphflow.cli.conditions import compiled
+from graphflow.cli.visiting import visit
+from graphflow.errors import DecodeError, UsageFault
+from graphflow.introspect.rates import Arrivals, Delays, Weights, table
+from graphflow.machines.cache import GraphCache
+from graphflow.msgs import registry
+from graphflow.names import did_you_mean
+from graphflow.qos import BEST_AVAILABLE, Durability
+from graphflow.runtime import raw
+from graphflow.runtime.node import Node
+from graphflow.times import to_ns
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Kind
+
+EVERY = 1.0
+"""Seconds between two lines."""
+LOOK_EVERY = 0.05
+"""Seconds between two looks whether there is something to print."""
+HEARD = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
+"""What is listened with: nothing that was sent before, and no burst is missed."""
+SILENT = 2.0
+"""Seconds after which it is said that nobody publishes, or that nothing comes."""
+
+
+class Meter(Protocol):
+    """What takes in the messages of one topic."""
+
+    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
+        """Take in a message that came at a moment of the monotonic clock, and of the clock of stamps."""
+
+
+@dataclass
+class Rate:
+    """Counts messages, all or those for which an expression holds."""
+
+    arrivals: Arrivals
+    wanted: Callable[[bytes], bool] | None = None
+
+    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
+        if self.wanted is None or self.wanted(payload):
+            self.arrivals.add(now_ns)
+
+
+@dataclass
+class Weight:
+    """Weighs payloads."""
+
+    weights: Weights
+
+    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
+        self.weights.add(now_ns, len(payload))
+
+
+@dataclass
+class Delay:
+    """Compares the stamps of messages with the time at which they came."""
+
+    delays: Delays
+    decode: Callable[[bytes], Any]
+
+    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
+        stamp = self.decode(payload).header.stamp
+        self.delays.add(time_ns - (stamp.sec * 10**9 + stamp.nanosec))
+
+
+def hz(topics: list[str], window: int, expression: str) -> int:
+    """Tell how often messages come; returns the exit code."""
+    condition = compiled(expression) if expression else None
+    rates = {topic: Arrivals(window) for topic in topics}
+
+    def meter(topic: str, type_name: str) -> Meter:
+        if condition is None:
+            return Rate(rates[topic])
+        codec = registry.codec(type_name)
+        return Rate(rates[topic], lambda payload: condition(codec.decode(payload)))
+
+    def text(_: int) -> str:
+        return table(rates) if len(topics) > 1 else rates[topics[0]].text()
+
+    return visit(lambda node: _measure(node, topics, meter, text))
+
+
+def bw(topic: str, window: int) -> int:
+    """Tell how many bytes come; returns the exit code."""
+    weights = Weights(window)
+    output.data(f"Subscribed to [{topic}]")
+    return visit(lambda node: _measure(node, [topic], lambda *_: Weight(weights), weights.text))
+
+
+def delay(topic: str, window: int) -> int:
+    """Tell how old messages are when they come; returns the exit code."""
+    delays = Delays(window)
+
+    def meter(_: str, type_name: str) -> Meter:
+        fields = {f.name: f.type.base for f in registry.message_schema(type_name).fields}
+        if fields.get("header") != "std_msgs/msg/Header":
+            raise UsageFault(f"{type_name} has no header, and so no stamp to tell a delay by")
+        return Delay(delays, registry.codec(type_name).decode)
+
+    return visit(lambda node: _measure(node, [topic], meter, lambda _: delays.text()))
+
+
+async def _measure(
+    node: Node, topics: list[str], meter: Callable[[str, str], Meter], text: Callable[[int], str]
+) -> int:
+    """Listen to topics, as soon as each is there, and print a text every second."""
+    clock, cache = node.clock, node.context.cache
+    failed: list[UsageFault] = []
+    count = 0
+
+    def listen(topic: str, type_name: str, type_hash: str) -> None:
+        takes = meter(topic, type_name)
+
+        def arrived(payload: bytes, _: MessageInfo) -> None:
+            nonlocal count
+            count += 1
+            try:
+                takes.take(payload, clock.monotonic_ns(), clock.time_ns())
+            except (UsageFault, DecodeError) as error:
+                failed.append(UsageFault(str(error)))
+
+        raw.subscribe(node, type_name, topic, arrived, HEARD, type_hash=type_hash)
+
+    waiting, told = set(topics), 0
+    next_ns = (heard_ns := clock.monotonic_ns()) + to_ns(EVERY)
+    is_silence_told = False
+    while not failed:
+        for topic in sorted(waiting):
+            for publisher in cache.endpoints(Kind.PUBLISHER, topic)[:1]:
+                waiting.discard(topic)
+                listen(topic, publisher.type, publisher.hash)
+        await clock.sleep(LOOK_EVERY)
+        now_ns = clock.monotonic_ns()
+        if now_ns >= next_ns:
+            next_ns += to_ns(EVERY)
+            if count > told:
+                told, heard_ns, is_silence_told = count, now_ns, False
+                output.data(text(now_ns))
+        if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
+            is_silence_told = True
+            _tell_silence(cache, sorted(waiting))
+    raise failed[0]
+
+
+def _tell_silence(cache: GraphCache, missing: list[str]) -> None:
+    for topic in missing:
+        near = did_you_mean(topic, [name for name in cache.topics() if cache.endpoints(Kind.PUBLISHER, name)])
+        output.talk(f"WARNING: topic [{topic}] does not appear to be published yet{near}")
+    if not missing:
+        output.talk("no new messages")

@@ -1,0 +1,152 @@
+"""What `bag record` does once it knows what to record."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from graphflow.bag.choice import Choice
+from graphflow.bag.info import size
+from graphflow.bag.recorder import CACHE, Recorder
+from graphflow.bag.writer import BagWriter
+from graphflow.cli import exits, output
+from graphflow.cli.keys import pressed
+from graphflow.cli.visiting import visit
+from graphflow.errors import BagError
+from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
+from graphflow.runtime.node import Node
+
+TOLD_EVERY = 1.0
+"""Seconds between two looks at how it goes, at a terminal."""
+
+
+@dataclass
+class RecordOptions:
+    """The options of `bag record`, by the names click gives them."""
+
+    folder: Path | None = None
+    max_bag_size: int = 0
+    max_bag_duration: float = 0.0
+    max_cache_size: int | None = None
+    compression: str = "zstd"
+    no_discovery: bool = False
+    start_paused: bool = False
+    snapshot_mode: bool = False
+    duration: float | None = None
+    node_name: str = "rosbag2_recorder"
+
+
+def run(choice: Choice, options: RecordOptions) -> int:
+    """Record until stopped; returns the exit code."""
+    folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    split = {"max_size": options.max_bag_size, "max_seconds": options.max_bag_duration}
+    writer = BagWriter(folder, compression=options.compression, **split)  # type: ignore[arg-type]
+
+    async def work(node: Node) -> int:
+        return await _record(node, writer, choice, options)
+
+    return visit(work, options.node_name)
+
+
+async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions) -> int:
+    recorder = Recorder(
+        node,
+        writer,
+        choice,
+        cache=options.max_cache_size or CACHE,
+        discovery=not options.no_discovery,
+        snapshot=options.snapshot_mode,
+        told=lambda text: _tell(node, text),
+    )
+    recorder.is_paused = options.start_paused
+    _serve(node, recorder)
+    _tell(node, "Listening for topics...")
+    code = exits.OK
+
+    def key(pressed_key: str) -> None:
+        if pressed_key == " ":
+            recorder.is_paused = not recorder.is_paused
+            _tell(node, "Paused" if recorder.is_paused else "Resumed")
+        elif pressed_key in "sS" and recorder.take_snapshot():
+            _tell(node, "Snapshot taken")
+
+    began = time.monotonic()
+    with pressed(key) as has_keys:
+        if has_keys:
+            keys = "SPACE pauses, S takes a snapshot" if options.snapshot_mode else "SPACE pauses"
+            _tell(node, f"Recording into {writer.folder}. {keys}, Ctrl-C ends it")
+        else:
+            _tell(node, f"Recording into {writer.folder}")
+        shown = asyncio.ensure_future(_show(recorder, began)) if sys.stderr.isatty() else None
+        try:
+            async with asyncio.timeout(options.duration):
+                await recorder.run()
+        except TimeoutError:
+            code = exits.OK
+        except asyncio.CancelledError:  # Ctrl-C
+            code = exits.OK
+        except BagError as error:
+            output.error(str(error))
+            code = exits.FAILED
+        finally:
+            if shown is not None:
+                shown.cancel()
+                output.progress("")
+    _sum_up(node, recorder, writer, time.monotonic() - began)
+    return code
+
+
+def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -> None:
+    whole = writer.contents
+    written = f"{whole.message_count:,} messages of {recorder.topics} topics in {seconds:.1f} s, {size(writer.size)}"
+    _tell(node, f"Recording stopped: {written} in {writer.folder}")
+    if recorder.dropped:
+        output.talk(f"WARNING: {recorder.dropped:,} messages were dropped: they came faster than they could be written")
+    if recorder.lost:
+        output.talk(f"WARNING: {recorder.lost:,} messages never arrived, by the numbers of their publishers")
+    if not recorder.topics:
+        output.talk("no topic was there to be recorded; `graphflow topic list` shows those that are")
+
+
+async def _show(recorder: Recorder, began: float) -> None:
+    """How it goes, in one line that is written over and over."""
+    last, at = 0, began
+    while True:
+        await asyncio.sleep(TOLD_EVERY)
+        now = time.monotonic()
+        rate, last, at = (recorder.recorded - last) / (now - at), recorder.recorded, now
+        lost = f", {recorder.dropped + recorder.lost:,} lost" if recorder.dropped + recorder.lost else ""
+        state = "paused" if recorder.is_paused else f"{rate:,.0f} messages/s"
+        output.progress(f"{now - began:,.0f} s  {recorder.topics} topics  {state}  {size(recorder.size)}{lost}")
+
+
+def _serve(node: Node, recorder: Recorder) -> None:
+    """Offer the services of ROS 2's recorder."""
+
+    def pause(_: Any) -> Any:
+        recorder.is_paused = True
+        return Pause.Response()
+
+    def resume(_: Any) -> Any:
+        recorder.is_paused = False
+        return Resume.Response()
+
+    def split(_: Any) -> Any:
+        recorder.split()
+        return SplitBagfile.Response()
+
+    node.create_service(Pause, "~/pause", pause)
+    node.create_service(Resume, "~/resume", resume)
+    node.create_service(IsPaused, "~/is_paused", lambda _: IsPaused.Response(paused=recorder.is_paused))
+    node.create_service(SplitBagfile, "~/split_bagfile", split)
+    node.create_service(Snapshot, "~/snapshot", lambda _: Snapshot.Response(success=recorder.take_snapshot()))
+
+
+def _tell(node: Node, text: str) -> None:
+    """A line as ROS 2's recorder writes it."""
+    output.progress("")
+    output.talk(f"[INFO] [{node.clock.time_ns() / 1e9:.9f}] [{node.name}]: {text}")

@@ -1,0 +1,92 @@
+"""Types nobody installed here: their definitions, asked of the nodes that use them.
+
+Source: type_description_interfaces/srv/GetTypeDescription (REP-2016).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface
+from graphflow.introspect.view import View
+from graphflow.machines.cache import GraphCache
+from graphflow.msgs import registry
+from graphflow.wire.described import FieldSaid, definition_of, verified
+from graphflow.wire.liveliness import Entity, Kind
+
+SERVICE = "type_description_interfaces/srv/GetTypeDescription"
+LIMIT = 2.0
+"""Seconds that a node has to answer."""
+ASKED = 3
+"""Nodes that are asked, one after the other."""
+
+
+def request_for(entity: Entity) -> Any:
+    """What to ask of the node of an endpoint."""
+    request = registry.interface_class(f"{SERVICE}_Request")
+    return request(type_name=entity.type, type_hash=entity.hash, include_type_sources=True)
+
+
+def service_of(entity: Entity) -> str:
+    """The service to ask."""
+    return f"{entity.node_name}/get_type_description"
+
+
+def sources_in(response: Any, entity: Entity) -> dict[str, str]:
+    """The texts of a type and of all types in it, from a node's answer: its files if it sent them, else made of what
+    it describes.
+
+    Raises:
+        InterfaceError: The node has refused, or what it sent is wrong, too large, or has not the hash it announced.
+    """
+    if not response.successful:
+        raise InterfaceError(f"{entity.node_name}: {response.failure_reason}")
+    files = {s.type_name: s.raw_file_contents for s in response.type_sources if s.encoding in ("msg", "srv", "action")}
+    described = response.type_description
+    parts = [described.type_description, *described.referenced_type_descriptions]
+    try:
+        verified(entity.type, entity.hash, files)
+    except InterfaceError:  # files in IDL, or none
+        texts = {part.type_name: definition_of(part.type_name, [_said(f) for f in part.fields]) for part in parts}
+        verified(entity.type, entity.hash, texts)
+        return texts
+    return files
+
+
+def _said(field: Any) -> FieldSaid:
+    kind = field.type
+    return FieldSaid(field.name, kind.type_id, kind.capacity, kind.string_capacity, kind.nested_type_name)
+
+
+def endpoints_of(cache: GraphCache, name: str, kinds: tuple[Kind, ...]) -> list[Entity]:
+    """The endpoints on a name whose nodes can be asked."""
+    servers = {e.node_name for e in cache.endpoints(Kind.SERVICE) if e.name.endswith("/get_type_description")}
+    return [e for kind in kinds for e in cache.endpoints(kind, name) if e.node_name in servers]
+
+
+def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind.PUBLISHER, Kind.SUBSCRIPTION)) -> None:
+    """Make the type of a name known here; nothing is asked if it is.
+
+    Args:
+        name: A topic, or for other kinds a service.
+        type_name: Its type, `package/kind/Name`.
+
+    Raises:
+        UnknownInterface: It is not known here, and no node gives a definition that can be used.
+    """
+    try:
+        registry.full_name(type_name)
+    except UnknownInterface as unknown:
+        reasons = []
+        users = {e.node_name: e for e in reversed(endpoints_of(view.cache, name, kinds)) if e.type == type_name}
+        for entity in list(users.values())[:ASKED]:
+            try:
+                response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)
+                registry.give(sources_in(response, entity))
+                registry.hash_of(type_name)
+            except GraphflowError as error:
+                reasons.append(str(error))
+            else:
+                return
+        why = "; ".join(reasons) or "no node that uses it gives its definition"
+        raise UnknownInterface(f"{unknown}; {why}") from None

@@ -1,0 +1,110 @@
+"""Definitions from elsewhere: type descriptions read back into text, and what a set of texts must satisfy to be used.
+
+They come from other processes and from bags, so nothing in them is believed: names and sizes go through the parser of
+definitions, and together they must have the hash that was announced.
+
+Source: type_description_interfaces (REP-2016); RIHS01.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from graphflow.errors import InterfaceError
+from graphflow.wire import idl
+from graphflow.wire.schema import Action, FieldType, Interface, Message, Service
+from graphflow.wire.typehash import HIDDEN, base_of, referenced, type_hash
+
+TYPES_BOUND = 500
+"""Types that one definition may need."""
+TEXT_BOUND = 1_000_000
+"""Characters that their texts may have together."""
+FIXED_BOUND = 1_000_000
+"""Values that a message may have in arrays of fixed size: they are there in an empty one, too."""
+
+
+class FieldSaid(NamedTuple):
+    """A field as a type description has it: type_description_interfaces/msg/Field and FieldType."""
+
+    name: str
+    type_id: int
+    capacity: int
+    string_capacity: int
+    nested_type_name: str
+
+
+def definition_of(name: str, fields: list[FieldSaid]) -> str:
+    """The text of a message's definition file. Defaults and constants are not in descriptions.
+
+    Raises:
+        InterfaceError: A field is of no type that there is.
+    """
+    if [f.name for f in fields] == [HIDDEN]:
+        return ""
+    return "".join(f"{_type(name, field)} {field.name}\n" for field in fields)
+
+
+def _type(name: str, field: FieldSaid) -> FieldType:
+    found = base_of(field.type_id)
+    if found is None:
+        raise InterfaceError(f"{name}: field {field.name!r} is of the unknown type {field.type_id}")
+    base, array = found
+    bound = field.string_capacity if field.type_id % 48 in (21, 22) else 0
+    size = field.capacity if array in ("fixed", "bounded") else 0
+    return FieldType(base or field.nested_type_name, bound, array, size)
+
+
+def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, Interface]:
+    """The interfaces of a definition and of all types in it.
+
+    Args:
+        name: `package/kind/Name`.
+        digest: The hash that it must have; empty for any.
+        sources: The texts of its definition file and of the others', by type.
+
+    Raises:
+        InterfaceError: They are wrong, too large, not complete, or of another hash.
+    """
+    if len(sources) > TYPES_BOUND or sum(map(len, sources.values())) > TEXT_BOUND:
+        raise InterfaceError(f"{name}: its definition is larger than any that there is")
+    if any(len(type_.split("/")) != 3 or type_.split("/")[1] not in ("msg", "srv", "action") for type_ in sources):
+        raise InterfaceError(f"{name}: its definition names a type that is none")
+    found = {type_: idl.parse(type_, text) for type_, text in sources.items()}
+    messages = {m.name: m for interface in found.values() for m in _messages(interface)}
+
+    def lookup(type_: str) -> Message:
+        if type_ not in messages:
+            raise InterfaceError(f"{name}: its definition lacks {type_}")
+        return messages[type_]
+
+    whole = lookup(name)
+    _refuse_size(name, {name: whole, **referenced(whole, lookup)})
+    actual = type_hash(whole, lookup)
+    if digest and actual != digest:
+        raise InterfaceError(f"{name}: its definition has the hash {actual}, not {digest}, which was announced")
+    return found
+
+
+def _messages(interface: Interface) -> tuple[Message, ...]:
+    return interface.messages if isinstance(interface, (Service, Action)) else (interface,)
+
+
+def _refuse_size(name: str, messages: Mapping[str, Message]) -> None:
+    """Refuse types that contain themselves, and empty messages that would fill the memory."""
+    sizes: dict[str, int] = {}
+
+    def size(type_: str, chain: tuple[str, ...]) -> int:
+        if type_ in chain:
+            raise InterfaceError(f"{name}: {type_} contains itself")
+        if type_ not in sizes:
+            total = 0
+            for field in messages[type_].fields:
+                one = 1 if field.type.is_primitive else size(field.type.base, (*chain, type_))
+                total += one * (field.type.size if field.type.array == "fixed" else 1)
+            if total > FIXED_BOUND:
+                raise InterfaceError(f"{name}: an empty {type_} would have {total:,} values")
+            sizes[type_] = total
+        return sizes[type_]
+
+    size(name, ())

@@ -1,0 +1,94 @@
+"""Definitions from elsewhere: described and read back, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.errors import InterfaceError
+from graphflow.msgs import registry
+from graphflow.wire.described import FieldSaid, definition_of, verified
+from graphflow.wire.schema import Field, Message
+from graphflow.wire.typehash import base_of, referenced, type_id
+from tests.cases import sample
+
+
+def said(field: Field) -> FieldSaid:
+    t = field.type
+    return FieldSaid(field.name, type_id(t), t.size, t.string_bound, "" if t.is_primitive else t.base)
+
+
+def described(message: Message) -> dict[str, str]:
+    """All texts that a description of a type gives."""
+    parts = {message.name: message, **referenced(message, registry.message_schema)}
+    return {name: definition_of(name, [said(f) for f in part.fields]) for name, part in parts.items()}
+
+
+MESSAGES = [
+    f"{package}/msg/{name}" for package in registry.packages() for name in registry.names_in(package, "msg")
+]
+
+
+@pytest.mark.parametrize("name", sample(MESSAGES))
+def test_a_description_has_the_hash_of_its_definition(name: str) -> None:
+    """Whatever the type: what it is described by is enough to talk to it."""
+    texts = described(registry.message_schema(name))
+    assert set(verified(name, registry.hash_of(name), texts)) == set(texts)
+
+
+@pytest.mark.parametrize("name", ["std_srvs/srv/SetBool", "example_interfaces/action/Fibonacci"])
+def test_services_and_actions(name: str) -> None:
+    """Come with their files."""
+    whole = registry.whole_schema(name)
+    files = {name: registry.definition(name)}
+    for other in referenced(whole, registry.message_schema):
+        if "/msg/" in other:
+            files[other] = registry.definition(other)
+    assert verified(name, registry.hash_of(name), files)
+
+
+def test_a_type_without_fields() -> None:
+    """Is described by one that is hidden."""
+    assert definition_of("std_msgs/msg/Empty", [FieldSaid("structure_needs_at_least_one_member", 3, 0, 0, "")]) == ""
+
+
+@pytest.mark.parametrize("number", [-1, 0, 12, 14, 19, 20, 23, 48, 96, 192, 255])
+def test_numbers_of_no_type(number: int) -> None:
+    """Are no type, and no error of another kind."""
+    assert base_of(number) is None
+    with pytest.raises(InterfaceError, match=f"p/msg/A: field 'x' is of the unknown type {number}"):
+        definition_of("p/msg/A", [FieldSaid("x", number, 0, 0, "")])
+
+
+FIXED = "uint8[1000] x\n"
+
+
+@pytest.mark.parametrize(
+    ("sources", "message"),
+    [
+        ({"p/msg/A": "int32 x"}, "has the hash RIHS01_.*, not RIHS01_00, which was announced"),
+        ({"p/msg/A": "B b"}, "its definition lacks p/msg/B"),
+        ({"p/msg/B": "int32 x"}, "its definition lacks p/msg/A"),
+        ({}, "its definition lacks p/msg/A"),
+        ({"p/msg/A": "B b", "p/msg/B": "A a"}, "contains itself"),
+        ({"p/msg/A": "A a"}, "contains itself"),
+        ({"p/msg/A": "uint8[1000001] x"}, "an empty p/msg/A would have 1,000,001 values"),
+        ({"p/msg/A": "B[1000] b", "p/msg/B": "uint8[2000] x"}, "an empty p/msg/A would have 2,000,000 values"),
+        ({"p/msg/A": "import os\n"}, "import"),
+        ({"p/msg/A": "int32 x; import os"}, "x;"),
+        ({"p/msg/A": "int32 class"}, "keyword"),
+        ({"p/msg/A": f"#{'x' * 1_000_000}"}, "larger than any that there is"),
+        ({"p/msg/A": "", **{f"p/msg/A{n}": "" for n in range(500)}}, "larger than any that there is"),
+        ({"p/msg/A": "", "../../etc": ""}, "names a type that is none"),
+        ({"p/msg/A": "", "p/exe/A": ""}, "names a type that is none"),
+        ({"p/msg/A": "", "p/msg/a b": ""}, "type name 'a b'"),
+    ],
+)
+def test_what_is_refused(sources: dict[str, str], message: str) -> None:
+    """All that is not the type that was announced, or that would cost too much."""
+    with pytest.raises(InterfaceError, match=message):
+        verified("p/msg/A", "RIHS01_00", sources)
+
+
+def test_any_hash_will_do_where_none_was_announced() -> None:
+    """Old bags have none."""
+    assert list(verified("p/msg/A", "", {"p/msg/A": "int32 x"})) == ["p/msg/A"]
