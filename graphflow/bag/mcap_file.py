@@ -42,6 +42,10 @@ class _Block(NamedTuple):
     """Where its record begins."""
 
 
+_Waiting = tuple[int, tuple[int, int], int, int, int, bytes]
+"""A message that waits for its turn: its time, its place in the file, channel, number, time of sending, data."""
+
+
 class McapFile:
     """Reads one file.
 
@@ -96,16 +100,15 @@ class McapFile:
         wanted = {i: t for i, t in self._channels.items() if names is None or t.name in names}
         end = (1 << 63) if end_ns is None else end_ns
         blocks = sorted(block for block in self._blocks if block.end_ns >= start_ns and block.start_ns < end)
-        waiting: list[tuple[int, int, int, int, int, bytes]] = []
-        count = 0
+        waiting: list[_Waiting] = []
         with self._opened() as file:
             for block in blocks:
                 while waiting and waiting[0][0] < block.start_ns:
                     yield _record(heapq.heappop(waiting), wanted)
-                for channel, sequence, log_ns, publish_ns, data in self._messages(file, block):
+                for number, (channel, sequence, log_ns, publish_ns, data) in enumerate(self._messages(file, block)):
                     if channel in wanted and start_ns <= log_ns < end:
-                        count += 1  # keeps those of one time in the order of the file
-                        heapq.heappush(waiting, (log_ns, count, channel, sequence, publish_ns, data))
+                        place = block.offset, number  # keeps those of one time in the order of the file
+                        heapq.heappush(waiting, (log_ns, place, channel, sequence, publish_ns, data))
         while waiting:
             yield _record(heapq.heappop(waiting), wanted)
 
@@ -260,7 +263,7 @@ class McapFile:
         return found
 
 
-def _record(waiting: tuple[int, int, int, int, int, bytes], channels: dict[int, Topic]) -> Record:
+def _record(waiting: _Waiting, channels: dict[int, Topic]) -> Record:
     log_ns, _, channel, sequence, publish_ns, data = waiting
     return Record(channels[channel], log_ns, publish_ns, sequence, data)
 

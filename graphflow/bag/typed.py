@@ -61,10 +61,10 @@ def learn(topic: Topic) -> None:
     """Make a topic's type known, from its definition in the bag, if it is not known here.
 
     Raises:
-        BagError: There is no definition that can be used.
+        BagError: There is no definition that can be used, or another is known here.
     """
     try:
-        registry.hash_of(registry.full_name(topic.type))
+        found = registry.hash_of(registry.full_name(topic.type))
     except UnknownInterface as unknown:
         if not topic.definition:
             raise BagError(f"{topic.name}: {unknown}; the bag has no definition of it") from None
@@ -72,9 +72,11 @@ def learn(topic: Topic) -> None:
             sources = parted(topic.type, topic.definition)
             verified(topic.type, topic.hash, sources)
             registry.give(sources)
-            registry.hash_of(topic.type)
+            found = registry.hash_of(topic.type)
         except InterfaceError as error:
             raise BagError(f"{topic.name}: the bag's definition cannot be used: {error}") from None
+    if topic.hash and found != topic.hash:
+        raise BagError(f"{topic.name}: it was recorded with another definition of {topic.type} than the one here")
 
 
 def said(records: Iterator[Record]) -> Iterator[Said]:

@@ -47,8 +47,9 @@ class _Stream:
             while left:
                 left = left[self._file.write(left) :]
         except OSError:
-            self._file.truncate(self._end)
-            self._file.seek(self._end)
+            with contextlib.suppress(OSError):  # what is there of it is taken for the end of the file
+                self._file.truncate(self._end)
+                self._file.seek(self._end)
             raise
         self._end += len(data)
         return len(data)

@@ -83,7 +83,8 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
             try:
                 response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)
                 registry.give(sources_in(response, entity))
-                registry.hash_of(type_name)
+                if registry.hash_of(type_name) != entity.hash:
+                    raise InterfaceError(f"{entity.node_name} has other definitions of types in it than are here")
             except GraphflowError as error:
                 reasons.append(str(error))
             else:

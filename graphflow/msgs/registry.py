@@ -36,7 +36,7 @@ def add_root(folder: Path) -> None:
 
 
 def give(definitions: Mapping[str, str]) -> None:
-    """Make definitions known that are in no file here. Where there is a file, it stands.
+    """Make definitions known that are in no file here. What is known stands.
 
     Args:
         definitions: Their texts, by `package/kind/Name`.
@@ -45,8 +45,7 @@ def give(definitions: Mapping[str, str]) -> None:
         try:
             definition_file(name)
         except UnknownInterface:
-            _given[name] = text
-    forget()
+            _given.setdefault(name, text)
 
 
 def definition(name: str) -> str:

@@ -23,9 +23,7 @@ def described(message: Message) -> dict[str, str]:
     return {name: definition_of(name, [said(f) for f in part.fields]) for name, part in parts.items()}
 
 
-MESSAGES = [
-    f"{package}/msg/{name}" for package in registry.packages() for name in registry.names_in(package, "msg")
-]
+MESSAGES = [f"{package}/msg/{name}" for package in registry.packages() for name in registry.names_in(package, "msg")]
 
 
 @pytest.mark.parametrize("name", sample(MESSAGES))
