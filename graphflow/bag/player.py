@@ -17,7 +17,7 @@ from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.reader import Bag
 from graphflow.bag.typed import learn
-from graphflow.errors import BagError, GraphflowError, InvalidName
+from graphflow.errors import BagError, InvalidName
 from graphflow.msgs import registry
 from graphflow.names import check_full_name
 from graphflow.qos import CLOCK, DEFAULT, Durability, History, Qos, Reliability
@@ -238,10 +238,8 @@ def _hash(topic: Topic) -> str:
         BagError: The bag does not say, and the type is not known.
     """
     try:
-        known = registry.hash_of(registry.full_name(topic.type))
-    except GraphflowError:
-        if topic.hash:
-            return topic.hash
-        learn(topic)
-        known = registry.hash_of(topic.type)
-    return topic.hash or known
+        learn(topic)  # so that others can ask this process for the definition
+    except BagError:
+        if not topic.hash:
+            raise
+    return topic.hash or registry.hash_of(topic.type)

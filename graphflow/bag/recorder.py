@@ -73,6 +73,8 @@ class Recorder:
         self._loop = asyncio.get_running_loop()
         self._subscriptions: dict[str, raw.RawSubscription] = {}
         self._topics: dict[str, Topic] = {}
+        self._left_out: set[tuple[str, str]] = set()
+        """Other types of topics that are recorded."""
         self._held: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
         """Messages of topics whose definitions have not come yet."""
         self._last: dict[tuple[str, bytes], int] = {}
@@ -153,7 +155,13 @@ class Recorder:
     # topics
 
     def _consider(self, entity: Entity) -> None:
-        if entity.name in self._subscriptions or not self._choice.wants(entity.name, entity.type):
+        known = self._subscriptions.get(entity.name)
+        if known is not None:
+            if known.type_name != entity.type and (entity.name, entity.type) not in self._left_out:
+                self._left_out.add((entity.name, entity.type))
+                logger.warning("%s is of type %s, too; only %s is recorded", entity.name, entity.type, known.type_name)
+            return
+        if not self._choice.wants(entity.name, entity.type):
             return
         if entity.zid == self._node.context.session.zid:  # what the recorder itself says
             return

@@ -217,7 +217,8 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
             output.data(f"{said.time_ns},{said.topic},{texts.csv(data)}")
         else:
             shown = data if full_length else texts.truncated(data)
-            output.data(f"# {said.topic} {said.time_ns / 1e9:.9f}\n{texts.block(shown)}\n---")
+            when = f"{said.time_ns // 10**9}.{said.time_ns % 10**9:09d}"
+            output.data(f"# {said.topic} {when}\n{texts.block(shown)}\n---")
     return exits.OK
 
 

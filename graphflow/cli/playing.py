@@ -42,7 +42,7 @@ def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True) -> in
     async def work(node: Node) -> int:
         return await _play(node, bag, options, keys=keys)
 
-    return visit(work, name)
+    return visit(work, name, has_services=True)
 
 
 async def _play(node: Node, bag: Bag, options: PlayOptions, *, keys: bool) -> int:

@@ -49,7 +49,7 @@ def run(choice: Choice, options: RecordOptions) -> int:
     async def work(node: Node) -> int:
         return await _record(node, writer, choice, options)
 
-    return visit(work, options.node_name)
+    return visit(work, options.node_name, has_services=True)
 
 
 async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions) -> int:

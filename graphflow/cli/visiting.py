@@ -13,17 +13,22 @@ from graphflow.runtime.run import catch_signals
 from graphflow.transport import loop
 
 
-def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None) -> int:
-    """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0."""
-    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}"))
+def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None, *, has_services: bool = False) -> int:
+    """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0.
+
+    Args:
+        name: Of the node, which is not hidden then.
+        has_services: Whether it has the services of any node, such as those for parameters and definitions.
+    """
+    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services))
 
 
-async def _visit(work: Callable[[Node], Awaitable[int]], name: str) -> int:
+async def _visit(work: Callable[[Node], Awaitable[int]], name: str, has_services: bool) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
     context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
-    node = Node(name, start_parameter_services=False, enable_rosout=False)
+    node = Node(name, start_parameter_services=has_services, enable_rosout=False)
     try:
         await core_of(node).start(context)
         task = asyncio.ensure_future(work(node))

@@ -78,7 +78,10 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
         registry.full_name(type_name)
     except UnknownInterface as unknown:
         reasons = []
-        users = {e.node_name: e for e in reversed(endpoints_of(view.cache, name, kinds)) if e.type == type_name}
+        users: dict[str, Entity] = {}
+        for entity in endpoints_of(view.cache, name, kinds):
+            if entity.type == type_name:
+                users.setdefault(entity.node_name, entity)
         for entity in list(users.values())[:ASKED]:
             try:
                 response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)

@@ -25,6 +25,16 @@ def test_list(standing: Machine) -> None:
     assert "/office/clerk/_add" in standing.look("service", "list", "--include-hidden-services").split()
 
 
+def test_type_find_and_info(standing: Machine) -> None:
+    """The one from the other; how many nodes offer and call it, and which."""
+    assert standing.look("service", "type", ADD) == f"{TYPE}\n"
+    assert "no node offers the service /ad" in standing.look("service", "type", "/ad", code=1)
+    assert ADD in standing.look("service", "find", TYPE).split()
+    assert standing.look("service", "find", "std_srvs/srv/Empty", "-c") == "0\n"
+    assert standing.look("service", "info", ADD) == f"Type: {TYPE}\nClients count: 0\nServices count: 1\n"
+    assert "Services count: 1\n    /office/clerk\n" in standing.look("service", "info", "-v", ADD)
+
+
 def test_call(standing: Machine) -> None:
     """Request and response are shown, as ROS 2 shows them; with --json only the response."""
     request, response = (f"example_interfaces.srv.AddTwoInts_{word}" for word in ("Request", "Response"))

@@ -1,4 +1,4 @@
-"""`graphflow topic list` and `info`, and what `echo` and `pub` make of the words they are given."""
+"""`graphflow topic list`, `info`, `type` and `find`, and what `echo` and `pub` make of the words they are given."""
 
 from __future__ import annotations
 
@@ -108,6 +108,25 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
 def test_words_that_do_not_fit_the_graph(standing: Machine, words: str, code: int, told: str) -> None:
     """The error names what is there."""
     assert told in standing.look(*words.split(), code=code)
+
+
+def test_type_and_find(standing: Machine) -> None:
+    """The one from the other; a type may be short."""
+    assert standing.look("topic", "type", "chatter") == f"{STRING}\n"
+    assert "Unknown topic '/chater'; did you mean '/chatter'?" in standing.look("topic", "type", "/chater", code=1)
+    assert standing.look("topic", "find", STRING).split() == ["/chatter", "/office/minutes"]
+    assert standing.look("topic", "find", "std_msgs/String", "-c") == "2\n"
+    assert "/office/_drawer" in standing.look("topic", "find", STRING, "--include-hidden-topics")
+    assert standing.look("topic", "find", "std_msgs/msg/Int32") == ""
+
+
+def test_echo_of_what_fits(standing: Machine) -> None:
+    """A condition on the message; its bytes."""
+    words = ("topic", "echo", "/chatter", "--once", "--filter")
+    assert "Hello World" in standing.look(*words, "'World' in m.data")
+    assert "is no expression" in standing.look(*words, "m.data >", code=2)
+    assert "AttributeError: " in standing.look(*words, "m.nothing", code=2)
+    assert standing.look("topic", "echo", "/chatter", "--once", "--raw").startswith("b'\\x00\\x01\\x00\\x00")
 
 
 def test_pub_once(standing: Machine) -> None:

@@ -24,7 +24,7 @@ def test_what_ros2_has_and_graphflow_not_yet(words: str) -> None:
         ("topi", "no such command 'topi'; did you mean 'topic'?"),
         ("kill", "no such command 'kill'; did you mean 'down'?"),
         ("frobnicate", "no such command 'frobnicate'; graphflow --help lists them"),
-        ("service x", "no such command 'x'; there is call, list"),
+        ("service x", "no such command 'x'; there is call, echo, find, info, list, type"),
     ],
 )
 def test_a_word_that_is_misspelt(words: str, told: str) -> None:

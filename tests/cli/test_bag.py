@@ -1,0 +1,79 @@
+"""`graphflow bag` with bags that are there: info, echo, recover, convert, filter, merge; and words that do not fit."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from graphflow.bag.reader import Bag
+from tests.bag.cast import some_records, write
+from tests.conftest import Machine
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a bag called `bag`."""
+    write(tmp_path / "bag")
+    return tmp_path
+
+
+def test_info(machine: Machine, folder: Path) -> None:
+    """In ROS 2's words, of the folder and of the file; names alone; JSON."""
+    for path in ("bag", "bag/bag_0.mcap"):
+        assert "Topic: /chatter | Type: std_msgs/msg/String | Count: 20 |" in machine.look(
+            "bag", "info", path, cwd=folder
+        )
+    assert machine.look("bag", "info", "bag", "-t", cwd=folder).split() == ["/chatter", "/count", "/map"]
+    assert json.loads(machine.look("bag", "info", "bag", "--json", cwd=folder))["messages"] == 41
+    assert "  | string data" in machine.look("bag", "info", "-v", "bag", cwd=folder)
+
+
+def test_echo(machine: Machine, folder: Path) -> None:
+    """As `topic echo` shows them, with topic and time; as lines for programs."""
+    text = machine.look("bag", "echo", "bag", "/count", "-n", "2", cwd=folder)
+    assert text == "# /count 1700000000.050000000\ndata: 0\n---\n# /count 1700000000.150000000\ndata: 1\n---\n"
+    assert machine.look("bag", "echo", "bag", "--csv", "-n", "1", cwd=folder) == "1700000000000000000,/map,map\n"
+    line = json.loads(machine.look("bag", "echo", "bag", "chatter", "--json", "-n", "1", cwd=folder))
+    assert line == {"topic": "/chatter", "time_ns": 1_700_000_000_000_000_000, "message": {"data": "hello 0"}}
+
+
+def test_bags_of_bags(machine: Machine, folder: Path) -> None:
+    """Cut, converted, merged, recovered; each says what it made."""
+    text = machine.look("bag", "filter", "bag", "--topics", "/count", "--start", "1", cwd=folder)
+    assert text.startswith("bag_filtered: 10 messages of 1 topics, ")
+    machine.look("bag", "filter", "bag", "-x", "count", "-m", "chatter:=/news", "-o", "news", cwd=folder)
+    assert Bag(folder / "news").contents.counts == {"/map": 1, "/news": 20}
+    machine.look("bag", "convert", "bag", "--compression", "lz4", "-b", "100", "-o", "small", cwd=folder)
+    assert len(Bag(folder / "small").files) > 1
+    machine.look("bag", "merge", "news", "bag_filtered", "-o", "both", cwd=folder)
+    assert Bag(folder / "both").contents.message_count == 31
+
+    file = folder / "bag" / "bag_0.mcap"
+    file.write_bytes(file.read_bytes()[:-300])
+    assert "graphflow bag recover mends it" in machine.look("bag", "info", "bag", cwd=folder)
+    machine.look("bag", "recover", "bag", cwd=folder)
+    assert list(Bag(folder / "bag_recovered").records()) == sorted(some_records(), key=lambda r: r.log_ns)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        ("info nothing", 1, "error: nothing: there is no such file or folder"),
+        ("play nothing", 1, "error: nothing: there is no such file or folder"),
+        ("play bag --rate 0", 2, "--rate"),
+        ("play bag -m /a:/b", 2, "'/a:/b' is no remap rule; write OLD:=NEW"),
+        ("play bag --clock often", 2, "--clock takes a number of Hz"),
+        ("record", 2, "nothing to record was named; write topics, or -a for all: graphflow bag record -a"),
+        ("record -e [", 2, "'[' is no regular expression"),
+        ("record -a -o bag", 1, "bag is there already; choose another name with -o"),
+        ("filter bag -o bag", 1, "bag is there already; choose another name with -o"),
+        ("record a//b", 2, "a//b"),
+        ("echo bag --csv -n 0", 2, "0 is not in the range"),
+        ("ply bag", 2, "did you mean 'play'?"),
+    ],
+)
+def test_words_that_do_not_fit(machine: Machine, folder: Path, words: str, code: int, told: str) -> None:
+    """Say what to write instead."""
+    assert told in machine.look("bag", *words.split(), cwd=folder, code=code)

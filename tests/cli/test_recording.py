@@ -1,0 +1,116 @@
+"""`bag record` on a running graph: ended, killed, with a full disk."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from graphflow.bag.reader import Bag
+from tests.cases import slow
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+CHATTER = "std_msgs/msg/String"
+
+
+def talk(machine: Machine) -> None:
+    machine.start("run", "nodes.talker:Talker").wait_for("Publishing: 'Hello World: 1'")
+
+
+def test_recording_and_playing(machine: Machine, tmp_path: Path) -> None:
+    """What was said is in the bag when Ctrl-C has ended it, and is said again by `play`."""
+    talk(machine)
+    recorder = machine.start("bag", "record", "/chatter", "/rosout", "-o", "bag", cwd=tmp_path)
+    recorder.wait_for("Subscribed to topic '/chatter'")
+    machine.look("topic", "echo", "/chatter", "--once")
+    assert recorder.end(signal.SIGINT) == 0, recorder.text
+    assert "Recording into bag" in recorder.text
+    assert "WARNING" not in recorder.text
+    bag = Bag(tmp_path / "bag")
+    assert bag.contents.is_whole
+    count = bag.contents.counts["/chatter"]
+    assert count >= 1
+    assert f"Recording stopped: {bag.contents.message_count:,} messages of 2 topics in" in recorder.text
+    assert bag.contents.topics["/chatter"].definition == "string data\n"
+
+    words = ("bag", "play", "bag", "--topics", "/chatter", "-m", "/chatter:=/again", "-r", "10", "--delay", "0.1")
+    assert f"played {count} messages in" in machine.run(*words, cwd=tmp_path)
+
+
+def test_a_recorder_that_is_killed(machine: Machine, tmp_path: Path) -> None:
+    """Leaves what it wrote half a second ago, and before."""
+    talk(machine)
+    recorder = machine.start("bag", "record", "-a", "-o", "bag", cwd=tmp_path)
+    recorder.wait_for("Subscribed to topic '/chatter'")
+
+    def some_are_there() -> bool:
+        return (tmp_path / "bag" / "bag_0.mcap").exists() and Bag(tmp_path / "bag").contents.message_count > 1
+
+    machine.until(some_are_there, "messages are on the disk")
+    os.kill(recorder.pid, signal.SIGKILL)
+    recorder.wait()
+    bag = Bag(tmp_path / "bag")
+    assert len(list(bag.records())) == bag.contents.message_count > 1
+    assert not bag.contents.is_whole
+    text = machine.look("bag", "recover", "bag", cwd=tmp_path)
+    assert text.startswith(f"bag_recovered: {bag.contents.message_count} messages of ")
+
+
+@slow
+def test_the_services_of_the_recorder(machine: Machine, tmp_path: Path) -> None:
+    """Pause, resume and split, as ROS 2's has them."""
+    talk(machine)
+    recorder = machine.start("bag", "record", "/chatter", "-o", "bag", "--node-name", "scribe", cwd=tmp_path)
+    recorder.wait_for("Subscribed to topic '/chatter'")
+    for verb in ("pause", "resume"):
+        type_name = f"rosbag2_interfaces/srv/{verb.title()}"
+        machine.look("service", "call", f"/scribe/{verb}", type_name)
+        asked = machine.look("service", "call", "/scribe/is_paused", "rosbag2_interfaces/srv/IsPaused")
+        assert f"paused={verb == 'pause'}" in asked
+    machine.look("service", "call", "/scribe/split_bagfile", "rosbag2_interfaces/srv/SplitBagfile")
+    machine.until(lambda: len(list((tmp_path / "bag").glob("*.mcap"))) == 2, "there are two files")
+    asked = machine.look("service", "call", "/scribe/snapshot", "rosbag2_interfaces/srv/Snapshot")
+    assert "success=False" in asked
+    assert recorder.end(signal.SIGTERM) == 0
+    assert Bag(tmp_path / "bag").contents.is_whole
+
+
+@slow
+def test_for_some_time(machine: Machine, tmp_path: Path) -> None:
+    """It ends by itself; a topic that nobody publishes is told."""
+    text = machine.run("bag", "record", "/nobody", "--duration", "0.5", "-o", "bag", cwd=tmp_path)
+    assert "no topic was there to be recorded; `graphflow topic list` shows those that are" in text
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A disk with room for little more than what a recorder keeps free."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=5m", "tmpfs", str(folder)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("this user may not mount a disk")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@slow
+def test_a_full_disk(machine: Machine, small_disk: Path) -> None:
+    """It ends the recording with a reason; the bag is whole, and no message that was taken in is missing."""
+    recorder = machine.start("bag", "record", "/big", "--compression", "none", "-o", "bag", cwd=small_disk)
+    recorder.wait_for("Recording into bag")
+    payload = "x" * 20_000
+    speaker = machine.start("topic", "pub", "/big", CHATTER, f"data: {payload}", "-r", "100", "-p", "1000")
+    assert recorder.wait(20.0) == 1, recorder.text
+    speaker.end()
+    assert "error: bag: the disk is full; what has been recorded can be read" in recorder.text
+    bag = Bag(small_disk / "bag")
+    assert bag.contents.is_whole
+    assert len(list(bag.records())) == bag.contents.message_count > 10
