@@ -6,6 +6,7 @@ TYPE_CHECKING = False  # what type checkers go by; importing `typing` would take
 if TYPE_CHECKING:
     from graphflow.errors import (
         Abort,
+        BagError,
         CallError,
         CallTimeout,
         ClosedError,
@@ -85,6 +86,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "graphflow.errors": (
         "Abort",
+        "BagError",
         "CallError",
         "CallTimeout",
         "ClosedError",
@@ -175,6 +177,7 @@ __all__ = [
     "Abort",
     "ActionClient",
     "ActionServer",
+    "BagError",
     "CallError",
     "CallTimeout",
     "Client",

@@ -10,6 +10,7 @@ GraphflowError
 |-- ParameterError            a parameter is unknown, of another type, out of range or read-only
 |-- GraphFileError            a graph file is wrong; holds every problem with its place
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
+|-- BagError                  a bag cannot be read or written
 |-- ClosedError               you closed it and then used it
 |-- TooManyErrors             a node's handlers have failed too often; it ends
 |-- SupervisorError           a graph could not be started, or is not running

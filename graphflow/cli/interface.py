@@ -1,9 +1,11 @@
-"""`graphflow interface show`, `list`, `package`, `packages` and `stubs`."""
+"""`graphflow interface show`, `proto`, `list`, `package`, `packages` and `stubs`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
@@ -13,20 +15,32 @@ from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
 
+F = TypeVar("F", bound=Callable[..., Any])
+
 
 @click.group(cls=Verbs)
 def interface() -> None:
     """Show message, service and action types."""
 
 
+def _kinds(command: F) -> F:
+    """Add what says which kinds of types are meant."""
+    command = click.option("-a", "--only-actions", "only", flag_value="action", help="Actions only.")(command)
+    command = click.option("-s", "--only-srvs", "only", flag_value="srv", help="Services only.")(command)
+    return click.option("-m", "--only-msgs", "only", flag_value="msg", help="Messages only.")(command)
+
+
 @interface.command()
 @click.argument("type_name", metavar="TYPE")
+@click.option("--all-comments", is_flag=True, help="Comments of nested types, too.")
 @click.option("--no-comments", is_flag=True, help="Without comments.")
-def show(type_name: str, no_comments: bool) -> None:
-    """Show a definition, with the fields of nested types below each."""
+def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
+    """Show a definition, with the fields of nested types below each. `-` reads the type from standard input."""
     from graphflow.msgs import registry
 
     use_project()
+    if type_name == "-":
+        type_name = sys.stdin.readline().strip()
     name = registry.full_name(type_name)
     registry.interface(name)
     package = name.partition("/")[0]
@@ -35,13 +49,11 @@ def show(type_name: str, no_comments: bool) -> None:
         if not text and line:
             continue
         output.data(text)
-        output.lines(_nested(text, package, 1))
+        output.lines(_nested(text, package, 1, all_comments and not no_comments))
 
 
 @interface.command("list")
-@click.option("-m", "--only-msgs", "only", flag_value="msg", help="Messages only.")
-@click.option("-s", "--only-srvs", "only", flag_value="srv", help="Services only.")
-@click.option("-a", "--only-actions", "only", flag_value="action", help="Actions only.")
+@_kinds
 def list_(only: str | None) -> None:
     """List all types, the project's own too."""
     from graphflow.msgs import registry
@@ -53,25 +65,49 @@ def list_(only: str | None) -> None:
             output.lines([head, *(f"    {name}" for name in names)])
 
 
+interface.add_command(show, "info")
+
+
 @interface.command()
-@click.argument("name", metavar="PACKAGE")
-def package(name: str) -> None:
-    """List the types of a package."""
+@click.argument("type_name", metavar="TYPE")
+@click.option("--no-quotes", is_flag=True, help="Without the quotes around all.")
+def proto(type_name: str, no_quotes: bool) -> None:
+    """Print a message with all its fields, for you to fill in; of a service the request, of an action the goal."""
+    from graphflow.introspect.echo import block, plain
     from graphflow.msgs import registry
 
     use_project()
-    if not registry.package_folders(name):
-        raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
-    output.lines(f"{name}/{kind}/{n}" for kind in registry.KINDS for n in registry.names_in(name, kind))
+    text = block(plain(registry.prototype(registry.full_name(type_name))))
+    output.data(text if no_quotes else f'"{text}\n"')
 
 
 @interface.command()
-def packages() -> None:
+@click.argument("name", metavar="[PACKAGE]", default="")
+@_kinds
+def package(name: str, only: str | None) -> None:
+    """List the types of a package; without one the packages."""
+    from graphflow.msgs import registry
+
+    use_project()
+    if not name:
+        output.lines(registry.packages())
+        output.talk("one of these? graphflow interface package PACKAGE lists its types")
+        return
+    if not registry.package_folders(name):
+        raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
+    kinds = (only,) if only else registry.KINDS
+    output.lines(f"{name}/{kind}/{n}" for kind in kinds for n in registry.names_in(name, kind))
+
+
+@interface.command()
+@_kinds
+def packages(only: str | None) -> None:
     """List the packages that have types."""
     from graphflow.msgs import registry
 
     use_project()
-    output.lines(registry.packages())
+    kinds = (only,) if only else registry.KINDS
+    output.lines(p for p in registry.packages() if any(registry.names_in(p, kind) for kind in kinds))
 
 
 @interface.command()
@@ -98,8 +134,8 @@ def stubs(folder: str) -> int:
     return exits.OK
 
 
-def _nested(line: str, package: str, depth: int) -> Iterator[str]:
-    """The fields of the type that a line names, indented, with those of their types below."""
+def _nested(line: str, package: str, depth: int, has_comments: bool) -> Iterator[str]:
+    """The definition of the type that a line names, indented, with those of the types in it below."""
     from graphflow.errors import InterfaceError
     from graphflow.msgs import registry
     from graphflow.wire import idl
@@ -113,12 +149,10 @@ def _nested(line: str, package: str, depth: int) -> Iterator[str]:
         return
     if type_.is_primitive:
         return
-    schema = registry.message_schema(type_.base)
     inner = type_.base.partition("/")[0]
-    for constant in schema.constants:
-        yield "\t" * depth + f"{constant.type} {constant.name}={constant.value}"
-    for field in schema.fields:
-        short = str(field.type).replace(f"{inner}/msg/", "").replace("/msg/", "/")
-        text = f"{short} {field.name}{f' {field.default}' if field.default is not None else ''}"
-        yield "\t" * depth + text
-        yield from _nested(str(field.type).replace("/msg/", "/"), inner, depth + 1)
+    registry.message_schema(type_.base)  # which refuses one that contains itself
+    for text in registry.definition(type_.base).splitlines():
+        shown = text.rstrip() if has_comments else text.partition("#")[0].rstrip()
+        if shown:
+            yield "\t" * depth + shown
+        yield from _nested(text, inner, depth + 1, has_comments)

@@ -48,14 +48,17 @@ _VERBS = {
     "component": ("component", "Load nodes into running processes, and unload them."),
     "lifecycle": ("lifecycle", "Bring lifecycle nodes from state to state."),
     "waits": ("waits", "Show which handlers hold slots, what they wait for, and where."),
-    "groups": ("waits", "Show a node's concurrency groups, or move a handler into another."),
+    "groups": ("waits", "Show a node's groups, or move a handler into another."),
     "doctor": ("waits", "Check the running graph for problems."),
     "console": ("console", "Open the console on a running graph, here or in a browser."),
+    "completion": ("completion", "Let TAB complete verbs, options, live names, types and messages."),
     "interface": ("interface", "Show message, service and action types."),
 }
 """Verb -> its module, and its line in the help: the module is imported only when the verb is used."""
 
 
+_ALIASES = {"wtf": "doctor"}
+"""Verbs of two names, as in ROS 2."""
 _OTHER_WORDS = {"kill": "down", "interfaces": "interface"}
 """What people coming from other tools type."""
 
@@ -65,6 +68,7 @@ class _Verbs(Verbs):
         return list(_VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        cmd_name = _ALIASES.get(cmd_name, cmd_name)
         if cmd_name not in _VERBS:
             return None
         module = import_module(f"graphflow.cli.{_VERBS[cmd_name][0]}")

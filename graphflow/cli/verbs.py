@@ -12,8 +12,6 @@ NOT_YET = {
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     "pkg": "`graphflow init NAME` makes a project; a node is a .py file",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
-    "wtf": "the same is `graphflow doctor`",
-    "interface proto": "`graphflow interface show TYPE`",
 }
 """What `ros2` has and graphflow has not yet, and what to use meanwhile."""
 

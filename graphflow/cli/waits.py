@@ -79,7 +79,7 @@ class _Groups(Verbs):
 
 @click.group(cls=_Groups, invoke_without_command=False)
 def groups() -> None:
-    """Show a node's concurrency groups, or move a handler into another.
+    """Show a node's groups, or move a handler into another.
 
     \b
     graphflow groups NODE

@@ -297,6 +297,13 @@ def forget() -> None:
         memory.cache_clear()
 
 
+def prototype(name: str) -> Any:
+    """What is filled in to use `package/kind/Name`: a message, a service's request, or an action's goal."""
+    found = interface(name)
+    part = found.request if isinstance(found, Service) else found.goal if isinstance(found, Action) else found
+    return example(part.name)
+
+
 def example(name: str) -> Any:
     """A message with every field at its default."""
     return interface_class(name)()

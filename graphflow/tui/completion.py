@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable
 from typing import Any
 
 from graphflow.errors import GraphflowError
@@ -124,9 +123,6 @@ def _common(words: list[str]) -> str:
 def _template(type_name: str) -> list[str]:
     """A message of a type with all its fields, for the user to fill in."""
     try:
-        found: Any = registry.interface_class(registry.full_name(type_name))
+        return [f"'{flow(plain(registry.prototype(registry.full_name(type_name))))}'"]
     except GraphflowError:
         return []
-    parts: Iterable[str] = ("Request", "Goal")
-    message = next((getattr(found, part) for part in parts if hasattr(found, part)), found)
-    return [f"'{flow(plain(message()))}'"]

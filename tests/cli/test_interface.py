@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from collections.abc import Callable
@@ -179,3 +180,49 @@ def test_types_are_listed(mylab: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert "std_srvs" in runner.invoke(cli, ["interface", "packages"]).output.splitlines()
     wrong = runner.invoke(cli, ["interface", "package", "std_srv"])
     assert "did you mean 'std_srvs'?" in str(wrong.exception)
+
+
+def looked(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    with pytest.raises(SystemExit) as end:
+        main(["interface", *words])
+    assert end.value.code == exits.OK
+    return capsys.readouterr().out
+
+
+def test_proto(capsys: pytest.CaptureFixture[str]) -> None:
+    """A message to fill in, in quotes as ROS 2 prints it; a service's request, an action's goal."""
+    point = "x: 0.0\ny: 0.0\nz: 0.0\n"
+    assert looked(capsys, "proto", "geometry_msgs/msg/Point") == f'"{point}"\n'
+    assert looked(capsys, "proto", "geometry_msgs/Point", "--no-quotes") == point
+    assert looked(capsys, "proto", "example_interfaces/srv/AddTwoInts", "--no-quotes") == "a: 0\nb: 0\n"
+    assert looked(capsys, "proto", "example_interfaces/action/Fibonacci", "--no-quotes") == "order: 0\n"
+
+
+def test_the_slides_words(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """`info` for `show`; `package` without one; a type from standard input."""
+    assert looked(capsys, "info", "std_msgs/Header") == looked(capsys, "show", "std_msgs/msg/Header")
+    assert "geometry_msgs\n" in looked(capsys, "package")
+    monkeypatch.setattr(sys, "stdin", io.StringIO("std_msgs/msg/String\n"))
+    assert looked(capsys, "show", "-") == "string data\n"
+
+
+def test_kinds(capsys: pytest.CaptureFixture[str]) -> None:
+    """Only packages, or only types, of one kind."""
+    assert "std_msgs\n" not in looked(capsys, "packages", "--only-srvs")
+    assert "std_srvs\n" in looked(capsys, "packages", "-s")
+    assert looked(capsys, "package", "turtlesim", "-a") == "turtlesim/action/RotateAbsolute\n"
+
+
+def test_comments(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of nested types when they are asked for."""
+    folder = tmp_path / "interfaces" / "commented_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (tmp_path / "pyproject.toml").touch()
+    (folder / "Outer.msg").write_text("# outer\nInner inner\n")
+    (folder / "Inner.msg").write_text("# inner\nint32 x # why\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "_roots", list(registry._roots))
+    words = ("show", "commented_msgs/msg/Outer")
+    assert looked(capsys, *words, "--all-comments") == "# outer\nInner inner\n\t# inner\n\tint32 x # why\n"
+    assert looked(capsys, *words) == "# outer\nInner inner\n\tint32 x\n"
+    assert looked(capsys, *words, "--no-comments") == "Inner inner\n\tint32 x\n"

@@ -22,6 +22,7 @@ VERBS += (
     "service",
     "action",
     "param",
+    "bag",
     "component",
     "lifecycle",
     "waits",
@@ -29,7 +30,7 @@ VERBS += (
     "doctor",
     "console",
 )
-VERBS += ("interface",)
+VERBS += ("completion", "interface")
 
 
 @pytest.fixture(autouse=True)

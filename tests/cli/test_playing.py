@@ -20,9 +20,7 @@ def test_a_bag_is_heard(machine: Machine, tmp_path: Path) -> None:
     write(tmp_path / "bag")
     player = machine.start("bag", "play", "bag", "--loop", "-m", "/chatter:=/played", cwd=tmp_path)
     player.wait_for("playing 3 topics of bag.")
-    assert "data: hello " in machine.look(
-        "topic", "echo", "/played", "std_msgs/msg/String", "--once", "--timeout", "9"
-    )
+    assert "data: hello " in machine.look("topic", "echo", "/played", "std_msgs/msg/String", "--once", "--timeout", "9")
     rate = machine.look("service", "call", "/rosbag2_player/set_rate", "rosbag2_interfaces/srv/SetRate", "{rate: 2.0}")
     assert "success=True" in rate
     assert player.end(signal.SIGINT) == 0, player.text

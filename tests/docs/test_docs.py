@@ -297,7 +297,7 @@ LONG = {
     "interfaces",
     "console",
 }
-LONG |= {"topics", "services"}
+LONG |= {"topics", "services", "bags"}
 """Pages whose commands take seconds: they run with `--cases full`, as in CI."""
 
 

@@ -1,0 +1,174 @@
+"""What a shell may complete: verbs, options, live names, types, and messages to fill in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import click
+
+from graphflow.errors import GraphflowError
+
+MESSAGES = ("VALUES", "GOAL", "REQUEST")
+"""Arguments that a message is typed for."""
+
+
+def choices(words: Sequence[str], partial: str) -> list[str]:
+    """The words that a word may become.
+
+    Args:
+        words: Those before it, without `graphflow`.
+        partial: Its beginning. One that begins with a quotation mark gets a message in such marks.
+    """
+    command, context, rest = _command(words)
+    if isinstance(command, click.Group):
+        names = command.list_commands(context)
+        found: Iterable[str] = [] if rest else [n for n in names if not _is_hidden(command, context, n)]
+        return sorted(name for name in found if name.startswith(partial))
+    if partial.startswith("-"):
+        return sorted(option for option in _options(command) if option.startswith(partial))
+    what, given = _expected(command, rest)
+    mark = partial[:1] if partial[:1] in ("'", '"') else ""
+    try:
+        found = _named(what, given, mark or "'")
+    except GraphflowError:  # nothing runs, or it cannot be asked: there is nothing to complete with
+        found = []
+    return sorted({name for name in found if name.startswith(partial)})
+
+
+def _command(words: Sequence[str]) -> tuple[click.Command, click.Context, list[str]]:
+    """The command that some words name, and those that are left."""
+    from graphflow.cli.main import cli
+
+    command: click.Command = cli
+    context = click.Context(cli)
+    rest = list(words)
+    while isinstance(command, click.Group) and rest:
+        if rest[0].startswith("-"):
+            rest = rest[2:] if rest[0] in _valued(command) else rest[1:]
+            continue
+        inner = command.get_command(context, rest[0])
+        if inner is None:
+            break
+        command, rest = inner, rest[1:]
+    return command, context, rest
+
+
+def _is_hidden(group: click.Group, context: click.Context, name: str) -> bool:
+    from graphflow.cli.main import cli
+
+    return False if group is cli else bool(getattr(group.get_command(context, name), "hidden", False))
+
+
+def _options(command: click.Command) -> list[str]:
+    options = [p for p in command.params if isinstance(p, click.Option) and not p.hidden]
+    return ["--help", *(word for option in options for word in option.opts if word.startswith("--"))]
+
+
+def _valued(command: click.Command) -> set[str]:
+    options = [p for p in command.params if isinstance(p, click.Option) and not p.is_flag and not p.count]
+    return {word for option in options for word in option.opts}
+
+
+def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[str]]:
+    """What the next word is for: an argument, `--option` or nothing; and the arguments so far."""
+    valued, given, owner = _valued(command), list[str](), ""
+    for word in words:
+        if owner:
+            owner = ""
+        elif word in valued:
+            owner = word
+        elif not word.startswith("-"):
+            given.append(word)
+    if owner:
+        return owner, given
+    arguments = [p for p in command.params if isinstance(p, click.Argument)]
+    if not arguments or (len(given) >= len(arguments) and arguments[-1].nargs == 1):
+        return "", given
+    argument = arguments[min(len(given), len(arguments) - 1)]
+    return argument.make_metavar(click.Context(command)).strip("[].").removesuffix("]...").rstrip("."), given
+
+
+def _named(what: str, given: Sequence[str], mark: str) -> Iterable[str]:
+    from graphflow.domain import domain_id
+    from graphflow.introspect.view import View
+
+    word = what.upper()
+    if word in MESSAGES:
+        return _message(given[1], mark) if len(given) >= 2 else ()
+    if word == "TYPE" and not given:
+        return _types()
+    if word not in ("NODE", "NODES", "TOPIC", "SERVICE", "ACTION", "TYPE", "PARAMETER", "PARAMETERS", "--TOPICS"):
+        return ()
+    with View(domain_id()) as view:
+        cache = view.cache
+        match word:
+            case "NODE" | "NODES":
+                return cache.nodes(hidden=False)
+            case "TOPIC" | "--TOPICS":
+                return cache.topics()
+            case "SERVICE":
+                return cache.services()
+            case "ACTION":
+                return cache.actions()
+            case "TYPE":
+                tables = (cache.topics(hidden=True), cache.services(hidden=True), cache.actions())
+                return [type_ for table in tables for type_ in table.get(given[0], [])] or _types()
+            case _ if given:
+                from graphflow.introspect.parameters import RemoteParameters
+
+                return RemoteParameters(view, view.node(given[0]), 1.0).names()
+    return ()
+
+
+def _types() -> list[str]:
+    from graphflow.cli.types import use_project
+    from graphflow.msgs import registry
+
+    use_project()
+    kinds = registry.KINDS
+    return [f"{p}/{kind}/{n}" for p in registry.packages() for kind in kinds for n in registry.names_in(p, kind)]
+
+
+def _message(type_name: str, mark: str) -> list[str]:
+    from graphflow.cli.types import use_project
+    from graphflow.introspect.echo import flow, plain
+    from graphflow.msgs import registry
+
+    use_project()
+    text = flow(plain(registry.prototype(registry.full_name(type_name))))
+    return [f"{mark}{text}{mark}"]
+
+
+SCRIPTS = {
+    "bash": """\
+_graphflow() {
+    local IFS=$'\\n' line="${COMP_LINE:0:COMP_POINT}"
+    COMPREPLY=($(graphflow completion words -- "$line" 2>/dev/null))
+    local word="${line##*[[:space:]]}" cut="${COMP_WORDS[COMP_CWORD]}"
+    # bash takes a colon for the end of a word, and wants only what comes behind it
+    if [[ "$word" == *:* && "$word" != [\\'\\"]* && "$cut" != "$word" ]]; then
+        local head="${word%"${word##*:}"}"
+        COMPREPLY=("${COMPREPLY[@]#"$head"}")
+    fi
+}
+complete -o default -F _graphflow graphflow gf
+""",
+    "zsh": """\
+#compdef graphflow gf
+_graphflow() {
+    local -a found
+    found=("${(@f)$(graphflow completion words -- "${LBUFFER}" 2>/dev/null)}")
+    [[ -n "$found" ]] && compadd -Q -U -- $found || _files
+}
+(( $+functions[compdef] )) || { autoload -Uz compinit && compinit }
+compdef _graphflow graphflow gf
+""",
+    "fish": """\
+function __graphflow
+    graphflow completion words -- (commandline -cp) 2>/dev/null
+end
+complete -c graphflow -f -a '(__graphflow)'
+complete -c gf -f -a '(__graphflow)'
+""",
+}
+"""What a shell reads to ask for `graphflow completion words`."""

@@ -1,0 +1,79 @@
+"""`graphflow completion`: TAB in bash, zsh and fish."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from pathlib import Path
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.completing import SCRIPTS, choices
+from graphflow.cli.verbs import Verbs
+from graphflow.errors import UsageFault
+
+_FILES = {
+    "bash": Path(".local/share/bash-completion/completions/graphflow"),
+    "zsh": Path(".zfunc/_graphflow"),
+    "fish": Path(".config/fish/completions/graphflow.fish"),
+}
+"""Where each shell looks, below the home."""
+
+
+@click.group(cls=Verbs)
+def completion() -> None:
+    """Let TAB complete verbs, options, live names, types and messages."""
+
+
+@completion.command()
+@click.argument("shell", type=click.Choice(list(SCRIPTS)), required=False)
+def install(shell: str | None) -> int:
+    """Write the file that a shell reads; which shell is taken from SHELL unless one is named."""
+    name = shell or Path(os.environ.get("SHELL", "")).name
+    if name not in SCRIPTS:
+        raise UsageFault(f"which shell is meant? graphflow completion install {'|'.join(SCRIPTS)}")
+    file = Path.home() / _FILES[name]
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(SCRIPTS[name], encoding="utf-8")
+        if name == "bash":  # it looks by the name of the command
+            (file.parent / "gf").write_text(SCRIPTS[name], encoding="utf-8")
+    except OSError as error:
+        output.error(f"{file}: {error.strerror}")
+        return exits.FAILED
+    output.data(str(file))
+    hint = {
+        "bash": f"new shells have it where bash-completion is installed; in this one, and elsewhere: . {file}",
+        "zsh": "add to ~/.zshrc, before compinit: fpath=(~/.zfunc $fpath)",
+        "fish": "new shells have it",
+    }
+    output.talk(hint[name])
+    return exits.OK
+
+
+@completion.command()
+@click.argument("shell", type=click.Choice(list(SCRIPTS)))
+def show(shell: str) -> None:
+    """Print what a shell reads, to be evaluated: eval "$(graphflow completion show bash)"."""
+    output.data(SCRIPTS[shell])
+
+
+@completion.command(hidden=True)
+@click.argument("line")
+def words(line: str) -> None:
+    """Print the words that the last word of a line may become."""
+    before, partial = parted(line)
+    output.lines(choices(before[1:], partial))
+
+
+def parted(line: str) -> tuple[list[str], str]:
+    """The words of a line as a shell takes them, and the beginning of the last one, with its quotation mark."""
+    found = re.search(r"""(?:^|\s)((?:'[^']*|"[^"]*|[^\s'"]+)?)\Z""", line)
+    partial = found[1] if found else ""
+    head = line[: len(line) - len(partial)]
+    try:
+        return shlex.split(head), partial
+    except ValueError:  # a quotation that does not end
+        return head.split(), partial

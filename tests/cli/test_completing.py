@@ -1,0 +1,83 @@
+"""What TAB completes: words of the command tree, live names, types and messages."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from graphflow.cli.completing import choices
+from tests.conftest import Machine
+
+TWIST = "{linear: {x: 0.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 0.0}}"
+
+
+@pytest.mark.parametrize(
+    ("words", "partial", "found"),
+    [
+        ("", "to", ["topic"]),
+        ("topic", "e", ["echo"]),
+        ("topic", "x", []),
+        ("nothing", "", []),
+        ("--domain 5 topic", "ec", ["echo"]),
+        ("completion", "", ["install", "show"]),
+        ("topic echo", "--on", ["--once"]),
+        ("topic pub /a", "geometry_msgs/msg/TwistS", []),
+        ("interface show", "geometry_msgs/msg/TwistS", ["geometry_msgs/msg/TwistStamped"]),
+        ("topic pub /a geometry_msgs/msg/Twist", "'", [f"'{TWIST}'"]),
+        ("topic pub -r 10 /a geometry_msgs/msg/Twist", '"', [f'"{TWIST}"']),
+        ("service call /s turtlesim/srv/SetPen", "", ["'{r: 0, g: 0, b: 0, width: 0, off: 0}'"]),
+        ("topic pub /a no_such/msg/Type", "'", []),
+        ("topic pub /a no_such", "", []),
+        ("topic echo --timeout", "", []),
+        ("bag info", "", []),
+    ],
+)
+def test_without_a_graph(machine: Machine, words: str, partial: str, found: list[str]) -> None:
+    """Verbs, options, types that are installed and messages; nothing that needs a graph, and no error."""
+    with patch.dict(os.environ, machine.env):
+        assert choices(words.split(), partial) == found
+
+
+@pytest.fixture
+def there(standing: Machine) -> Iterator[None]:
+    """The graph that stands is the one that is asked."""
+    with patch.dict(os.environ, standing.env):
+        yield
+
+
+@pytest.mark.real
+@pytest.mark.usefixtures("there")
+@pytest.mark.parametrize(
+    ("words", "partial", "found"),
+    [
+        ("topic echo", "/ch", ["/chatter"]),
+        ("topic hz /chatter", "/off", ["/office/minutes"]),
+        ("topic echo", "/office/_", []),
+        ("topic pub /chatter", "", ["std_msgs/msg/String"]),
+        ("node info", "/office/c", ["/office/clerk"]),
+        ("service call", "/office/clerk/a", ["/office/clerk/add"]),
+        ("service call /office/clerk/add", "", ["example_interfaces/srv/AddTwoInts"]),
+        ("action send_goal", "/fib", ["/fibonacci"]),
+        ("param get /office/clerk", "use_sim", ["use_sim_time"]),
+        ("param get /nobody", "", []),
+        ("bag record --topics", "/ch", ["/chatter"]),
+    ],
+)
+def test_live_names(words: str, partial: str, found: list[str]) -> None:
+    """Of what runs, each where it belongs; hidden ones are not offered."""
+    assert choices(words.split(), partial) == found
+
+
+def test_types_of_a_project(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are among the others."""
+    folder = tmp_path / "interfaces" / "completed_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Thing.msg").write_text("int32 x\n")
+    (tmp_path / "pyproject.toml").touch()
+    monkeypatch.chdir(tmp_path)
+    with patch.dict(os.environ, machine.env):
+        assert choices(["interface", "show"], "completed") == ["completed_msgs/msg/Thing"]

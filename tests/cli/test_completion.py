@@ -1,0 +1,87 @@
+"""`graphflow completion` in real shells."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli.completing import SCRIPTS
+from graphflow.cli.completion import parted
+from tests.conftest import Machine
+
+
+@pytest.mark.parametrize(
+    ("line", "words", "partial"),
+    [
+        ("graphflow", [], "graphflow"),
+        ("graphflow ", ["graphflow"], ""),
+        ("gf topic e", ["gf", "topic"], "e"),
+        ("gf topic pub /a T '", ["gf", "topic", "pub", "/a", "T"], "'"),
+        ("gf topic pub /a T '{x: 1", ["gf", "topic", "pub", "/a", "T"], "'{x: 1"),
+        ("gf topic pub /a T 'b c' ", ["gf", "topic", "pub", "/a", "T", "b c"], ""),
+        ("", [], ""),
+        ("it's gone ", ["it's", "gone"], ""),
+    ],
+)
+def test_a_line_is_parted(line: str, words: list[str], partial: str) -> None:
+    """As a shell takes it; a quotation that does not end is the last word."""
+    assert parted(line) == (words, partial)
+
+
+BASH = """
+PATH={path}:$PATH
+. {script}
+line={line!r}
+COMP_LINE="$line"; COMP_POINT=${{#line}}; read -ra COMP_WORDS <<< "$line"
+[[ "$line" == *" " ]] && COMP_WORDS+=("")
+COMP_CWORD=$((${{#COMP_WORDS[@]}}-1)); _graphflow; printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("graphflow topic ec", ["echo"]),
+        ("gf interface show std_msgs/msg/Strin", ["std_msgs/msg/String"]),
+        ("graphflow topic pub /a std_msgs/msg/String '", ["'{data: ''}'"]),
+    ],
+)
+def test_bash(machine: Machine, tmp_path: Path, line: str, found: list[str]) -> None:
+    """The script asks, and takes what it is told as it is, spaces and all."""
+    script = tmp_path / "script"
+    script.write_text(SCRIPTS["bash"])
+    text = BASH.format(path=Path(sys.executable).parent, script=script, line=line)
+    told = subprocess.run(["bash", "-c", text], env=machine.env, capture_output=True, text=True, timeout=30, check=True)
+    assert told.stdout.splitlines() == found
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_other_shells_read_theirs(shell: str, tmp_path: Path) -> None:
+    """Without a word, where the shell is installed."""
+    if shutil.which(shell) is None:
+        pytest.skip(f"there is no {shell}")
+    (tmp_path / "script").write_text(SCRIPTS[shell])
+    subprocess.run([shell, "-n", str(tmp_path / "script")], check=True, timeout=30)
+
+
+@pytest.mark.parametrize("shell", list(SCRIPTS))
+def test_install(machine: Machine, tmp_path: Path, shell: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One command; the shell is known from the environment, and what is left to do is told."""
+    monkeypatch.setitem(machine.env, "HOME", str(tmp_path))
+    monkeypatch.setitem(machine.env, "SHELL", f"/usr/bin/{shell}")
+    text = machine.look("completion", "install")
+    file = Path(text.splitlines()[0])
+    assert file.is_relative_to(tmp_path)
+    assert file.read_text() == SCRIPTS[shell] == machine.look("completion", "show", shell).removesuffix("\n")
+
+
+def test_a_shell_that_is_not_known(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Must be named."""
+    monkeypatch.setitem(machine.env, "SHELL", "/bin/dash")
+    told = "which shell is meant? graphflow completion install bash|zsh|fish"
+    assert told in machine.look("completion", "install", code=2)
