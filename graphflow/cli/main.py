@@ -39,6 +39,7 @@ _VERBS = {
     "launch": ("launch", "Convert ROS's launch files."),
     "run": ("run", "Run one node."),
     "demo": ("demo", "Walk through an example, step by step."),
+    "graph": ("graph", "Draw the nodes and topics that run."),
     "node": ("node", "List and describe nodes."),
     "topic": ("topic", "List, describe, show and publish to topics."),
     "service": ("service", "List and call services."),

@@ -39,6 +39,24 @@ def colored(head: str, colour: int, texts: Iterable[str]) -> None:
     sys.stdout.flush()
 
 
+def svg(rows: Iterable[Sequence[tuple[str, str]]], title: str) -> str:
+    """Rows of a terminal as a picture.
+
+    Args:
+        rows: Texts with their styles, in Rich's words.
+    """
+    from rich.console import Console
+    from rich.text import Text
+
+    lines = [Text.assemble(*row) for row in rows]
+    width = max(line.cell_len for line in lines)
+    with open(os.devnull, "w", encoding="utf-8") as nowhere:
+        console = Console(record=True, width=width, file=nowhere)
+        for line in lines:
+            console.print(line, no_wrap=True, crop=False)
+        return console.export_svg(title=title)
+
+
 def progress(text: str) -> None:
     """A line of how it goes, in place of the last one; only on a terminal, and empty to take it away."""
     if sys.stderr.isatty():

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
 from graphflow.graph.console import LAYOUTS
+from graphflow.introspect.drawing import Rect
 
 MIN_WIDTH, MIN_HEIGHT = 12, 3
 """Cells that a pane has at least, its title included."""
@@ -21,26 +22,6 @@ MAIN_SHARE = 60.0
 
 Axis = Literal["rows", "columns"]
 Direction = Literal["left", "right", "up", "down"]
-
-
-class Rect(NamedTuple):
-    """A place on the screen, in cells."""
-
-    x: int
-    y: int
-    width: int
-    height: int
-
-    @property
-    def right(self) -> int:
-        return self.x + self.width
-
-    @property
-    def bottom(self) -> int:
-        return self.y + self.height
-
-    def contains(self, x: int, y: int) -> bool:
-        return self.x <= x < self.right and self.y <= y < self.bottom
 
 
 @dataclass(frozen=True)

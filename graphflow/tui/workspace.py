@@ -14,9 +14,10 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
+from graphflow.introspect.drawing import Rect
 from graphflow.tui.ink import Ink
 from graphflow.tui.layout import Layout as Windows
-from graphflow.tui.panes import Divider, Rect, Window, drag
+from graphflow.tui.panes import Divider, Window, drag
 from graphflow.tui.view import View
 
 if TYPE_CHECKING:

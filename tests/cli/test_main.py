@@ -17,6 +17,7 @@ VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "
 VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
 VERBS += (
     "demo",
+    "graph",
     "node",
     "topic",
     "service",

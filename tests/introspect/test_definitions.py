@@ -113,7 +113,6 @@ def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_learning_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every reason is told."""
     monkeypatch.setattr(registry, "_given", {})
-    registry.forget()
     view: Any = View(InterfaceError("broken"))
     with pytest.raises(UnknownInterface, match=r"no interface package 'definitions_msgs'.*; broken"):
         learn(view, "/things", THING)

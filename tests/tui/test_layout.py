@@ -7,8 +7,9 @@ import yaml
 
 from graphflow.graph import source
 from graphflow.graph.console import console_section
+from graphflow.introspect.drawing import Rect
 from graphflow.tui.layout import Layout, to_section
-from graphflow.tui.panes import Content, Rect
+from graphflow.tui.panes import Content
 from tests.tui.stage import as_json
 
 SIZE = (100, 30)

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphflow.graph.console import LAYOUTS
+from graphflow.introspect.drawing import Rect
 from graphflow.tui.layout import Layout
-from graphflow.tui.panes import MIN_HEIGHT, MIN_WIDTH, Content, Pane, Rect, Split, Window, drag
+from graphflow.tui.panes import MIN_HEIGHT, MIN_WIDTH, Content, Pane, Split, Window, drag
 from tests.cases import cases, count, slow
 
 SIZE = (120, 40)

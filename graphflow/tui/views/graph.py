@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import Any
 
 from rich.style import Style
 from rich.text import Text
@@ -12,78 +12,19 @@ from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
-from graphflow.machines.cache import GraphCache
-from graphflow.names import is_hidden
+from graphflow.introspect.drawing import Box, Cell, Drawing, draw
+from graphflow.introspect.picture import Picture, mermaid, picture
 from graphflow.tui.actions import Action, shown
-from graphflow.tui.drawing import Box, Cell, Drawing, draw
 from graphflow.tui.hub import Hub
 from graphflow.tui.ink import Ink
 from graphflow.tui.lines import Lines
 from graphflow.tui.panes import Content
 from graphflow.tui.view import View
-from graphflow.tui.views.topics import misfit
-from graphflow.wire.liveliness import Entity, Kind
 
 BOXES = 120
 """Boxes that are laid out; a larger graph is collapsed by its namespaces first."""
 SIDEWAYS = 20
 """Columns that one press of an arrow key scrolls."""
-_EVERYWHERE = ("/rosout", "/parameter_events", "/clock")
-"""Topics that every node has: they would be in every picture."""
-
-
-class Arrow(NamedTuple):
-    """A node publishes to a topic, or a topic reaches a node."""
-
-    source: str
-    target: str
-    is_bad: bool = False
-
-
-class Picture(NamedTuple):
-    """What is to be drawn."""
-
-    nodes: tuple[str, ...]
-    topics: tuple[str, ...]
-    arrows: tuple[Arrow, ...]
-
-
-def picture(cache: GraphCache, below: str, collapsed: frozenset[str], *, everything: bool) -> Picture:
-    """Nodes, topics and the arrows between them.
-
-    Args:
-        below: Only nodes of this namespace and what they are connected to; empty for all.
-        collapsed: Namespaces drawn as one box each.
-        everything: Also topics that only one side knows, and those that every node has.
-    """
-    ends: dict[str, list[Entity]] = {}
-    for e in cache:
-        if e.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION) and not is_hidden(e.name) and not is_hidden(e.node_name):
-            ends.setdefault(e.name, []).append(e)
-    nodes = dict.fromkeys(box_of(n, collapsed) for n in cache.nodes(hidden=False) if n.startswith(below))
-    arrows: dict[Arrow, None] = {}
-    topics: dict[str, None] = {}
-    for topic, there in sorted(ends.items()):
-        kinds = {e.kind for e in there}
-        near = any(e.node_name.startswith(below) for e in there)
-        if not near or (not everything and (len(kinds) < 2 or topic in _EVERYWHERE)):
-            continue
-        sources = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.PUBLISHER}
-        targets = {box_of(e.node_name, collapsed) for e in there if e.kind is Kind.SUBSCRIPTION}
-        if sources == targets and len(sources) == 1 and not everything:
-            continue  # it stays within one box
-        bad = bool(misfit(there))
-        topics[topic] = None
-        nodes.update(dict.fromkeys((*sorted(sources), *sorted(targets))))
-        arrows.update(dict.fromkeys(Arrow(s, topic, bad) for s in sorted(sources)))
-        arrows.update(dict.fromkeys(Arrow(topic, t, bad) for t in sorted(targets)))
-    return Picture(tuple(nodes), tuple(topics), tuple(arrows))
-
-
-def box_of(node: str, collapsed: Iterable[str]) -> str:
-    """The box that a node is drawn in: its own, or that of a namespace."""
-    found = [space for space in collapsed if node.startswith(f"{space}/")]
-    return f"{max(found, key=len)}/…" if found else node
 
 
 class Boxes(Lines):
@@ -238,12 +179,7 @@ class Graph(View):
         self.look(0.0)
 
     def do_mermaid(self) -> None:
-        ids = {name: f"n{i}" for i, name in enumerate(self._names())}
-        lines = ["flowchart LR"]
-        lines += [f'  {ids[n]}(["{n}"])' for n in self._picture.nodes]
-        lines += [f'  {ids[t]}["{t}"]' for t in self._picture.topics]
-        lines += [f"  {ids[a.source]} --> {ids[a.target]}" for a in self._picture.arrows]
-        self.console.copy_to_clipboard("\n".join(lines))
+        self.console.copy_to_clipboard(mermaid(self._picture))
         self.say("copied the graph as Mermaid")
 
     def on_click(self, event: events.Click) -> None:

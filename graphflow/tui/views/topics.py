@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.text import Text
 
-from graphflow.machines.matching import verdict
+from graphflow.introspect.picture import misfit
 from graphflow.tui.actions import Action
 from graphflow.tui.table import FIND, Cells, TableView
 from graphflow.wire.liveliness import Entity, Kind
@@ -87,17 +87,6 @@ class Topics(TableView):
     def do_copy(self) -> None:
         self.console.copy_to_clipboard(self.key)
         self.say(f"copied: {self.key}")
-
-
-def misfit(there: list[Entity]) -> str:
-    """What keeps a publisher and a subscription of a topic apart, in a few words; empty for nothing."""
-    for publisher in there:
-        for other in there:
-            if publisher.kind is Kind.PUBLISHER and other.kind is Kind.SUBSCRIPTION:
-                found = verdict(publisher, other)
-                if found is not None and found.complaint:
-                    return ", ".join(found.policies) or "type"
-    return ""
 
 
 VIEW = Topics

@@ -4,65 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow import Node, Publisher, Subscription
-from graphflow.machines.cache import GraphCache
-from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
-from graphflow.tui.views.graph import Arrow, Picture, box_of, picture
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
-
-
-class Wrong(Node):
-    """Listens to another type."""
-
-    node_name = "wrong"
-    chatter = Subscription(Int32, "chatter")
-
-
-class Inner(Node):
-    """Talks to itself."""
-
-    node_name = "inner"
-    to = Publisher(String, "loop")
-    back = Subscription(String, "loop")
-
-
-async def cache_of(graph: Graph, *nodes: Node) -> GraphCache:
-    await graph.start(*nodes)
-    return nodes[0].context.cache
-
-
-async def test_what_is_drawn(graph: Graph) -> None:
-    """Nodes, the topics between them, red where they do not fit; not what every node has."""
-    cache = await cache_of(graph, Talker(), Listener(), Wrong())
-    found = picture(cache, "", frozenset(), everything=False)
-    assert found == Picture(
-        ("/listener", "/talker", "/wrong"),
-        ("/chatter",),
-        (
-            Arrow("/talker", "/chatter", True),
-            Arrow("/chatter", "/listener", True),
-            Arrow("/chatter", "/wrong", True),
-        ),
-    )
-    assert "/rosout" in picture(cache, "", frozenset(), everything=True).topics
-    assert "/speed" in picture(cache, "", frozenset(), everything=True).topics
-
-
-async def test_collapsing(graph: Graph) -> None:
-    """Nodes of one namespace as one box; what stays within it is not drawn."""
-    cache = await cache_of(
-        graph, Talker(namespace="/arm/left"), Listener(namespace="/arm/left"), Inner(namespace="/leg")
-    )
-    found = picture(cache, "", frozenset({"/arm"}), everything=False)
-    assert found.nodes == ("/arm/…", "/leg/inner")
-    assert found.topics == ()
-    assert box_of("/armada/x", {"/arm"}) == "/armada/x"
-    assert picture(cache, "/leg", frozenset(), everything=True).nodes[0] == "/leg/inner"
 
 
 async def test_the_drawing_and_its_keys(graph: Graph) -> None:

@@ -15,8 +15,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from graphflow.tui.panes import Rect
-
 NORTH, EAST, SOUTH, WEST = 1, 2, 4, 8
 _LINES = " ╵╶└╷│┌├╴┘─┴┐┤┬┼"
 """The character by the directions that meet in it."""
@@ -24,6 +22,26 @@ SWEEPS = 6
 """How often the layers are put in order, each time by the layer on the other side."""
 GAP = 1
 """Empty rows between two boxes."""
+
+
+class Rect(NamedTuple):
+    """A place on the screen, in cells."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    @property
+    def right(self) -> int:
+        return self.x + self.width
+
+    @property
+    def bottom(self) -> int:
+        return self.y + self.height
+
+    def contains(self, x: int, y: int) -> bool:
+        return self.x <= x < self.right and self.y <= y < self.bottom
 
 
 class Box(NamedTuple):

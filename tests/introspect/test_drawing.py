@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graphflow.tui.drawing import Box, Drawing, draw
+from graphflow.introspect.drawing import Box, Drawing, draw
 from tests.cases import cases, count
 
 N = 9

@@ -1,0 +1,99 @@
+"""`graphflow graph`: what runs, drawn."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.domain import domain_id
+from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.view import View
+
+if TYPE_CHECKING:
+    from graphflow.introspect.drawing import Cell, Drawing
+    from graphflow.introspect.picture import Picture
+
+PNG_LIMIT = 60.0
+"""Seconds that Graphviz may take."""
+
+
+@click.command()
+@click.argument("namespace", default="")
+@click.option("-a", "--all", "everything", is_flag=True, help="Also unconnected topics, and those of every node.")
+@click.option("--dot", "form", flag_value="dot", help="In the words of Graphviz.")
+@click.option("--mermaid", "form", flag_value="mermaid", help="In the words of Mermaid.")
+@click.option("--svg", type=click.Path(dir_okay=False, path_type=Path), help="Into an SVG file.")
+@click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Into a PNG file, by Graphviz.")
+def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, png: Path | None) -> int:
+    """Draw the nodes and topics that run: all, or those of a NAMESPACE. What does not fit is marked."""
+    from graphflow.introspect.picture import dot, mermaid, picture
+
+    with View(domain_id()) as view:
+        made = picture(view.cache, namespace and f"/{namespace.strip('/')}", frozenset(), everything=everything)
+    if not made.nodes:
+        output.talk(nothing_here("no nodes"))
+        return exits.OK
+    if png is not None:
+        return _png(dot(made), png)
+    if svg is not None:
+        return _svg(made, svg)
+    if form is not None:
+        output.data(dot(made) if form == "dot" else mermaid(made))
+        return exits.OK
+    output.lines("".join(cell.text for cell in row).rstrip() for row in _drawn(made).rows)
+    bad = sorted({a.source for a in made.arrows if a.is_bad} & set(made.topics))
+    output.lines(f"! {topic} does not fit: graphflow topic info -v {topic}" for topic in bad)
+    return exits.OK
+
+
+def _drawn(made: Picture) -> Drawing:
+    from graphflow.introspect.drawing import Box, draw
+
+    bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
+    boxes = {node: Box((node,)) for node in made.nodes}
+    boxes |= {topic: Box((f"! {topic}" if topic in bad else topic,), False) for topic in made.topics}
+    return draw(boxes, ((arrow.source, arrow.target) for arrow in made.arrows))
+
+
+def _svg(made: Picture, file: Path) -> int:
+    try:
+        file.write_text(output.svg(_coloured(made), "graphflow graph"), encoding="utf-8")
+    except OSError as error:
+        output.error(f"{file}: {error.strerror}")
+        return exits.FAILED
+    output.data(str(file))
+    return exits.OK
+
+
+def _coloured(made: Picture) -> Iterator[list[tuple[str, str]]]:
+    """The rows of the drawing, as texts with their styles."""
+    bad = {arrow.source for arrow in made.arrows if arrow.is_bad}
+
+    def style(cell: Cell) -> str:
+        if (cell.box or cell.arrow) in bad and cell.box not in made.nodes:
+            return "red"
+        return "bold cyan" if cell.box in made.nodes else "white"
+
+    for row in _drawn(made).rows:
+        yield [("".join(cell.text for cell in run), name) for name, run in groupby(row, style)]
+
+
+def _png(text: str, file: Path) -> int:
+    program = shutil.which("dot")
+    if program is None:
+        output.error("PNG files are drawn by Graphviz, which is not installed; --svg FILE needs nothing")
+        return exits.FAILED
+    words = [program, "-Tpng", "-o", str(file)]
+    done = subprocess.run(words, input=text, text=True, capture_output=True, timeout=PNG_LIMIT, check=False)
+    if done.returncode:
+        output.error(f"{file}: {done.stderr.strip()}")
+        return exits.FAILED
+    output.data(str(file))
+    return exits.OK
