@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
-from graphflow.graph.executables import EXECUTABLES
+from graphflow.graph.executables import EXECUTABLES, find
 from graphflow.graph.project import demos_root, project_root
 from graphflow.names import did_you_mean
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
@@ -32,8 +32,9 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
             cls = import_class(what)
         elif what.endswith(".py"):
             cls = _only(_module_of(Path(what), root))
-        elif rest[:1] and (what, rest[0]) in EXECUTABLES:
-            cls = import_class(EXECUTABLES[what, rest.pop(0)])
+        elif rest[:1] and (found := find(what, rest[0].removesuffix(".py"), root)) is not None:
+            cls = import_class(found.class_path)
+            rest = rest[1:]
         elif any(package == what for package, _ in EXECUTABLES) and rest[:1] and not rest[0].startswith("-"):
             known = [name for package, name in EXECUTABLES if package == what]
             raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")

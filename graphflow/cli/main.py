@@ -46,6 +46,7 @@ _VERBS = {
     "action": ("action", "List actions and send goals to them."),
     "param": ("param", "List, get, set, describe, dump and load parameters."),
     "bag": ("bag", "Record topics into bags, and play and change bags."),
+    "pkg": ("pkg", "List packages and what is in them, or make one."),
     "component": ("component", "Load nodes into running processes, and unload them."),
     "lifecycle": ("lifecycle", "Bring lifecycle nodes from state to state."),
     "waits": ("waits", "Show which handlers hold slots, what they wait for, and where."),

@@ -10,7 +10,6 @@ NOT_YET = {
     "component standalone": "`graphflow run PACKAGE PLUGIN`",
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
-    "pkg": "`graphflow init NAME` makes a project; a node is a .py file",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
 """What `ros2` has and graphflow has not yet, and what to use meanwhile."""

@@ -20,6 +20,8 @@ EXECUTABLES = {
     ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
     ("demo_nodes_py", "talker"): "nodes.talker:Talker",
     ("demo_nodes_py", "listener"): "nodes.listener:Listener",
+    ("demo_nodes_cpp", "add_two_ints_server"): "nodes.add_two_ints_server:AddTwoIntsServer",
+    ("demo_nodes_py", "add_two_ints_server"): "nodes.add_two_ints_server:AddTwoIntsServer",
     ("composition", "talker"): "nodes.talker:Talker",
     ("composition", "listener"): "nodes.listener:Listener",
     ("lifecycle", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
@@ -59,6 +61,37 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
     classes = _classes(file) if file is not None and file.is_file() else []
     return Executable(f"{module}:{classes[0]}", executable) if len(classes) == 1 else None
+
+
+class Listed(NamedTuple):
+    """An executable as it is listed."""
+
+    package: str
+    name: str
+    class_path: str
+
+
+def all_executables(root: Path) -> list[Listed]:
+    """All that `find` would find: nodes that come with graphflow, and those of the project.
+
+    Args:
+        root: The folder of the project.
+    """
+    rows = [Listed(package, name, path) for (package, name), path in EXECUTABLES.items()]
+    for package in project_packages(root):
+        names = {f.stem for f in (root / "nodes").glob("*.py")} | _scripts(package, root).keys()
+        found = {name: find(package, name, root) for name in names}
+        rows += [Listed(package, name, one.class_path) for name, one in found.items() if one is not None]
+    return sorted(set(rows))
+
+
+def project_packages(root: Path) -> list[str]:
+    """The packages of a project: those with a `package.xml`, and the project itself where it has nodes."""
+    own = _project_name(root) or root.name
+    files = [file for depth in range(_SEARCH_DEPTH) for file in sorted(root.glob("*/" * depth + "package.xml"))]
+    names = [_PACKAGE_NAME.search(file.read_text(encoding="utf-8", errors="replace")) for file in files]
+    found = [name[1] for name in names if name]
+    return sorted({*found, *([own] if (root / "nodes").is_dir() else [])})
 
 
 def package_folder(package: str, root: Path) -> Path | None:

@@ -24,6 +24,7 @@ VERBS += (
     "action",
     "param",
     "bag",
+    "pkg",
     "component",
     "lifecycle",
     "waits",

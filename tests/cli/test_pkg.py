@@ -1,0 +1,79 @@
+"""ROS 2's words for packages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import PROJECT, Machine
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    """A package as ROS 2 makes it, with a node of ours."""
+    root = tmp_path / "my_robot"
+    (root / "nodes").mkdir(parents=True)
+    (root / "pyproject.toml").write_text('[project]\nname = "my_robot"\n')
+    depends = "<depend>a</depend><depend> b </depend>"
+    (root / "package.xml").write_text(f"<package>\n  <name>my_robot</name>\n  {depends}\n</package>\n")
+    (root / "nodes" / "arm.py").write_text("from graphflow import Node\nclass Arm(Node): ...\n")
+    return root
+
+
+def test_list(machine: Machine, robot: Path) -> None:
+    """Those with nodes, the project's own, and those with types."""
+    names = machine.look("pkg", "list", cwd=robot).split()
+    assert names == sorted(names)
+    assert {"my_robot", "turtlesim", "demo_nodes_cpp", "std_msgs"} <= {*names}
+
+
+def test_executables(machine: Machine, robot: Path) -> None:
+    """Of all packages, or of one; and where they are."""
+    assert machine.look("pkg", "executables", "turtlesim") == "turtle_teleop_key\nturtlesim_node\n"
+    rows = machine.look("pkg", "executables", cwd=robot).splitlines()
+    assert {"my_robot arm", "demo_nodes_cpp add_two_ints_server"} <= {*rows}
+    assert machine.look("pkg", "executables", "my_robot", "--full-path", cwd=robot) == "nodes/arm.py\n"
+    told = "Package 'turtlesin' not found; did you mean 'turtlesim'?"
+    assert told in machine.look("pkg", "executables", "turtlesin", code=1)
+
+
+def test_prefix(machine: Machine, robot: Path) -> None:
+    """Where a package is: the project's, and those that come with graphflow."""
+    assert machine.look("pkg", "prefix", "my_robot", cwd=robot) == f"{robot}\n"
+    assert machine.look("pkg", "prefix", "turtlesim", "--share") == f"{PROJECT}\n"
+    assert "Package not found" in machine.look("pkg", "prefix", "nav2", code=1)
+
+
+def test_xml(machine: Machine, robot: Path) -> None:
+    """The whole of it, or a tag."""
+    assert machine.look("pkg", "xml", "my_robot", cwd=robot) == (robot / "package.xml").read_text()
+    assert machine.look("pkg", "xml", "my_robot", "-t", "depend", cwd=robot) == "a\nb\n"
+    assert "has no tag 'x'" in machine.look("pkg", "xml", "my_robot", "-t", "x", cwd=robot, code=2)
+    assert "turtlesim: no package.xml was found" in machine.look("pkg", "xml", "turtlesim", code=1)
+
+
+def test_create(machine: Machine, tmp_path: Path) -> None:
+    """As it stands on the slides."""
+    words = ["my_pkg", "--build-type", "ament_python", "--node-name", "first", "--destination-directory", "src"]
+    text = machine.look("pkg", "create", *words, cwd=tmp_path)
+    assert "note: a project needs no build type" in text
+    assert (tmp_path / "src" / "my_pkg" / "nodes").is_dir()
+
+
+def test_the_slides_order(machine: Machine, tmp_path: Path) -> None:
+    """The list of dependencies may swallow nothing."""
+    words = ["my_pkg", "--build-type", "ament_python", "--dependencies", "rclpy", "std_msgs", "geometry_msgs"]
+    machine.look("pkg", "create", *words, cwd=tmp_path)
+    assert (tmp_path / "my_pkg").is_dir()
+    assert not (tmp_path / "std_msgs").exists()
+
+
+@pytest.mark.real
+def test_the_executables_run(machine: Machine) -> None:
+    """`run PKG EXE` as on the slides, with or without `.py`; it answers."""
+    node = machine.start("run", "demo_nodes_cpp", "add_two_ints_server.py")
+    words = ("service", "call", "/add_two_ints", "example_interfaces/srv/AddTwoInts", "{a: 2, b: 5}")
+    machine.until(lambda: machine.look_and_end("service", "type", "/add_two_ints")[0] == 0, "the service is there")
+    assert "sum=7" in machine.look(*words)
+    node.wait_for("Incoming request\na: 2 b: 5")
