@@ -7,7 +7,7 @@ import click
 from graphflow.cli import output
 from graphflow.cli.types import agree, use_project
 from graphflow.cli.verbs import Verbs
-from graphflow.cli.words import ValueCommand, message_values
+from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import UsageFault
 from graphflow.introspect.view import View
@@ -109,7 +109,10 @@ def _types(view: View, name: str) -> list[str]:
     show_default=True,
     help="Seconds to wait until a server accepts.",
 )
-def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float) -> int:
+@stdin_option
+def send_goal(
+    name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float, from_stdin: bool
+) -> int:
     """Send a goal: VALUES are its fields in YAML, such as "{theta: 1.57}". Ctrl-C cancels the goal.
 
     Exit code 0: the goal succeeded, or Ctrl-C cancelled it; 1: it was rejected, aborted or lost.
@@ -130,7 +133,7 @@ def send_goal(name: str, type_name: str | None, values: tuple[str, ...], feedbac
             )
     wanted = registry.full_name(type_name)
     actual = agree(wanted, there[0], full) if there else wanted
-    goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values))
+    goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))
     if not there:
         output.talk(f"there is no action {full} yet{did_you_mean(full, actions)}")
     return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout)

@@ -242,6 +242,9 @@ def recover(path: Path, **options: Any) -> int:
     return _copied((path,), "recovered", options)
 
 
+bag.add_command(recover, "reindex")
+
+
 @bag.command()
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_made

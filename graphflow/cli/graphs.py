@@ -133,11 +133,15 @@ def _go_private(domain: int | None) -> int:
 
 
 def _show_args(path: Path) -> int:
-    from graphflow.graph import source
+    from graphflow.graph.faults import Problems
     from graphflow.graph.project import shown
+    from graphflow.graph.reading import read
 
-    data = source.read_file(path, shown(path)).data
-    declared: Any = data.get("args", {}) if isinstance(data, dict) else {}
+    problems = Problems()
+    top = read(path, shown(path), problems.add)
+    problems.raise_any()
+    args = top.entries.get("args") if isinstance(top.value, dict) else None
+    declared: Any = None if args is None or not isinstance(args.value, dict) else args.plain()
     output.data("Arguments (pass arguments as '<name>:=<value>'):\n")
     for name, spec in (declared or {}).items():
         spec = spec if isinstance(spec, dict) else {}

@@ -1,8 +1,9 @@
-"""`graphflow launch convert`: ROS's launch files as graph files."""
+"""`graphflow launch FILE`, and `launch convert`: ROS's launch files as graph files."""
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import Problem, UsageFault
+from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.graph.tree import Item
@@ -22,13 +24,59 @@ PYTHON_LIMIT = 20.0
 
 
 class _Verbs(Verbs):
-    def unknown(self, ctx: click.Context, word: str) -> str:
-        return f"a graph or launch file is started by: graphflow up {word if '.' in word else 'FILE'}"
+    """`launch convert FILE`, and `launch FILE` and `launch PACKAGE FILE` for `up`."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        is_verb = not args or args[0] in (*self.list_commands(ctx), "--help", "-h")
+        return super().parse_args(ctx, args if is_verb else ["start", *args])
 
 
-@click.group(cls=_Verbs)
+@click.group(cls=_Verbs, subcommand_metavar="[PACKAGE] FILE [NAME:=VALUE]... | convert FILE")
 def launch() -> None:
-    """Convert ROS's launch files. Those in YAML and XML also start as they are: graphflow up FILE."""
+    """Start a launch file as `up` does, or convert it."""
+
+
+@launch.command(hidden=True)
+@click.argument("words", nargs=-1, required=True, metavar="[PACKAGE] FILE [NAME:=VALUE]...")
+@click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
+@click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
+@click.option("-n", "--noninteractive", is_flag=True, help="Show logs instead of the console.")
+@click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands.")
+@click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
+def start(words: tuple[str, ...], show_args: bool, is_shown: bool, noninteractive: bool, **unused: bool) -> int:  # noqa: ARG001
+    """Start a file, of a package if one is named."""
+    from graphflow.cli.files import plan
+    from graphflow.cli.graphs import up
+
+    file, given = _file_of(words)
+    if is_shown:
+        code = plan.main([file, *given], standalone_mode=False)
+    else:
+        options = ["-s"] if show_args else ["--no-console"] if noninteractive else []
+        code = up.main([*options, file, *given], prog_name="graphflow up", standalone_mode=False)
+    return code if isinstance(code, int) else exits.OK
+
+
+def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
+    """The file that is meant, and the arguments behind it.
+
+    Raises:
+        UsageFault: A package is named that has no such file.
+    """
+    from graphflow.graph.executables import package_share
+    from graphflow.graph.project import project_root
+
+    first, *rest = words
+    if not rest or ":=" in rest[0] or Path(first).is_file():
+        return first, rest
+    folder = package_share(first, project_root(Path.cwd()), os.environ)
+    if folder is None:
+        raise UsageFault(f"Package {first!r} not found; a file is started by: graphflow launch FILE")
+    found = sorted(folder.rglob(rest[0]))
+    if not found:
+        there = sorted({f.name for f in folder.rglob("*launch*") if f.is_file()})
+        raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
+    return str(found[0]), rest[1:]
 
 
 @launch.command()

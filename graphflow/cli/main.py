@@ -36,7 +36,7 @@ _VERBS = {
     "check": ("files", "Report every mistake in a graph file."),
     "explain": ("files", "Explain how a name of a graph comes about."),
     "schema": ("files", "Print the JSON Schema of graph files."),
-    "launch": ("launch", "Convert ROS's launch files."),
+    "launch": ("launch", "Start a launch file as `up` does, or convert it."),
     "run": ("run", "Run one node."),
     "demo": ("demo", "Walk through an example, step by step."),
     "graph": ("graph", "Draw the nodes and topics that run."),

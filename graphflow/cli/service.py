@@ -11,7 +11,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.types import agree, names_of_type, use_project
 from graphflow.cli.verbs import Verbs
-from graphflow.cli.words import ValueCommand, message_values
+from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import ServiceUnavailable, UsageFault
 from graphflow.introspect.view import View
@@ -103,11 +103,19 @@ def echo(name: str, **options: Any) -> int:
     "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Call repeatedly, this many times a second."
 )
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=10.0, show_default=True, help="Seconds.")
+@stdin_option
 @click.option("--json", "as_json", is_flag=True, help="Print the response as JSON.")
 def call(
-    name: str, type_name: str | None, values: tuple[str, ...], rate: float | None, timeout: float, as_json: bool
+    name: str,
+    type_name: str | None,
+    values: tuple[str, ...],
+    rate: float | None,
+    timeout: float,
+    from_stdin: bool,
+    as_json: bool,
 ) -> int:
     """Call a service: VALUES are the request in YAML, such as "{a: 2, b: 5}"."""
+    from graphflow.introspect.definitions import learn
     from graphflow.introspect.echo import plain
     from graphflow.msgs import registry
     from graphflow.msgs.values import from_plain
@@ -118,8 +126,12 @@ def call(
         with View(domain_id()) as view:
             actual = view.service_type(full)
         raise UsageFault(f"TYPE is missing; {full} is of type {actual}: graphflow service call {full} {actual}")
+    with View(domain_id()) as view:
+        there = view.cache.services(hidden=True).get(full, [])
+        if len(there) == 1:
+            learn(view, full, there[0], (Kind.SERVICE,))
     wanted = registry.full_name(type_name)
-    values_read = message_values(values)
+    values_read = message_values(values, from_stdin=from_stdin)
     with View(domain_id()) as view:
         if full not in view.cache.services(hidden=True):
             output.talk("waiting for service to become available...")

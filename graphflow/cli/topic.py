@@ -11,7 +11,7 @@ from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.types import names_of_type
 from graphflow.cli.verbs import Verbs
-from graphflow.cli.words import ValueCommand, message_values
+from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.elsewhere import nothing_here
@@ -281,6 +281,7 @@ def _learn(*topics: str) -> None:
 @click.option("--max-wait-time-secs", type=click.FloatRange(0, min_open=True), help="Seconds to wait for them at most.")
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
+@stdin_option
 @qos_options
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
     """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional."""
@@ -306,7 +307,7 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     wanted = registry.full_name(type_name)
     if known and wanted not in known:
         wanted = agree(wanted, known[0], full)
-    message = from_plain(registry.interface_class(wanted), message_values(values))
+    message = from_plain(registry.interface_class(wanted), message_values(values, from_stdin=options.pop("from_stdin")))
     options["qos"] = take_qos(options, DEFAULT)
     chosen = publishing.PubOptions(**options)
     return publishing.run(full, message, chosen)

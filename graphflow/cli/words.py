@@ -8,12 +8,15 @@ not after a field's colon; everything else is a value, and the values of a messa
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Any
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import click
 
 from graphflow.errors import GraphflowError
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 _QUOTED = re.compile(r"""(?<!\w)("(?:\\.|[^"\\])*"|'[^']*')""")
 _TIGHT = re.compile(r"\w:\S")
@@ -70,8 +73,14 @@ class ValueCommand(click.Command):
         return super().parse_args(ctx, split_values(args, frozenset(flags), frozenset(valued)))
 
 
-def message_values(words: Sequence[str]) -> Any:
-    """The values of a message from the words after its type; None for none.
+def stdin_option(command: F) -> F:
+    """Add `--stdin` to a command that takes a message."""
+    option = click.option("--stdin", "from_stdin", is_flag=True, help="Read the values from standard input.")
+    return option(command)
+
+
+def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
+    """The values of a message from the words after its type, or from standard input; None for none.
 
     Raises:
         UsageFault: The words are not YAML, or a missing space keeps them from being a mapping.
@@ -79,7 +88,9 @@ def message_values(words: Sequence[str]) -> Any:
     from graphflow.errors import UsageFault
     from graphflow.graph.source import parse_value
 
-    text = " ".join(words)
+    if words and from_stdin:
+        raise UsageFault(f"--stdin reads the values from standard input; leave out {words[0]!r}")
+    text = sys.stdin.read() if from_stdin else " ".join(words)
     try:
         values = parse_value(text)
     except GraphflowError as error:

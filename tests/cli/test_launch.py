@@ -66,4 +66,23 @@ def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
         "launch", "convert", str(tmp_path / "a.py"), code=2
     )
     assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
-    assert "is started by: graphflow up a.launch.xml" in machine.look("launch", "a.launch.xml", code=2)
+    assert "Package 'nav2' not found" in machine.look("launch", "nav2", "a.launch.xml", code=2)
+
+
+LAUNCH = "launch:\n- arg: {name: rate, default: '2'}\n- node: {pkg: demo_nodes_py, exec: talker}\n"
+
+
+def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
+    """Of a file, or of a file of a package; with ROS 2's options."""
+    folder = tmp_path / "my_robot"
+    (folder / "launch").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
+    (folder / "launch" / "talk.launch.yaml").write_text(LAUNCH)
+    (tmp_path / "pyproject.toml").touch()
+    for words in (["my_robot/launch/talk.launch.yaml"], ["my_robot", "talk.launch.yaml"]):
+        told = machine.look("launch", *words, "-s", cwd=tmp_path)
+        assert "'rate':" in told
+        assert "/talker" in machine.look("launch", "-p", *words, "rate:=3", cwd=tmp_path)
+    told = machine.look("launch", "my_robot", "talk.launch.yml", cwd=tmp_path, code=2)
+    assert "my_robot has no file 'talk.launch.yml'; did you mean 'talk.launch.yaml'?" in told
+    assert "[PACKAGE] FILE" in machine.look("launch", "--help")

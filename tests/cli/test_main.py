@@ -82,7 +82,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "message"),
     [
         (["topik"], "no such command 'topik'; did you mean 'topic'?"),
-        (["launch", "x.xml"], "a graph or launch file is started by: graphflow up x.xml"),
+        (["launch", "x.xml"], "error: x.xml: there is no such file"),
         (["lanch"], "no such command 'lanch'; did you mean 'launch'?"),
         (["kill"], "no such command 'kill'; did you mean 'down'?"),
         (["zzz"], "no such command 'zzz'; graphflow --help lists them"),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import shlex
 import shutil
 import subprocess
+import sys
 from typing import Any
 
 import click
@@ -172,3 +174,11 @@ def test_no_word_is_lost(words: list[str]) -> None:
     """Splitting moves words, and never makes, changes or drops one; only separators are its own."""
     found = split_values(words, FLAGS, VALUED)
     assert sorted(w for w in found if w != "--") == sorted(w for w in words if w != "--")
+
+
+def test_values_from_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In place of words, not beside them."""
+    monkeypatch.setattr(sys, "stdin", io.StringIO("a: 2\nb: 3\n"))
+    assert message_values([], from_stdin=True) == {"a": 2, "b": 3}
+    with pytest.raises(UsageFault, match=r"--stdin reads the values from standard input; leave out '\{a:'"):
+        message_values(["{a:", "2}"], from_stdin=True)
