@@ -31,6 +31,8 @@ COMMANDS = ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result",
 """Ends of topics that make others act, or tell of those who did."""
 STEP_NS = 20_000_000
 """Longest time that the player sleeps while it looks at its keys."""
+REST = 0.01
+"""Seconds between two rounds of a loop: a bag of one message must not fill the network."""
 AT_ONCE = 100
 """Messages that are sent before others have a turn of the loop."""
 KEPT = 1000
@@ -139,9 +141,11 @@ class Player:
         try:
             await self._node.clock.sleep(self._options.delay)
             while True:
+                before = self.played
                 await self._play_once()
-                if not self._options.loop:
+                if not self._options.loop or self.played == before:
                     return
+                await self._node.clock.sleep(REST)
         finally:
             if clock is not None:
                 clock.cancel()

@@ -111,6 +111,19 @@ async def test_over_and_over(graph: Graph, tmp_path: Path) -> None:
     show.task.cancel()
 
 
+async def test_a_loop_of_nothing(graph: Graph, tmp_path: Path) -> None:
+    """Ends; one of a single message goes on, and leaves others their time."""
+    show = Show(graph, tmp_path / "bag", [record(CHATTER, String(data="once"), 0.0)])
+    await show.begin(loop=True, start_offset=100.0)
+    await graph.clock.advance(0.1)
+    await show.task
+    assert show.heard == []
+    again = asyncio.create_task(Player(show.node, show.bag, PlayOptions(loop=True)).run())
+    await graph.clock.advance(1.0)
+    assert 50 < len(show.heard) <= 101
+    again.cancel()
+
+
 async def test_pausing_and_stepping(graph: Graph, tmp_path: Path) -> None:
     """A step sends the next message; what follows goes on from where it was."""
     show = Show(graph, tmp_path / "bag")
