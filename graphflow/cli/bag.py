@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +11,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
+from graphflow.cli.words import pattern_option
 from graphflow.errors import UsageFault
 from graphflow.names import expand
 
@@ -21,14 +21,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 @click.group(cls=Verbs)
 def bag() -> None:
     """Record topics into bags, and play and change bags."""
-
-
-def _pattern(_: click.Context, __: click.Parameter, value: str) -> str:
-    try:
-        re.compile(value)
-    except re.error as error:
-        raise click.BadParameter(f"{value!r} is no regular expression: {error}") from None
-    return value
 
 
 def _names(words: tuple[str, ...]) -> frozenset[str]:
@@ -43,8 +35,8 @@ def _chosen(command: F) -> F:
         option("--exclude-services", multiple=True, help="Leave these services out."),
         option("--exclude-topic-types", multiple=True, help="Leave topics of these types out."),
         option("--exclude-topics", multiple=True, help="Leave these topics out."),
-        option("-x", "--exclude-regex", default="", callback=_pattern, help="Leave out topics that match."),
-        option("-e", "--regex", default="", callback=_pattern, help="Topics that match."),
+        option("-x", "--exclude-regex", default="", callback=pattern_option, help="Leave out topics that match."),
+        option("-e", "--regex", default="", callback=pattern_option, help="Topics that match."),
         option("--services", multiple=True, help="Calls of these services, which must have introspection."),
         option("--topics", "named", multiple=True, help="These topics."),
     ):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.verbs import Verbs
-from graphflow.cli.words import ValueCommand
+from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.parameters import RemoteParameters, as_declared, read_value
@@ -32,10 +33,20 @@ _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), de
 @param.command(name="list")
 @click.argument("name", metavar="[NODE]", required=False)
 @click.option("--param-type", is_flag=True, help="Also show types.")
+@click.option("--filter", "pattern", default="", callback=pattern_option, help="Only those that match this pattern.")
+@click.option("--param-prefixes", multiple=True, help="Only those below these.")
 @click.option("--include-hidden-nodes", is_flag=True, help="Include parameters of hidden nodes.")
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def list_(name: str | None, param_type: bool, include_hidden_nodes: bool, timeout: float, as_json: bool) -> None:
+def list_(
+    name: str | None,
+    param_type: bool,
+    pattern: str,
+    param_prefixes: tuple[str, ...],
+    include_hidden_nodes: bool,
+    timeout: float,
+    as_json: bool,
+) -> None:
     """List the parameters of one node or of all."""
     from graphflow.interface import TYPE_NAMES
 
@@ -46,7 +57,9 @@ def list_(name: str | None, param_type: bool, include_hidden_nodes: bool, timeou
         for node in nodes:
             try:
                 remote = RemoteParameters(view, node, timeout)
-                names = remote.names()
+                below = tuple(f"{prefix}." for prefix in param_prefixes)
+                names = [n for n in remote.names() if re.search(pattern, n)]
+                names = [n for n in names if not below or n.startswith(below) or n in param_prefixes]
                 described = remote.describe(names) if param_type or as_json else {}
             except CallError as error:
                 if name:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from graphflow.cli import exits, output
+from graphflow.cli.stamps import Path, stamp
 from graphflow.cli.visiting import visit
 from graphflow.msgs.base import Message
 from graphflow.names import did_you_mean
@@ -35,6 +36,8 @@ class PubOptions:
     keep_alive: float = 0.1
     node_name: str | None = None
     qos: Qos = DEFAULT
+    stamps: list[Path] = field(default_factory=list)
+    """Fields that get the time of each message."""
 
 
 def run(topic: str, message: Message, options: PubOptions) -> int:
@@ -65,6 +68,7 @@ async def _publish(node: Node, topic: str, message: Message, options: PubOptions
             is_told = True
             near = did_you_mean(topic, [e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)])
             output.talk(f"no node hears {topic} so far{near}")
+        stamp(message, options.stamps, node.clock.time_ns())
         if options.print_every and n % options.print_every == 0:
             output.data(f"publishing #{n + 1}: {message!r}\n")
         publisher.publish(message)

@@ -284,8 +284,12 @@ def _learn(*topics: str) -> None:
 @stdin_option
 @qos_options
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
-    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional."""
+    """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional.
+
+    `header: auto` and `stamp: now` stand for the time at which each message is sent.
+    """
     from graphflow.cli import publishing
+    from graphflow.cli.stamps import taken as taken_stamps
     from graphflow.cli.types import agree, use_project
     from graphflow.errors import SupervisorError
     from graphflow.introspect.definitions import learn
@@ -307,7 +311,8 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     wanted = registry.full_name(type_name)
     if known and wanted not in known:
         wanted = agree(wanted, known[0], full)
-    message = from_plain(registry.interface_class(wanted), message_values(values, from_stdin=options.pop("from_stdin")))
+    values_read, stamps = taken_stamps(wanted, message_values(values, from_stdin=options.pop("from_stdin")))
+    message = from_plain(registry.interface_class(wanted), values_read)
     options["qos"] = take_qos(options, DEFAULT)
-    chosen = publishing.PubOptions(**options)
+    chosen = publishing.PubOptions(**options, stamps=stamps)
     return publishing.run(full, message, chosen)

@@ -73,6 +73,15 @@ class ValueCommand(click.Command):
         return super().parse_args(ctx, split_values(args, frozenset(flags), frozenset(valued)))
 
 
+def pattern_option(_: click.Context, __: click.Parameter, value: str) -> str:
+    """A regular expression; as a callback of an option."""
+    try:
+        re.compile(value)
+    except re.error as error:
+        raise click.BadParameter(f"{value!r} is no regular expression: {error}") from None
+    return value
+
+
 def stdin_option(command: F) -> F:
     """Add `--stdin` to a command that takes a message."""
     option = click.option("--stdin", "from_stdin", is_flag=True, help="Read the values from standard input.")

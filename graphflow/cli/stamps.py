@@ -1,0 +1,45 @@
+"""`header: auto` and `stamp: now` in messages that are typed, as ROS 2 takes them: the time at which each is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from graphflow.msgs import registry
+
+HEADER, TIME = "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
+Path = tuple[str, ...]
+
+
+def taken(type_name: str, values: Any) -> tuple[Any, list[Path]]:
+    """The values without these words, and the fields that they stood for.
+
+    Args:
+        type_name: The message's type.
+        values: What was typed, as YAML.
+    """
+    if not isinstance(values, dict):
+        return values, []
+    types = {f.name: f.type for f in registry.message_schema(type_name).fields}
+    kept, stamps = {}, list[Path]()
+    for name, value in values.items():
+        type_ = types.get(name)
+        if type_ is None or type_.array or type_.is_primitive:
+            kept[name] = value
+        elif value == "auto" and type_.base == HEADER:
+            stamps.append((name, "stamp"))
+        elif value == "now" and type_.base == TIME:
+            stamps.append((name,))
+        else:
+            kept[name], inner = taken(type_.base, value)
+            stamps += [(name, *path) for path in inner]
+    return kept, stamps
+
+
+def stamp(message: Any, paths: Iterable[Path], time_ns: int) -> None:
+    """Put a time into these fields of a message."""
+    for path in paths:
+        field = message
+        for name in path:
+            field = getattr(field, name)
+        field.sec, field.nanosec = divmod(time_ns, 10**9)
