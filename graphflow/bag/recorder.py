@@ -188,12 +188,12 @@ class Recorder:
         self._release(entity.name, self._topic(entity.name, definition))
 
     async def _definition(self, entity: Entity) -> str:
+        if "_" in entity.type.rpartition("/")[2] and "/msg/" not in entity.type:
+            return ""  # a part of a service or action, such as its events: it follows from a type that has a file
         try:
             if not entity.hash or registry.hash_of(entity.type) == entity.hash:
                 return known(entity.type)
         except InterfaceError as error:
-            if entity.type.split("/")[1:2] != ["msg"]:  # a service's events, whose type is in no file
-                raise
             unknown = error
         else:
             unknown = InterfaceError("its definition here is another")

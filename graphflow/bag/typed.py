@@ -64,7 +64,8 @@ def learn(topic: Topic) -> None:
         BagError: There is no definition that can be used, or another is known here.
     """
     try:
-        found = registry.hash_of(registry.full_name(topic.type))
+        is_whole = len(topic.type.split("/")) == 3  # else it is said how types are called
+        found = registry.hash_of(topic.type if is_whole else registry.full_name(topic.type))
     except UnknownInterface as unknown:
         if not topic.definition:
             raise BagError(f"{topic.name}: {unknown}; the bag has no definition of it") from None

@@ -21,6 +21,8 @@ from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind
 from graphflow.wire.schema import FieldType
 
+_EVENTS = {0: "REQUEST_SENT", 1: "REQUEST_RECEIVED", 2: "RESPONSE_SENT", 3: "RESPONSE_RECEIVED"}
+"""What a service with introspection tells of: service_msgs/msg/ServiceEventInfo."""
 DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be discovered."""
 
@@ -83,6 +85,8 @@ def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str
         except IndexError:
             return f"# this message has no element {options.field}\n---"
     data = plain(value)
+    if not path and type(message).SCHEMA.name.endswith("_Event") and "info" in data:
+        data["info"]["event_type"] = _EVENTS.get(data["info"]["event_type"], data["info"]["event_type"])
     if options.as_json:
         import json
 

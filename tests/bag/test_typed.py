@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from graphflow import Node
 from graphflow.bag import Said, read
+from graphflow.bag.contents import Topic
 from graphflow.bag.typed import decoder
 from graphflow.errors import BagError, DecodeError
+from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.testing import Graph
 from tests.bag.cast import CHATTER, LAB, START, THING, record, write
@@ -31,9 +34,20 @@ def test_a_type_that_is_nowhere_installed(tmp_path: Path) -> None:
     assert (said.message.x, list(said.message.part.y)) == (7, [1, 2])
 
 
+def test_the_calls_of_a_service(tmp_path: Path) -> None:
+    """Are of a type that is in no file, and follows from the service's."""
+    name = "example_interfaces/srv/AddTwoInts_Event"
+    event: Any = registry.interface_class(name)()
+    topic = Topic("/add/_service_event", name, registry.hash_of(name))
+    [said] = read(write(tmp_path / "bag", [record(topic, event, 0.0)]))
+    assert said.message == event
+
+
 @pytest.mark.parametrize(
     ("topic", "message"),
     [
+        (LAB._replace(type="example_interfaces/srv/AddTwoInts_Nothing", definition=""), "the bag has no definition"),
+        (LAB._replace(type="a/b/c", definition=""), "the bag has no definition"),
         (LAB._replace(type="nowhere_msgs/msg/A", definition=""), "the bag has no definition of it"),
         (LAB._replace(type="nowhere_msgs/msg/A", definition="int32 class"), "definition cannot be used"),
         (

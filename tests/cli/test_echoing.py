@@ -10,6 +10,7 @@ import pytest
 from graphflow.cli.echo_options import EchoOptions
 from graphflow.cli.echoing import _field_path, render
 from graphflow.errors import UsageFault
+from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import Point, Polygon, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 from graphflow.msgs.std_msgs.msg import String
@@ -127,3 +128,12 @@ def test_a_field_of_a_list_needs_an_element() -> None:
     """Who forgets the index is told how to give it."""
     with pytest.raises(UsageFault, match=r"points is a list; say which element, as in points\[0\]"):
         _field_path("points.x", "geometry_msgs/msg/Polygon")
+
+
+def test_calls_of_a_service() -> None:
+    """What happened is told in a word."""
+    event: Any = registry.interface_class("std_srvs/srv/Empty_Event")()
+    event.info.event_type = 2
+    assert render(event, INFO, EchoOptions(), []).startswith("info:\n  event_type: RESPONSE_SENT\n  stamp:\n")
+    event.info.event_type = 9
+    assert "event_type: 9\n" in render(event, INFO, EchoOptions(), [])
