@@ -34,7 +34,7 @@ class Choice:
         if name.endswith(EVENTS):
             service = name.removesuffix(EVENTS)
             return service in self.services or (
-                self.all_services and service not in self.exclude_services and not is_hidden(service)
+                self.all_services and service not in self.exclude_services and (self.hidden or not is_hidden(service))
             )
         if name in self.exclude:
             return False

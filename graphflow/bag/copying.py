@@ -36,13 +36,17 @@ def copy(
         BagError: One cannot be read, or the other not written.
     """
     topics: dict[str, Topic] = {}
+    made: dict[str, Topic] = {}
     for bag in bags:
         for name, topic in bag.contents.topics.items():
             if choice.wants(name, topic.type):
-                if name in topics and topics[name].type != topic.type:
-                    raise BagError(f"{bag.path}: {name} is of type {topic.type}, and of {topics[name].type} in another")
-                renamed = topic._replace(name=(remaps or {}).get(name, name))
-                writer.declare(topics.setdefault(name, renamed))
+                new = topic._replace(name=(remaps or {}).get(name, name))
+                known = made.setdefault(new.name, new)
+                if (known.type, known.hash, known.encoding) != (new.type, new.hash, new.encoding):
+                    other = known.type if known.type != new.type else "another definition of it"
+                    raise BagError(f"{bag.path}: {name} is of type {new.type}, and of {other} in another")
+                topics.setdefault(name, known)
+                writer.declare(known)
     parts = [bag.records(topics, start_ns, end_ns) for bag in bags]
     for record in heapq.merge(*parts, key=lambda record: record.log_ns):
         writer.add(record._replace(topic=topics[record.topic.name]))

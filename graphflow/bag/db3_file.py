@@ -37,8 +37,10 @@ class Db3File:
             counted = self._base.execute("SELECT topic_id, count(*) FROM messages GROUP BY topic_id").fetchall()
         except OSError as error:
             raise BagError(f"{path}: {error.strerror}") from None
-        except sqlite3.Error as error:
+        except (sqlite3.Error, AttributeError, TypeError, ValueError) as error:
             raise BagError(f"{path}: {error}") from None
+        if path.with_name(f"{path.name}-wal").exists():
+            raise BagError(f"{path}: it was not closed; let sqlite3 take in its -wal file: sqlite3 {path} .tables")
         counts = dict.fromkeys((topic.name for topic in self._topics.values()), 0)
         for number, count in counted:
             if number in self._topics:
@@ -47,6 +49,9 @@ class Db3File:
         self.contents = Contents({t.name: t for t in self._topics.values()}, counts, start, end)
 
     def _read_topics(self) -> dict[int, Topic]:
+        for table in ("topics", "messages"):
+            if not self._base.execute("SELECT 1 FROM sqlite_master WHERE type='table' AND name=?", (table,)).fetchone():
+                raise sqlite3.DatabaseError(f"no such table: {table}")
         columns = {row[1] for row in self._base.execute("PRAGMA table_info(topics)")}
         hashes = "type_description_hash" if "type_description_hash" in columns else "''"
         offered = "offered_qos_profiles" if "offered_qos_profiles" in columns else "''"
@@ -56,7 +61,9 @@ class Db3File:
         ).fetchall()
         texts = self._definitions()
         return {
-            number: Topic(name, type_, hash_ or "", texts.get(type_, ""), metadata.profiles(qos or ""), form)
+            number: Topic(
+                str(name), str(type_), str(hash_ or ""), texts.get(type_, ""), metadata.profiles(qos), str(form)
+            )
             for number, name, type_, form, qos, hash_ in rows
         }
 
@@ -78,7 +85,10 @@ class Db3File:
             for number, when, data in self._base.execute(
                 query, (start_ns, (1 << 63) - 1 if end_ns is None else end_ns)
             ):
-                if number in wanted:
-                    yield Record(wanted[number], when, when, 0, bytes(data))
+                if number not in wanted:
+                    continue
+                if not isinstance(data, bytes) or not isinstance(when, int) or when < 0:
+                    raise BagError(f"{self.path}: it has a message that is none")
+                yield Record(wanted[number], when, when, 0, data)
         except sqlite3.Error as error:
             raise BagError(f"{self.path}: {error}") from None

@@ -26,7 +26,12 @@ CHANNELS_BOUND = 10_000
 _HEAD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQI")
+_FOOTER = struct.Struct("<QQI")
 SCHEMA, CHANNEL, MESSAGE, CHUNK, STATISTICS, CHUNK_INDEX, DATA_END, FOOTER = 3, 4, 5, 6, 0x0B, 0x08, 0x0F, 0x02
+
+
+_OF_SUMMARY = {SCHEMA, CHANNEL, STATISTICS, CHUNK_INDEX, *(0x0A, 0x0D, 0x0E)}
+"""Records that may be in a summary; the last are the indexes of attachments, metadata, and of the summary itself."""
 
 
 class _Broken(Exception):
@@ -120,8 +125,10 @@ class McapFile:
         from mcap.reader import SeekingReader
 
         try:
+            self._check_summary(file)
+            file.seek(0)
             summary = SeekingReader(file, record_size_limit=RECORD_BOUND).get_summary()
-        except (McapError, ValueError, struct.error, OSError, MemoryError, KeyError):
+        except (_Broken, McapError, ValueError, struct.error, OSError, MemoryError, KeyError, OverflowError):
             return False
         numbers = None if summary is None else summary.statistics
         if summary is None or numbers is None or len(summary.channels) != numbers.channel_count:
@@ -136,9 +143,25 @@ class McapFile:
         if numbers.message_count:
             self._start_ns, self._end_ns = numbers.message_start_time, numbers.message_end_time
         self._blocks = [
-            _Block(c.message_start_time, c.message_end_time, c.chunk_start_offset) for c in summary.chunk_indexes
+            _Block(c.message_start_time, c.message_end_time, c.chunk_start_offset)
+            for c in {c.chunk_start_offset: c for c in summary.chunk_indexes}.values()
         ]
         return True
+
+    def _check_summary(self, file: BinaryIO) -> None:
+        """Refuse a summary with anything in it but an index: a chunk there would be unpacked whatever its size."""
+        end = file.seek(0, 2) - len(MAGIC) - _HEAD.size - _FOOTER.size
+        file.seek(max(end, 0))
+        kind, _ = self._head(file)
+        start, _, _ = _FOOTER.unpack(_exactly(file, _FOOTER.size))
+        if kind != FOOTER or not 0 < start <= end:
+            raise _Broken
+        file.seek(start)
+        while file.tell() < end:
+            kind, size = self._head(file)
+            if kind not in _OF_SUMMARY:
+                raise _Broken
+            file.seek(size, 1)
 
     def _add_channel(self, number: int, schema: int, topic: str, encoding: str, about: dict[str, str]) -> None:
         if len(self._channels) >= CHANNELS_BOUND:
@@ -240,7 +263,7 @@ class McapFile:
                 if kind == MESSAGE:
                     channel, sequence, log_ns, publish_ns = _MESSAGE.unpack_from(body)
                     yield channel, sequence, log_ns, publish_ns, bytes(body[_MESSAGE.size :])
-        except (_Broken, struct.error) as error:
+        except (_Broken, struct.error, ValueError, OverflowError, OSError) as error:
             raise BagError(f"{self.path}: the chunk at byte {block.offset:,} is damaged {error}".rstrip()) from None
 
     def _unpacked(self, file: BinaryIO) -> bytes:

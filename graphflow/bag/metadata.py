@@ -91,7 +91,7 @@ def read(folder: Path) -> dict[str, Any]:
             text = file.read(BOUND + 1)
         if len(text) > BOUND:
             raise BagError(f"{path}: larger than {BOUND:,} bytes")
-        data = yaml.load(text, _LOADER)  # noqa: S506 - a safe one
+        data = _loaded(text)
         return dict(data["rosbag2_bagfile_information"])
     except FileNotFoundError:
         return {}
@@ -124,7 +124,7 @@ def profiles(said: object) -> tuple[Qos, ...]:
     """Profiles as a bag has them: as a list, or as the text of one; what cannot be read is left out."""
     if isinstance(said, str):
         try:
-            said = yaml.load(said[:BOUND], _LOADER)  # noqa: S506 - a safe one
+            said = _loaded(said[:BOUND])
         except (yaml.YAMLError, RecursionError, ValueError):
             return ()
     rows = said if isinstance(said, list) else []
@@ -134,10 +134,11 @@ def profiles(said: object) -> tuple[Qos, ...]:
 def _profile(row: Mapping[Any, Any]) -> Qos:
     given: dict[str, Any] = {}
     for key, enum in _ENUMS.items():
-        word = str(row.get(key, "")).upper()
+        said = row.get(key, "")
+        word = str(said).upper() if isinstance(said, (str, int)) else ""
         if word in enum.__members__ and word != "BEST_AVAILABLE":
             given[key] = enum[word]
-        elif word.isdecimal() and int(word) in {m.value for m in enum if m.name != "BEST_AVAILABLE"}:
+        elif word.isdecimal() and len(word) < 9 and int(word) in {m.value for m in enum if m.name != "BEST_AVAILABLE"}:
             given[key] = enum(int(word))
     depth = row.get("depth")
     if isinstance(depth, int) and 0 < depth < 2**31:
@@ -158,6 +159,13 @@ def _span(said: object) -> int:
 def as_text(offered: Iterable[Qos]) -> str:
     """Profiles as MCAP files have them in their channels."""
     return _dumped([plain(qos) for qos in offered])
+
+
+def _loaded(text: str | bytes) -> Any:
+    """What a text of YAML says; one with aliases is refused: a few of them can stand for more than any memory holds."""
+    if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, _LOADER)):
+        raise ValueError("it has aliases")
+    return yaml.load(text, _LOADER)  # noqa: S506 - a safe one
 
 
 def _dumped(data: object) -> str:

@@ -31,6 +31,8 @@ COMMANDS = ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result",
 """Ends of topics that make others act, or tell of those who did."""
 STEP_NS = 20_000_000
 """Longest time that the player sleeps while it looks at its keys."""
+MIN_RATE, MAX_RATE = 0.001, 1000.0
+"""How much slower and faster than it was a bag can be played."""
 REST = 0.01
 """Seconds between two rounds of a loop: a bag of one message must not fill the network."""
 AT_ONCE = 100
@@ -103,7 +105,8 @@ class Player:
 
     def _chosen(self) -> Iterator[tuple[str, Topic]]:
         for name, topic in self._bag.contents.topics.items():
-            if not self._options.choice.wants(name, topic.type) and not name.endswith(EVENTS):
+            choice = self._options.choice
+            if not (choice.wants(name, topic.type) or (choice.all and name.endswith(EVENTS))):
                 continue
             goes = self._options.remaps.get(name, name)
             if any(goes.endswith(end) for end in COMMANDS) and not self._options.allows_commands:
@@ -153,8 +156,9 @@ class Player:
     # commands
 
     def step(self, count: int = 1) -> None:
-        """Send the next messages while paused."""
-        self._steps += count
+        """Send the next messages, if it is paused."""
+        if self.is_paused:
+            self._steps += count
 
     def seek(self, time_ns: int) -> None:
         """Go on from another moment of the bag."""
@@ -186,6 +190,8 @@ class Player:
             while self._sought is None:
                 if rate != self.rate or was_paused:  # from here on by another measure
                     began_ns, at_ns, rate, was_paused = clock.monotonic_ns(), self.now_ns, self.rate, False
+                if not self.is_paused:
+                    self._steps = 0
                 if self.is_paused:
                     if self._steps:
                         self._steps -= 1
@@ -219,7 +225,9 @@ class Player:
 
         assert self._clock is not None
         async for _ in self._node.clock.every(hz=self._options.clock_hz):
-            self._clock.publish(Clock(clock=Time(sec=self.now_ns // 10**9, nanosec=self.now_ns % 10**9)))
+            self._clock.publish(
+                Clock(clock=Time(sec=min(self.now_ns // 10**9, 2**31 - 1), nanosec=self.now_ns % 10**9))
+            )
 
 
 def offered(topic: Topic) -> Qos:

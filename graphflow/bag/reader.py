@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import re
 from collections.abc import Collection, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Protocol
 
@@ -44,9 +45,9 @@ class Bag:
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
         said = metadata.read(self.path) if self.path.is_dir() else {}
-        self.distro = str(said.get("ros_distro") or "")
+        self.distro = _word(said.get("ros_distro"))
         if said.get("compression_mode"):
-            how = f"{said.get('compression_mode')} by {said.get('compression_format')}"
+            how = f"{_word(said.get('compression_mode'))} by {_word(said.get('compression_format'))}"
             raise BagError(f"{self.path}: it is compressed as a {how}; decompress it with `ros2 bag convert`")
         self.files: list[File] = [_file(file) for file in self._paths(said)]
         self.contents = together([file.contents for file in self.files])
@@ -79,10 +80,16 @@ class Bag:
         Raises:
             BagError: What is in a file cannot be read.
         """
-        parts = [file.records(names, start_ns, end_ns) for file in self.files if file.contents.end_ns >= start_ns]
-        return (
-            heapq.merge(*parts, key=lambda record: record.log_ns) if len(parts) > 1 else iter(parts[0] if parts else ())
-        )
+        wanted = [f for f in self.files if f.contents.message_count and f.contents.end_ns >= start_ns]
+        together: list[File] = []
+        until_ns = 0
+        for file in sorted(wanted, key=lambda file: file.contents.start_ns):
+            if together and file.contents.start_ns > until_ns:  # so that few are open at once
+                yield from _merged(together, names, start_ns, end_ns)
+                together = []
+            together.append(file)
+            until_ns = max(until_ns, file.contents.end_ns)
+        yield from _merged(together, names, start_ns, end_ns)
 
     def _paths(self, said: dict[str, object]) -> list[Path]:
         if self.path.is_file():
@@ -90,8 +97,8 @@ class Bag:
         if not self.path.is_dir():
             raise BagError(f"{self.path}: there is no such file or folder")
         named = said.get("relative_file_paths")
-        names = [Path(str(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
-        there = [self.path / name for name in names if (self.path / name).is_file()]
+        names = [Path(_word(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
+        there = [self.path / name for name in names if name and (self.path / name).is_file()]
         # What a recorder that was killed wrote last is in no metadata.
         more = [f for f in self.path.iterdir() if f.suffix in (".mcap", ".db3") and f not in there]
         found = [*there, *sorted(more, key=_natural)]
@@ -101,10 +108,21 @@ class Bag:
         return found
 
 
+def _merged(files: list[File], names: Collection[str] | None, start_ns: int, end_ns: int | None) -> Iterator[Record]:
+    """The messages of files that overlap in time."""
+    parts = [file.records(names, start_ns, end_ns) for file in files]
+    return heapq.merge(*parts, key=lambda record: record.log_ns) if len(parts) > 1 else chain(*parts)
+
+
 def _file(path: Path) -> File:
     if path.suffix in (".zstd", ".lz4"):
         raise BagError(f"{path}: the whole file is compressed; decompress it first, by `zstd -d` for example")
     return Db3File(path) if path.suffix == ".db3" else McapFile(path)
+
+
+def _word(said: object) -> str:
+    """A word of the metadata; empty for anything else."""
+    return said[:300] if isinstance(said, str) else ""
 
 
 def _natural(path: Path) -> list[object]:

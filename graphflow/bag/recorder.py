@@ -18,7 +18,7 @@ from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import joined, known
 from graphflow.bag.writer import FLUSH_EVERY, BagWriter
-from graphflow.errors import BagError, CallError, GraphflowError, InterfaceError
+from graphflow.errors import BagError, CallError, GraphflowError, InterfaceError, printable
 from graphflow.introspect.definitions import LIMIT, SERVICE, endpoints_of, request_for, service_of, sources_in
 from graphflow.msgs import registry
 from graphflow.qos import BEST_AVAILABLE
@@ -34,6 +34,8 @@ CACHE = 100 << 20
 LOOK_EVERY = 0.1
 """Seconds between two looks for new topics."""
 HEARD = replace(BEST_AVAILABLE, depth=1000)
+OVERHEAD = 256
+"""Bytes that a message takes beside its own."""
 SENDERS_BOUND = 10_000
 """Publishers whose sequence numbers are followed."""
 
@@ -77,6 +79,7 @@ class Recorder:
         """Other types of topics that are recorded."""
         self._held: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
         """Messages of topics whose definitions have not come yet."""
+        self._held_bytes = 0
         self._last: dict[tuple[str, bytes], int] = {}
         self._new: list[Topic] = []
         """Topics that are not in the bag yet."""
@@ -113,7 +116,8 @@ class Recorder:
                 for entity in cache.endpoints(Kind.PUBLISHER):
                     self._consider(entity)
                 if not self._is_discovering:
-                    await self.failed
+                    await asyncio.wait([self.failed])
+                    break
                 is_new.clear()
                 await is_new.wait()
                 await asyncio.wait([self.failed], timeout=LOOK_EVERY)
@@ -130,12 +134,14 @@ class Recorder:
             subscription.close()
         for task in self._tasks:
             task.cancel()
-        for name in list(self._held):
-            self._release(name, self._topic(name, ""))
-        with self._work:
-            self._is_ending = True
-            self._work.notify()
-        await asyncio.to_thread(self._thread.join)
+        try:
+            for name in list(self._held):
+                self._release(name, self._topic(name, ""))
+        finally:
+            with self._work:
+                self._is_ending = True
+                self._work.notify()
+            await asyncio.to_thread(self._thread.join)
 
     # commands
 
@@ -169,10 +175,16 @@ class Recorder:
         def arrived(payload: bytes, info: MessageInfo) -> None:
             self._arrived(entity.name, payload, info)
 
+        try:
+            self._subscriptions[entity.name] = raw.subscribe(
+                self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash
+            )
+        except (GraphflowError, ValueError) as error:  # whoever announced it may call its type anything
+            if (entity.name, entity.type) not in self._left_out:
+                self._left_out.add((entity.name, entity.type))
+                logger.warning("%s cannot be recorded: %s", printable(entity.name), printable(str(error)))
+            return
         self._held[entity.name] = []
-        self._subscriptions[entity.name] = raw.subscribe(
-            self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash
-        )
         self._tell(f"Subscribed to topic '{entity.name}'")
         task = asyncio.ensure_future(self._define(entity))
         self._tasks.add(task)
@@ -182,9 +194,9 @@ class Recorder:
         """Find the definition of a topic's type, and let its messages go on."""
         try:
             definition = await self._definition(entity)
-        except GraphflowError as error:
-            definition = ""
-            logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, error)
+        except Exception as error:  # whatever another process has answered
+            definition, why = "", printable(str(error))
+            logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, why)
         self._release(entity.name, self._topic(entity.name, definition))
 
     async def _definition(self, entity: Entity) -> str:
@@ -225,8 +237,9 @@ class Recorder:
         now_ns = self._node.clock.time_ns()
         held = self._held.get(name)
         if held is None:
-            self._take(Record(self._topics[name], now_ns, info.source_ns or now_ns, info.sequence, payload))
-        elif sum(len(data) for data, _, _ in held) + len(payload) <= self._cache:
+            self._take(Record(self._topics[name], now_ns, _sent(info, now_ns), info.sequence, payload))
+        elif self._held_bytes + len(payload) + OVERHEAD <= self._cache:
+            self._held_bytes += len(payload) + OVERHEAD
             held.append((payload, now_ns, info))
         else:
             self.dropped += 1
@@ -247,14 +260,15 @@ class Recorder:
         with self._work:
             self._new.append(topic)
         for payload, now_ns, info in self._held.pop(name, []):
-            self._take(Record(topic, now_ns, info.source_ns or now_ns, info.sequence, payload))
+            self._held_bytes -= len(payload) + OVERHEAD
+            self._take(Record(topic, now_ns, _sent(info, now_ns), info.sequence, payload))
 
     def _take(self, record: Record) -> None:
         with self._work:
-            size = len(record.data)
+            size = len(record.data) + OVERHEAD
             if self._is_snapshot:
                 while self._queue and self._waiting + size > self._cache:
-                    self._waiting -= len(self._queue.popleft().data)
+                    self._waiting -= len(self._queue.popleft().data) + OVERHEAD
             elif self._waiting + size > self._cache:
                 self.dropped += 1
                 return
@@ -274,6 +288,9 @@ class Recorder:
         except BagError as error:
             self._writer.salvage()
             self._loop.call_soon_threadsafe(self._fail, error)
+        except Exception as error:  # nobody else would hear of it
+            self._writer.salvage()
+            self._loop.call_soon_threadsafe(self._fail, BagError(f"{self._writer.folder}: {error!r}"))
 
     def _fail(self, error: BagError) -> None:
         if not self.failed.done():
@@ -300,3 +317,8 @@ class Recorder:
             self._writer.add(record)
         self._writer.keep_up()
         return not is_ending
+
+
+def _sent(info: MessageInfo, now_ns: int) -> int:
+    """When a message was sent; now, where its sender says nothing that can be."""
+    return info.source_ns if 0 < info.source_ns < 1 << 63 else now_ns

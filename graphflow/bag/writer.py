@@ -31,21 +31,34 @@ CHUNK_SIZE = 1 << 20
 """Bytes of messages that are packed together."""
 RESERVE = 4 << 20
 """Bytes that are kept free on the disk to finish the bag when it is full."""
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 COMPRESSIONS = ("zstd", "lz4", "none")
 
 
 class _Stream:
     """A file to which a piece is written whole or not at all, so that it stays readable on a full disk."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, make_room: Callable[[], bool]) -> None:
         self._file = path.open("xb", buffering=0)
         self._end = 0
+        self._make_room = make_room
+        self.trouble: OSError | None = None
+        """Why no more should be written, though all that was has found room."""
+
+    def _put(self, data: memoryview) -> int:
+        return self._file.write(data)
 
     def write(self, data: bytes) -> int:
         left = memoryview(data)
         try:
             while left:
-                left = left[self._file.write(left) :]
+                try:
+                    left = left[self._put(left) :]
+                except OSError as error:
+                    # What the library has handed over it has forgotten: it must find room now.
+                    if error.errno not in _FULL or not self._make_room():
+                        raise
+                    self.trouble = error
         except OSError:
             with contextlib.suppress(OSError):  # what is there of it is taken for the end of the file
                 self._file.truncate(self._end)
@@ -70,11 +83,11 @@ class _Stream:
 class _Part:
     """One file as it is being written."""
 
-    def __init__(self, path: Path, compression: str) -> None:
+    def __init__(self, path: Path, compression: str, make_room: Callable[[], bool]) -> None:
         from mcap.writer import CompressionType, Writer
 
         self.path = path
-        self._file = _Stream(path)
+        self._file = _Stream(path, make_room)
         self._writer: Any = Writer(
             cast(IO[bytes], self._file),
             CHUNK_SIZE,
@@ -97,6 +110,11 @@ class _Part:
     def size(self) -> int:
         """Bytes of the file so far."""
         return self._file.tell()
+
+    def check(self) -> None:
+        """Raise the error of a disk that has become full, once what it concerned is written."""
+        if self._file.trouble is not None:
+            raise self._file.trouble
 
     def declare(self, topic: Topic) -> int:
         """The channel of a topic."""
@@ -217,6 +235,7 @@ class BagWriter:
             ):
                 self.split()
             self._part.add(record)
+            self._part.check()
 
     def split(self) -> None:
         """Go on in a new file."""
@@ -235,6 +254,7 @@ class BagWriter:
             if now_ns - self._flushed_ns >= FLUSH_EVERY * 1e9:
                 self._flushed_ns = now_ns
                 self._part.flush()
+                self._part.check()
             if now_ns - self._synced_ns >= SYNC_EVERY * 1e9:
                 self._synced_ns = now_ns
                 self._part.sync()
@@ -262,7 +282,15 @@ class BagWriter:
 
     def _next(self) -> _Part:
         with _told(self.folder):
-            return _Part(self.folder / f"{self.folder.name}_{len(self._done)}.mcap", self._compression)
+            path = self.folder / f"{self.folder.name}_{len(self._done)}.mcap"
+            return _Part(path, self._compression, self._make_room)
+
+    def _make_room(self) -> bool:
+        """Give back what was kept free on the disk; False if that has been done."""
+        if not self._reserve.exists():
+            return False
+        self._reserve.unlink()
+        return True
 
     def _finish(self) -> None:
         mine = FileContents(self._part.path.name, self._part.contents)
@@ -289,5 +317,5 @@ def _told(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        why = "the disk is full" if error.errno in (errno.ENOSPC, errno.EDQUOT) else error.strerror or str(error)
+        why = "the disk is full" if error.errno in _FULL else error.strerror or str(error)
         raise BagError(f"{folder}: {why}; what has been recorded can be read") from None

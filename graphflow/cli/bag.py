@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -104,7 +105,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
 @bag.command(short_help="Play a bag into the running graph.")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_chosen
-@click.option("-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="Speed.")
+@click.option("-r", "--rate", type=click.FloatRange(0.001, 1000), default=1.0, help="Speed. [1.0]")
 @click.option("-l", "--loop", is_flag=True, help="Again and again.")
 @click.option("-p", "--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
 @click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
@@ -135,6 +136,8 @@ def play(path: Path, **options: Any) -> int:
         options.pop(unused)
     try:
         clock_hz = float(options.pop("clock"))
+        if not 0 <= clock_hz <= 10_000:
+            raise ValueError(clock_hz)
     except ValueError:
         raise UsageFault("--clock takes a number of Hz; write it as --clock=40, or behind the bag") from None
     chosen = PlayOptions(
@@ -254,7 +257,9 @@ def convert(path: Path, **options: Any) -> int:
 @_made
 def filter_(path: Path, **options: Any) -> int:
     """Write some topics of a bag, or some time of it, into a new one."""
-    choice = _choice(options, hidden=True, all_services=True)
+    choice = _choice(options, hidden=True)
+    if choice.all:
+        choice = replace(choice, all_services=True)
     return _copied((path,), "filtered", options, choice)
 
 

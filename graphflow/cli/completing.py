@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 import click
 
 from graphflow.errors import GraphflowError
 
+_PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
 MESSAGES = ("VALUES", "GOAL", "REQUEST")
 """Arguments that a message is typed for."""
 
@@ -32,7 +34,9 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
         found = _named(what, given, mark or "'")
     except GraphflowError:  # nothing runs, or it cannot be asked: there is nothing to complete with
         found = []
-    return sorted({name for name in found if name.startswith(partial)})
+    # Names come from other processes, and a shell runs what it is given: what it might obey is not offered.
+    is_message = what.upper() in MESSAGES
+    return sorted({name for name in found if name.startswith(partial) and (is_message or _PLAIN.fullmatch(name))})
 
 
 def _command(words: Sequence[str]) -> tuple[click.Command, click.Context, list[str]]:
@@ -142,7 +146,8 @@ def _message(type_name: str, mark: str) -> list[str]:
 SCRIPTS = {
     "bash": """\
 _graphflow() {
-    local IFS=$'\\n' line="${COMP_LINE:0:COMP_POINT}"
+    local - IFS=$'\\n' line="${COMP_LINE:0:COMP_POINT}"
+    set -f
     COMPREPLY=($(graphflow completion words -- "$line" 2>/dev/null))
     local word="${line##*[[:space:]]}" cut="${COMP_WORDS[COMP_CWORD]}"
     # bash takes a colon for the end of a word, and wants only what comes behind it

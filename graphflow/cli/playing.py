@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from graphflow.bag.player import Player, PlayOptions
+from graphflow.bag.player import MAX_RATE, MIN_RATE, Player, PlayOptions
 from graphflow.bag.reader import Bag
 from graphflow.cli import exits, output
 from graphflow.cli.keys import DOWN, RIGHT, UP, pressed
@@ -57,7 +57,7 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, *, keys: bool) -> in
         elif word in (RIGHT, "s", "S"):
             player.step()
         elif word in (UP, DOWN):
-            player.rate *= 1.1 if word == UP else 1 / 1.1
+            player.rate = min(max(player.rate * (1.1 if word == UP else 1 / 1.1), MIN_RATE), MAX_RATE)
 
     began = time.monotonic()
     with pressed(key) if keys else contextlib.nullcontext(False) as has_keys:
@@ -94,7 +94,7 @@ def _serve(node: Node, player: Player) -> None:
         return answer
 
     def set_rate(request: SetRate.Request) -> Any:
-        is_good = request.rate > 0.0
+        is_good = MIN_RATE <= request.rate <= MAX_RATE
         if is_good:
             player.rate = request.rate
         return SetRate.Response(success=is_good)

@@ -8,7 +8,7 @@ import re
 import shutil
 import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib import util
 from pathlib import Path
 from typing import NamedTuple
@@ -88,21 +88,31 @@ def all_executables(root: Path) -> list[Listed]:
 def project_packages(root: Path) -> list[str]:
     """The packages of a project: those with a `package.xml`, and the project itself where it has nodes."""
     own = _project_name(root) or root.name
-    files = [file for depth in range(_SEARCH_DEPTH) for file in sorted(root.glob("*/" * depth + "package.xml"))]
-    names = [_PACKAGE_NAME.search(file.read_text(encoding="utf-8", errors="replace")) for file in files]
-    found = [name[1] for name in names if name]
+    found = [name for name, _ in _described_packages(root)]
     return sorted({*found, *([own] if (root / "nodes").is_dir() else [])})
 
 
 def package_folder(package: str, root: Path) -> Path | None:
     """The folder of a project's package: one with a `package.xml` of that name, or the project itself."""
-    pattern = "package.xml"
-    for depth in range(_SEARCH_DEPTH):
-        for file in sorted(root.glob("*/" * depth + pattern)):
-            found = _PACKAGE_NAME.search(file.read_text(encoding="utf-8", errors="replace"))
-            if found and found[1] == package:
-                return file.parent
+    found = next((folder for name, folder in _described_packages(root) if name == package), None)
+    if found is not None:
+        return found
     return root if package in (root.name, _project_name(root)) else None
+
+
+def _described_packages(root: Path) -> Iterator[tuple[str, Path]]:
+    """The names and folders of packages with a `package.xml`, some folders down; folders may go meanwhile."""
+    for folder, folders, files in os.walk(root):
+        depth = len(Path(folder).relative_to(root).parts)
+        folders[:] = sorted(f for f in folders if not f.startswith(".")) if depth < _SEARCH_DEPTH - 1 else []
+        if "package.xml" in files:
+            try:
+                text = Path(folder, "package.xml").read_text(encoding="utf-8", errors="replace")
+            except OSError:
+                continue
+            name = _PACKAGE_NAME.search(text)
+            if name:
+                yield name[1], Path(folder)
 
 
 def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface
+from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface, printable
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
@@ -17,6 +17,8 @@ from graphflow.wire.liveliness import Entity, Kind
 SERVICE = "type_description_interfaces/srv/GetTypeDescription"
 LIMIT = 2.0
 """Seconds that a node has to answer."""
+SAID = 300
+"""Characters of a node's reason that are told."""
 ASKED = 3
 """Nodes that are asked, one after the other."""
 
@@ -40,17 +42,16 @@ def sources_in(response: Any, entity: Entity) -> dict[str, str]:
         InterfaceError: The node has refused, or what it sent is wrong, too large, or has not the hash it announced.
     """
     if not response.successful:
-        raise InterfaceError(f"{entity.node_name}: {response.failure_reason}")
+        raise InterfaceError(f"{entity.node_name}: {printable(response.failure_reason[:SAID])}")
     files = {s.type_name: s.raw_file_contents for s in response.type_sources if s.encoding in ("msg", "srv", "action")}
     described = response.type_description
     parts = [described.type_description, *described.referenced_type_descriptions]
     try:
-        verified(entity.type, entity.hash, files)
+        needed = verified(entity.type, entity.hash, files)
     except InterfaceError:  # files in IDL, or none
-        texts = {part.type_name: definition_of(part.type_name, [_said(f) for f in part.fields]) for part in parts}
-        verified(entity.type, entity.hash, texts)
-        return texts
-    return files
+        files = {part.type_name: definition_of(part.type_name, [_said(f) for f in part.fields]) for part in parts}
+        needed = verified(entity.type, entity.hash, files)
+    return {name: files[name] for name in needed}
 
 
 def _said(field: Any) -> FieldSaid:
@@ -85,8 +86,10 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
         for entity in list(users.values())[:ASKED]:
             try:
                 response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)
-                registry.give(sources_in(response, entity))
+                sources = sources_in(response, entity)
+                registry.give(sources)
                 if registry.hash_of(type_name) != entity.hash:
+                    registry.take_back(sources)
                     raise InterfaceError(f"{entity.node_name} has other definitions of types in it than are here")
             except GraphflowError as error:
                 reasons.append(str(error))

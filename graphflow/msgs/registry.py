@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,14 @@ def give(definitions: Mapping[str, str]) -> None:
             definition_file(name)
         except UnknownInterface:
             _given.setdefault(name, text)
+
+
+def take_back(names: Iterable[str]) -> None:
+    """Forget definitions that were given, and what has been made of them."""
+    gone = [name for name in names if _given.pop(name, None) is not None]
+    if gone:
+        for memory in (interface, _part, message_schema, hash_of):  # classes and codecs have not been made
+            memory.cache_clear()
 
 
 def definition(name: str) -> str:

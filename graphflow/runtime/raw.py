@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from graphflow.errors import DecodeError
+from graphflow.errors import DecodeError, UnknownInterface, printable
 from graphflow.msgs import registry
 from graphflow.qos import Durability, History, Qos
-from graphflow.runtime.core import core_of
+from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.handover import Handed, Receiver
@@ -180,14 +180,24 @@ def subscribe(
         callback: Called on the loop with each message, and not in a group: it must not wait.
         type_hash: RIHS01 of the type, where its definition is not known here.
         on_event: Called with each `QosEvent`.
+
+    Raises:
+        UnknownInterface: The type's name is none.
     """
-    core = core_of(node)
+    core = _checked(node, type_name)
     return core.add(RawSubscription(core, type_name, topic, qos, callback, type_hash, on_event))
 
 
 def advertise(
     node: Node, type_name: str, topic: str, qos: Qos, *, type_hash: str = "", on_event: OnEvent | None = None
 ) -> RawPublisher:
-    """A publisher of serialized messages. Arguments as for `subscribe`."""
-    core = core_of(node)
+    """A publisher of serialized messages. Arguments and errors as for `subscribe`."""
+    core = _checked(node, type_name)
     return core.add(RawPublisher(core, type_name, topic, qos, type_hash, on_event))
+
+
+def _checked(node: Node, type_name: str) -> NodeCore:
+    """The node's core, if the type may be the name of one: others announce what they like."""
+    if len(type_name.split("/")) != 3:
+        raise UnknownInterface(f"{printable(type_name)!r} is not an interface name")
+    return core_of(node)

@@ -18,7 +18,9 @@ from graphflow.wire.typehash import HIDDEN, base_of, referenced, type_hash
 
 TYPES_BOUND = 500
 """Types that one definition may need."""
-TEXT_BOUND = 1_000_000
+LINE_BOUND = 1000
+"""Characters that a line may have beside its comment."""
+TEXT_BOUND = 300_000
 """Characters that their texts may have together."""
 FIXED_BOUND = 1_000_000
 """Values that a message may have in arrays of fixed size: they are there in an empty one, too."""
@@ -56,7 +58,7 @@ def _type(name: str, field: FieldSaid) -> FieldType:
 
 
 def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, Interface]:
-    """The interfaces of a definition and of all types in it.
+    """The interfaces of a definition and of all types in it, and no others.
 
     Args:
         name: `package/kind/Name`.
@@ -70,6 +72,8 @@ def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, In
         raise InterfaceError(f"{name}: its definition is larger than any that there is")
     if any(len(type_.split("/")) != 3 or type_.split("/")[1] not in ("msg", "srv", "action") for type_ in sources):
         raise InterfaceError(f"{name}: its definition names a type that is none")
+    if any(len(line.partition("#")[0]) > LINE_BOUND for text in sources.values() for line in text.splitlines()):
+        raise InterfaceError(f"{name}: its definition has a line that is longer than any that there is")
     found = {type_: idl.parse(type_, text) for type_, text in sources.items()}
     messages = {m.name: m for interface in found.values() for m in _messages(interface)}
 
@@ -83,7 +87,8 @@ def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, In
     actual = type_hash(whole, lookup)
     if digest and actual != digest:
         raise InterfaceError(f"{name}: its definition has the hash {actual}, not {digest}, which was announced")
-    return found
+    needed = {name, *referenced(whole, lookup)}
+    return {type_: interface for type_, interface in found.items() if needed & {m.name for m in _messages(interface)}}
 
 
 def _messages(interface: Interface) -> tuple[Message, ...]:
@@ -104,7 +109,7 @@ def _refuse_size(name: str, messages: Mapping[str, Message]) -> None:
                 total += one * (field.type.size if field.type.array == "fixed" else 1)
             if total > FIXED_BOUND:
                 raise InterfaceError(f"{name}: an empty {type_} would have {total:,} values")
-            sizes[type_] = total
+            sizes[type_] = max(total, 1)
         return sizes[type_]
 
     size(name, ())

@@ -63,3 +63,10 @@ def test_times(tmp_path: Path) -> None:
     assert times(bags, START / 1e9, None) == (START, None)
     assert beside(Path("x/bag"), "cut") == Path("x/bag_cut")
     assert beside(Path("x/bag_0.mcap"), "cut") == Path("x/bag_0_cut")
+
+
+def test_a_new_name_that_is_taken(tmp_path: Path) -> None:
+    """By a topic of another type."""
+    bag = Bag(write(tmp_path / "a"))
+    with pytest.raises(BagError, match="/count is of type std_msgs/msg/Int32, and of std_msgs/msg/String in another"):
+        made([bag], tmp_path / "b", remaps={"/count": "/chatter"})

@@ -99,3 +99,14 @@ def test_a_chunk_that_claims_to_be_huge(tmp_path: Path) -> None:
         file = tmp_path / f"{claimed}.mcap"
         file.write_bytes(b"\x89MCAP0\r\n" + struct.pack("<BQ", 6, len(body)) + body)
         assert McapFile(file).contents.message_count == 0
+
+
+def test_a_summary_that_leads_into_a_chunk(tmp_path: Path) -> None:
+    """Is no summary: what it names would be unpacked, however large."""
+    path = plain_mcap(tmp_path / "a.mcap", list(range(100, 130)), chunk_size=200)
+    data = bytearray(path.read_bytes())
+    chunk = data.index(struct.pack("<B", 6), 8)
+    data[-28:-20] = struct.pack("<Q", chunk)
+    path.write_bytes(data)
+    bag = Bag(path)
+    assert len(list(bag.records())) == 30

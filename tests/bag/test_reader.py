@@ -10,6 +10,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
+from graphflow.bag.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
 from tests.bag.cast import CHATTER, COUNT, START, some_records, write
@@ -63,6 +64,7 @@ def test_some_of_it(foreign: Path) -> None:
         (lambda folder: text(folder / "a.mcap.zstd", ""), "the whole file is compressed; decompress it first"),
         (lambda folder: text(folder / "metadata.yaml", "a: [").parent, "metadata.yaml: it is no bag's metadata"),
         (lambda folder: text(folder / "metadata.yaml", "a: 1").parent, "metadata.yaml: it is no bag's metadata"),
+        (lambda folder: text(folder / "metadata.yaml", "a: &a [x]\nb: *a").parent, "it has aliases"),
         (lambda folder: text(folder / "metadata.yaml", "- 1").parent, "metadata.yaml: it is no bag's metadata"),
         (
             lambda folder: (
@@ -103,3 +105,22 @@ def test_a_folder_without_metadata(tmp_path: Path) -> None:
     assert len(bag.files) > 10
     assert [f.path.name for f in bag.files] == [f"bag_{n}.mcap" for n in range(len(bag.files))]
     assert bag.contents.message_count == 41
+
+
+def test_many_files_are_not_open_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only those that overlap in time."""
+    bag = Bag(write(tmp_path / "bag", max_seconds=0.05))
+    assert len(bag.files) > 15
+    begun: list[str] = []
+    real = McapFile._opened
+
+    def opened(file: McapFile) -> Any:
+        begun.append(file.path.name)
+        return real(file)
+
+    monkeypatch.setattr(McapFile, "_opened", opened)
+    records = bag.records()
+    for _ in range(5):
+        next(records)
+    assert len(begun) < 6
+    assert len(list(records)) == 36

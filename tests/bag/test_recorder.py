@@ -25,6 +25,7 @@ from graphflow.qos import Durability, Qos
 from graphflow.runtime import raw
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.testing import Graph
+from graphflow.wire.attachment import MessageInfo
 
 ALL = Choice(all=True, exclude=frozenset({"/rosout", "/parameter_events"}))
 
@@ -217,9 +218,9 @@ async def test_a_disk_that_cannot_keep_up(graph: Graph, session: Session, monkey
 async def test_a_full_disk(graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     """It ends the recording with a reason, and what was recorded can be read."""
     room = 20_000
-    real = writing._Stream.write
+    real = writing._Stream._put
 
-    def write(stream: Any, data: bytes) -> int:
+    def put(stream: Any, data: memoryview) -> int:
         nonlocal room
         if len(data) > room:
             room = 1 << 20  # the reserve
@@ -227,7 +228,7 @@ async def test_a_full_disk(graph: Graph, session: Session, monkeypatch: pytest.M
         room -= len(data)
         return real(stream, data)
 
-    monkeypatch.setattr(writing._Stream, "write", write)
+    monkeypatch.setattr(writing._Stream, "_put", put)
     monkeypatch.setattr(writing, "CHUNK_SIZE", 1000)
     publisher = await speaker(graph, qos=1000)
     recorder = await session.start()
@@ -241,13 +242,13 @@ async def test_a_full_disk(graph: Graph, session: Session, monkeypatch: pytest.M
         await session.task
     bag = Bag(session.folder)
     assert bag.contents.is_whole
-    assert bag.contents.message_count > 10
+    assert len(list(bag.records())) == bag.contents.message_count > 10
 
 
 async def test_snapshots(graph: Graph, session: Session) -> None:
     """Nothing is written before one is taken, and then the last messages that the cache holds."""
     publisher = await speaker(graph, qos=1000)
-    recorder = await session.start(snapshot=True, cache=1200)
+    recorder = await session.start(snapshot=True, cache=4000)
     for n in range(20):
         publisher.publish(String(data=f"{n:03}" + "x" * 90))
     await session.until(lambda: recorder.recorded == 20)
@@ -291,3 +292,30 @@ async def test_many_publishers_of_one_topic(graph: Graph, session: Session, capl
     assert recorder.lost == 0
     await session.until(lambda: "/chatter is of type std_msgs/msg/Int32, too; only std_msgs/msg/String" in caplog.text)
     assert len((await session.end()).contents.topics["/chatter"].qos) == 2
+
+
+async def test_what_others_may_say(graph: Graph, session: Session, caplog: pytest.LogCaptureFixture) -> None:
+    """A type that is none, or a time before all time, ends no recording."""
+    node = Node("stranger", start_parameter_services=False)
+    await graph.start(node)
+    publisher = await speaker(graph)
+    recorder = await session.start()
+    odd = publisher.entity
+    assert odd is not None
+    recorder._consider(odd._replace(name="/odd", type="foo\x1b[2J", zid="ff"))
+    recorder._arrived("/chatter", b"\0\1\0\0", MessageInfo(1, -1, bytes(16)))
+    publisher.publish(String(data="fine"))
+    await session.until(lambda: recorder.recorded == 2)
+    bag = await session.end()
+    assert [r.publish_ns == r.log_ns for r in bag.records()] == [True, True]
+    assert "/odd cannot be recorded: " in caplog.text
+    assert "\x1b" not in caplog.text
+
+
+async def test_a_full_disk_without_discovery(graph: Graph, session: Session) -> None:
+    """Ends it, too."""
+    await speaker(graph)
+    recorder = await session.start(discovery=False)
+    recorder._fail(BagError("the disk is full"))
+    with pytest.raises(BagError, match="the disk is full"):
+        await asyncio.wait_for(session.task, 5.0)

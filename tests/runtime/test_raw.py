@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow import Node
-from graphflow.errors import ClosedError, DecodeError
+from graphflow.errors import ClosedError, DecodeError, UnknownInterface
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import BEST_AVAILABLE, DEFAULT, Durability, Qos
@@ -129,3 +129,13 @@ async def test_after_the_end(graph: Graph) -> None:
     with pytest.raises(ClosedError):
         publisher.publish(HELLO)
     assert registry.hash_of(STRING) == subscription.type_hash
+
+
+async def test_what_is_no_type(graph: Graph) -> None:
+    """Is refused before anything is opened."""
+    node = Node("a")
+    await graph.start(node)
+    with pytest.raises(UnknownInterface, match="is not an interface name"):
+        raw.subscribe(node, "foo\x1b", "/t", Heard(), DEFAULT)
+    with pytest.raises(UnknownInterface, match="'a/b' is not an interface name"):
+        raw.advertise(node, "a/b", "/t", DEFAULT)

@@ -75,6 +75,10 @@ FIXED = "uint8[1000] x\n"
         ({"p/msg/A": "int32 x; import os"}, "x;"),
         ({"p/msg/A": "int32 class"}, "keyword"),
         ({"p/msg/A": f"#{'x' * 1_000_000}"}, "larger than any that there is"),
+        ({"p/msg/A": "B[1000000000] b", "p/msg/B": ""}, "an empty p/msg/A would have 1,000,000,000 values"),
+        ({"p/msg/A": f"string<={'9' * 5000} x"}, "longer than any"),
+        ({"p/msg/A": f"string<={'9' * 500} x"}, "is not a type"),
+        ({"p/msg/A": "string[] x [" + "'," * 600 + "]"}, "longer than any"),
         ({"p/msg/A": "", **{f"p/msg/A{n}": "" for n in range(500)}}, "larger than any that there is"),
         ({"p/msg/A": "", "../../etc": ""}, "names a type that is none"),
         ({"p/msg/A": "", "p/exe/A": ""}, "names a type that is none"),
@@ -90,3 +94,9 @@ def test_what_is_refused(sources: dict[str, str], message: str) -> None:
 def test_any_hash_will_do_where_none_was_announced() -> None:
     """Old bags have none."""
     assert list(verified("p/msg/A", "", {"p/msg/A": "int32 x"})) == ["p/msg/A"]
+
+
+def test_what_is_not_needed_is_left_out() -> None:
+    """A node cannot plant the definition of another type."""
+    sources = {"p/msg/A": "B b", "p/msg/B": "int32 x", "p/msg/Planted": "int32 y"}
+    assert set(verified("p/msg/A", "", sources)) == {"p/msg/A", "p/msg/B"}
