@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 
 UP, DOWN, RIGHT = "\x1b[A", "\x1b[B", "\x1b[C"
+_ONE = re.compile(r"\x1b[\[O][A-D]|.", re.DOTALL)
 _KEYS = {UP: UP, DOWN: DOWN, RIGHT: RIGHT, "\x1bOA": UP, "\x1bOB": DOWN, "\x1bOC": RIGHT}
 
 
@@ -30,11 +32,8 @@ def pressed(handle: Callable[[str], object]) -> Iterator[bool]:
 
     def read() -> None:
         data = os.read(fd, 64).decode(errors="ignore")
-        if data in _KEYS:
-            handle(_KEYS[data])
-        else:
-            for key in data:
-                handle(key)
+        for key in _ONE.findall(data):  # several may have come at once
+            handle(_KEYS.get(key, key))
 
     tty.setcbreak(fd)
     loop.add_reader(fd, read)

@@ -13,6 +13,7 @@ from graphflow.runtime.args import RosArgs
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.joining import planned_component
 from nodes.listener import Listener
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.supervisor.running import supervisor_of
 
@@ -20,6 +21,7 @@ pytestmark = pytest.mark.real
 GRAPH = "tests/programs/supervisor/components.yaml"
 
 
+@slow
 def test_nodes_come_and_go(machine: Machine) -> None:
     """In ROS 2's words; a process that is started again has the same nodes."""
     machine.run("up", "-d", GRAPH)

@@ -9,6 +9,7 @@ import pytest
 
 from graphflow.cli.files import find_graph
 from graphflow.errors import UsageFault
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 GRAPH = "nodes:\n  /talker: {class: nodes.talker:Talker, params: {rate: 5.0}, remap: {chatter: said}}\n"
@@ -135,6 +136,7 @@ def test_checks_for_programs(machine: Machine, tmp_path: Path) -> None:
     assert (problem["line"], problem["column"]) == (1, 13)
 
 
+@slow
 def test_names_explained(machine: Machine) -> None:
     """Of one name or all; one that is not there is told with the nearest."""
     text = machine.look("explain", GRAPHS[0], "turtle1/cmd_vel")

@@ -18,6 +18,7 @@ def project(tmp_path: Path) -> Path:
     return make_project(tmp_path / "lab")
 
 
+@slow
 @pytest.mark.real
 def test_detached_graph_runs_on_and_down_stops_it(machine: Machine, project: Path) -> None:
     """`up -d` returns when the graph is up; `ps`, `logs` and `down` work from anywhere; `down` again says none runs."""

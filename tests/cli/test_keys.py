@@ -25,7 +25,7 @@ def test_keys_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
         async def press() -> None:
             with pressed(found.append) as has_keys:
                 assert has_keys
-                for text in (" ", "\x1b[A", "\x1bOB", "ab", "\x1b[C"):
+                for text in (" ", "\x1b[A\x1bOBa", "b\x1b[C"):
                     os.write(ours, text.encode())
                     await asyncio.sleep(0.02)
 

@@ -67,6 +67,7 @@ def test_a_type_that_is_only_there(things: Machine) -> None:
     assert things.run("topic", "type", "/things", cwd=Path("/")) == "measured_msgs/msg/Thing\n"
 
 
+@slow
 def test_hz(things: Machine) -> None:
     """The rate of what is published, in the words of ROS 2."""
     text = watch(things, "hz", "/things", until="window: 1")
@@ -86,6 +87,7 @@ def test_hz_of_some_and_of_several(things: Machine) -> None:
     assert "topic    rate" in text
 
 
+@slow
 def test_bw(things: Machine) -> None:
     """Payload bytes."""
     text = watch(things, "bw", "/things", until="Message size")
@@ -93,6 +95,7 @@ def test_bw(things: Machine) -> None:
     assert re.search(r"\d KB/s from \d+ messages\n\tMessage size mean: 0\.0\d KB min", text)
 
 
+@slow
 def test_delay(things: Machine) -> None:
     """By the stamp in the header."""
     text = watch(things, "delay", "/things", until="average delay")

@@ -8,12 +8,14 @@ import signal
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import GOOD, make_project, rows, write
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_restart_and_stop(machine: Machine) -> None:
     """A node gets a new process, whether it ran, was killed or was stopped; the others run on; misspelt is told."""
     project = make_project(machine.run_directory / "lab")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 
@@ -69,6 +70,7 @@ def test_the_slides_order(machine: Machine, tmp_path: Path) -> None:
     assert not (tmp_path / "std_msgs").exists()
 
 
+@slow
 @pytest.mark.real
 def test_the_executables_run(machine: Machine) -> None:
     """`run PKG EXE` as on the slides, with or without `.py`; it answers."""

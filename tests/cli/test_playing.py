@@ -15,6 +15,7 @@ from tests.conftest import Machine
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_bag_is_heard(machine: Machine, tmp_path: Path) -> None:
     """By whoever listens; its services steer it; Ctrl-C ends it."""
     write(tmp_path / "bag")

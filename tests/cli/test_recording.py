@@ -44,6 +44,7 @@ def test_recording_and_playing(machine: Machine, tmp_path: Path) -> None:
     assert f"played {count} messages in" in machine.run(*words, cwd=tmp_path)
 
 
+@slow
 def test_a_recorder_that_is_killed(machine: Machine, tmp_path: Path) -> None:
     """Leaves what it wrote half a second ago, and before."""
     talk(machine)

@@ -139,6 +139,7 @@ WRITTEN = {
 }
 
 
+@slow
 @pytest.mark.parametrize("name", some(WRITTEN, "an event", "an action and a pose"))
 def test_advice_that_is_followed(lab: Lab, name: str) -> None:
     """The report names the line, and with what it says to write the graph goes on."""

@@ -170,6 +170,7 @@ def test_a_broken_graph_is_explained_between_processes(machine: Machine, name: s
     end_at_once(up)
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize("name", some(REAL, "crossing"))
 def test_a_fixed_graph_works_between_processes(machine: Machine, name: str) -> None:

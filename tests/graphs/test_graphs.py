@@ -26,6 +26,7 @@ def picture(machine: Machine) -> ElementTree.Element:
     return ElementTree.fromstring(answer["message"])
 
 
+@slow
 def test_every_graph_file_checks_out(machine: Machine) -> None:
     """No file in graphs/ has a mistake."""
     files = sorted(p.name for p in (PROJECT / "graphs").glob("*.yaml"))

@@ -47,6 +47,7 @@ def test_the_end_of_a_graph(machine: Machine, project: Path, number: str) -> Non
     assert "Traceback" not in up.text
 
 
+@slow
 @pytest.mark.skipif(is_portable(), reason="the portable way has no signals for groups of processes")
 def test_an_impatient_end(machine: Machine, project: Path) -> None:
     """A second Ctrl-C kills at once what does not want to end; nothing hangs. launch#207."""
@@ -60,6 +61,7 @@ def test_an_impatient_end(machine: Machine, project: Path) -> None:
     nothing_is_left(machine, everybody)
 
 
+@slow
 def test_one_node_of_a_running_graph(machine: Machine, project: Path) -> None:
     """It is stopped, started and restarted while the others go on. launch#32."""
     machine.run("up", "-d", write(project, TWO), cwd=project)

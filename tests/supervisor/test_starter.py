@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
@@ -17,6 +18,7 @@ pytestmark = pytest.mark.real
 KINDS = ["spawning"] if sys.platform != "linux" else ["forking", "spawning"]
 
 
+@slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_both_kinds_tell_the_same(machine: Machine, project: Path, kind: str) -> None:
     """What classes declare; why a worker failed and how it ended; its output and its environment are its own."""

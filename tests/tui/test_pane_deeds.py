@@ -6,12 +6,13 @@ import pytest
 
 from graphflow.tui.dialogs import AskLine, Pick
 from graphflow.tui.panes import Content, Window
-from tests.cases import some
+from tests.cases import slow, some
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 @pytest.mark.parametrize("focused", some(["list", "line"], "line"))
 async def test_panes(focused: str) -> None:
     """Splitting, moving about, resizing, zooming, swapping, breaking out, closing; whatever has the focus."""

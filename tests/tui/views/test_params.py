@@ -9,6 +9,7 @@ import pytest
 from graphflow.graph.resolve import load
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import Stage, Supervised, stage
 
@@ -19,6 +20,7 @@ def row(s: Stage, name: str) -> str:
     return next(line for line in s.text.split("\n") if line.strip().startswith(name))
 
 
+@slow
 async def test_what_is_shown(graph: Graph, tmp_path: Path) -> None:
     """Value, type, range, source and description; changes from elsewhere appear."""
     file = tmp_path / "lab.yaml"
@@ -67,6 +69,7 @@ async def test_changing(graph: Graph) -> None:
         assert "read-only" in s.text.split("\n")[-2]
 
 
+@slow
 async def test_saving(graph: Graph, tmp_path: Path) -> None:
     """What was changed is written into the graph file, whose comments stay; the change is shown first."""
     file = tmp_path / "lab.yaml"
