@@ -45,7 +45,7 @@ class Db3File:
         for number, count in counted:
             if number in self._topics:
                 counts[self._topics[number].name] += count
-        start, end = ends if ends[0] is not None else (0, 0)
+        start, end = ends if all(isinstance(moment, int) and moment >= 0 for moment in ends) else (0, 0)
         self.contents = Contents({t.name: t for t in self._topics.values()}, counts, start, end)
 
     def _read_topics(self) -> dict[int, Topic]:

@@ -10,14 +10,12 @@ from graphflow.bag.choice import EVENTS
 from graphflow.bag.contents import Topic
 from graphflow.bag.reader import Bag
 
-SORTS = ("name", "type", "count")
-
 
 def lines(bag: Bag, sort: str = "name", *, verbose: bool = False) -> Iterator[str]:
     """The lines.
 
     Args:
-        sort: One of `SORTS`.
+        sort: `name`, `type` or `count`.
         verbose: Whether QoS, hash and definition are told, too.
     """
     whole = bag.contents

@@ -195,7 +195,6 @@ class Player:
                 if self.is_paused:
                     if self._steps:
                         self._steps -= 1
-                        was_paused = True
                         break
                     was_paused = True
                     await clock.sleep(STEP_NS / 1e9)

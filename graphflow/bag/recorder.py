@@ -285,12 +285,12 @@ class Recorder:
             while self._write_some():
                 pass
             self._writer.close()
-        except BagError as error:
-            self._writer.salvage()
-            self._loop.call_soon_threadsafe(self._fail, error)
         except Exception as error:  # nobody else would hear of it
-            self._writer.salvage()
-            self._loop.call_soon_threadsafe(self._fail, BagError(f"{self._writer.folder}: {error!r}"))
+            told = error if isinstance(error, BagError) else BagError(f"{self._writer.folder}: {error!r}")
+            try:
+                self._writer.salvage()
+            finally:
+                self._loop.call_soon_threadsafe(self._fail, told)
 
     def _fail(self, error: BagError) -> None:
         if not self.failed.done():

@@ -11,7 +11,6 @@ from graphflow.bag.definitions import parted
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError, InterfaceError, UnknownInterface
 from graphflow.msgs import registry
-from graphflow.wire.described import verified
 
 
 class Said(NamedTuple):
@@ -70,10 +69,8 @@ def learn(topic: Topic) -> None:
         if not topic.definition:
             raise BagError(f"{topic.name}: {unknown}; the bag has no definition of it") from None
         try:
-            sources = parted(topic.type, topic.definition)
-            verified(topic.type, topic.hash, sources)
-            registry.give(sources)
-            found = registry.hash_of(topic.type)
+            registry.adopt(topic.type, topic.hash, parted(topic.type, topic.definition))
+            return
         except InterfaceError as error:
             raise BagError(f"{topic.name}: the bag's definition cannot be used: {error}") from None
     if topic.hash and found != topic.hash:

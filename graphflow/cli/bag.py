@@ -90,8 +90,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     from graphflow.cli import recording
 
     use_project()
-    everything = options.pop("everything") or options.pop("all_topics")
-    options.pop("all_topics", None)
+    everything = any([options.pop("everything"), options.pop("all_topics")])
     types = frozenset(options.pop("topic_types"))
     more = {"all": everything, "types": types, "all_services": options.pop("all_services")}
     choice = _choice(options, topics, **more, hidden=options.pop("include_hidden_topics"))
@@ -280,9 +279,10 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
 
     bags = [Bag(path) for path in paths]
     start_ns, end_ns = times(bags, options.get("start"), options.get("end"))
+    remaps = _remaps(options.get("remaps", ()))
     folder = options["folder"] or beside(paths[0], word)
     with BagWriter(folder, compression=options["compression"], max_size=options["max_bag_size"]) as writer:
         every = choice or Choice(all=True, hidden=True, all_services=True)
-        copied = copy(bags, writer, every, remaps=_remaps(options.get("remaps", ())), start_ns=start_ns, end_ns=end_ns)
+        copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns)
     output.data(f"{folder}: {copied.message_count:,} messages of {len(copied.topics)} topics, {size(writer.size)}")
     return exits.OK

@@ -10,8 +10,10 @@ import click
 from graphflow.errors import GraphflowError
 
 _PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
-MESSAGES = ("VALUES", "GOAL", "REQUEST")
-"""Arguments that a message is typed for."""
+LIVE = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION", "TYPE", "PARAMETER", "PARAMETERS")
+"""Places for which the graph is asked."""
+ANSWER_LIMIT = 1.0
+"""Seconds that a node has to tell its parameters."""
 
 
 def choices(words: Sequence[str], partial: str) -> list[str]:
@@ -34,9 +36,7 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
         found = _named(what, given, mark or "'")
     except GraphflowError:  # nothing runs, or it cannot be asked: there is nothing to complete with
         found = []
-    # Names come from other processes, and a shell runs what it is given: what it might obey is not offered.
-    is_message = what.upper() in MESSAGES
-    return sorted({name for name in found if name.startswith(partial) and (is_message or _PLAIN.fullmatch(name))})
+    return sorted({name for name in found if name.startswith(partial)})
 
 
 def _command(words: Sequence[str]) -> tuple[click.Command, click.Context, list[str]]:
@@ -92,55 +92,38 @@ def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[s
     return argument.make_metavar(click.Context(command)).strip("[].").removesuffix("]...").rstrip("."), given
 
 
-def _named(what: str, given: Sequence[str], mark: str) -> Iterable[str]:
+def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
+    from graphflow.cli.types import use_project
     from graphflow.domain import domain_id
+    from graphflow.introspect import offers
     from graphflow.introspect.view import View
 
-    word = what.upper()
-    if word in MESSAGES:
-        return _message(given[1], mark) if len(given) >= 2 else ()
+    word = place.upper().removeprefix("--")
+    if word not in LIVE and word not in offers.MESSAGES:
+        return ()
+    use_project()
+    if word in offers.MESSAGES:
+        return offers.message(given[1], mark) if len(given) >= 2 else ()
     if word == "TYPE" and not given:
         return _types()
-    if word not in ("NODE", "NODES", "TOPIC", "SERVICE", "ACTION", "TYPE", "PARAMETER", "PARAMETERS", "--TOPICS"):
-        return ()
     with View(domain_id()) as view:
-        cache = view.cache
-        match word:
-            case "NODE" | "NODES":
-                return cache.nodes(hidden=False)
-            case "TOPIC" | "--TOPICS":
-                return cache.topics()
-            case "SERVICE":
-                return cache.services()
-            case "ACTION":
-                return cache.actions()
-            case "TYPE":
-                tables = (cache.topics(hidden=True), cache.services(hidden=True), cache.actions())
-                return [type_ for table in tables for type_ in table.get(given[0], [])] or _types()
-            case _ if given:
-                from graphflow.introspect.parameters import RemoteParameters
+        if word in ("PARAMETER", "PARAMETERS") and given:
+            from graphflow.introspect.parameters import RemoteParameters
 
-                return RemoteParameters(view, view.node(given[0]), 1.0).names()
-    return ()
+            found = RemoteParameters(view, view.node(given[0]), ANSWER_LIMIT).names()
+        else:
+            found = offers.names_for(word, given, view.cache)
+    # They come from other processes, and a shell runs what it is given: what it might obey is not offered.
+    plain = [name for name in found if _PLAIN.fullmatch(name)]
+    return _types() if word == "TYPE" and not plain else plain
 
 
 def _types() -> list[str]:
-    from graphflow.cli.types import use_project
+    """All types that are installed."""
     from graphflow.msgs import registry
 
-    use_project()
     kinds = registry.KINDS
     return [f"{p}/{kind}/{n}" for p in registry.packages() for kind in kinds for n in registry.names_in(p, kind)]
-
-
-def _message(type_name: str, mark: str) -> list[str]:
-    from graphflow.cli.types import use_project
-    from graphflow.introspect.echo import flow, plain
-    from graphflow.msgs import registry
-
-    use_project()
-    text = flow(plain(registry.prototype(registry.full_name(type_name))))
-    return [f"{mark}{text}{mark}"]
 
 
 SCRIPTS = {

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
+from collections.abc import Callable
 from typing import Any
 
 from graphflow.cli import exits, output
@@ -13,6 +15,8 @@ from graphflow.errors import UsageFault
 from graphflow.introspect.echo import block, csv, flow, plain, truncated
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
+from graphflow.qos import Qos
+from graphflow.runtime import raw
 from graphflow.runtime.events import QosEvent
 from graphflow.runtime.node import Node
 from graphflow.runtime.subscriptions import TopicSubscription
@@ -30,20 +34,31 @@ DISCOVERY = 0.2
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
     """Print messages until done or stopped; returns the exit code."""
     path = _field_path(options.field, type_name) if options.field else []
+    wanted = compiled(options.condition) if options.condition else None
 
     async def work(node: Node) -> int:
-        return await _echo(node, topic, type_name, options, path)
+        return await _echo(node, topic, type_name, options, path, wanted)
 
     return visit(work, options.node_name)
 
 
-async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, path: list[str | int]) -> int:
+async def _echo(
+    node: Node,
+    topic: str,
+    type_name: str,
+    options: EchoOptions,
+    path: list[str | int],
+    wanted: Callable[[Any], bool] | None,
+) -> int:
     await _known(node, topic)
-    wanted = compiled(options.condition) if options.condition else None
-    type_: Any = registry.interface_class(type_name)
-    subscription: TopicSubscription[Any] = node.create_subscription(
-        type_, topic, None, options.qos, on_event=None if options.no_lost_messages else _tell_loss
-    )
+    on_event = None if options.no_lost_messages else _tell_loss
+    subscription: _Raw | TopicSubscription[Any]
+    if options.raw:
+        subscription = _Raw(node, type_name, topic, options.qos, wanted)
+        wanted = None
+    else:
+        type_: Any = registry.interface_class(type_name)
+        subscription = node.create_subscription(type_, topic, None, options.qos, on_event=on_event)
     try:
         async with node.clock.timeout(options.timeout or float(10**9)):
             message, info = await subscription.next_with_info()
@@ -58,6 +73,30 @@ async def _echo(node: Node, topic: str, type_name: str, options: EchoOptions, pa
             if options.once:
                 return exits.OK
         message, info = await subscription.next_with_info()
+
+
+class _Raw:
+    """Messages as they came, to be iterated as those of a subscription are; those that find `qos.depth` are left out.
+
+    Args:
+        wanted: Which messages are wanted; None for all.
+    """
+
+    def __init__(self, node: Node, type_name: str, topic: str, qos: Qos, wanted: Callable[[Any], bool] | None) -> None:
+        self._came: asyncio.Queue[tuple[bytes, MessageInfo]] = asyncio.Queue(qos.depth)
+        self._decode = None if wanted is None else registry.codec(type_name).decode
+        self._wanted = wanted
+        raw.subscribe(node, type_name, topic, self._arrived, qos)
+
+    def _arrived(self, payload: bytes, info: MessageInfo) -> None:
+        if not self._came.full():
+            self._came.put_nowait((payload, info))
+
+    async def next_with_info(self) -> tuple[bytes, MessageInfo]:
+        while True:
+            payload, info = await self._came.get()
+            if self._wanted is None or self._decode is None or self._wanted(self._decode(payload)):
+                return payload, info
 
 
 def _tell_loss(event: QosEvent) -> None:
@@ -77,7 +116,7 @@ async def _known(node: Node, topic: str) -> None:
 def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str | int]) -> str:
     """One message as text."""
     if options.raw:
-        return f"{message.to_bytes()!r}\n---"
+        return f"{message!r}\n---"
     value = message
     for part in path:
         try:

@@ -15,6 +15,7 @@ from graphflow.cli import exits, output
 from graphflow.domain import domain_id
 from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
+from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.introspect.drawing import Cell, Drawing
@@ -35,10 +36,13 @@ def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, 
     """Draw the nodes and topics that run: all, or those of a NAMESPACE. What does not fit is marked."""
     from graphflow.introspect.picture import dot, mermaid, picture
 
+    below = namespace and f"/{namespace.strip('/')}"
     with View(domain_id()) as view:
-        made = picture(view.cache, namespace and f"/{namespace.strip('/')}", frozenset(), everything=everything)
+        made = picture(view.cache, below, frozenset(), everything=everything)
+        there = view.cache.nodes(hidden=False)
     if not made.nodes:
-        output.talk(nothing_here("no nodes"))
+        near = did_you_mean(below, [*there, *{node.rpartition("/")[0] for node in there}])
+        output.talk(f"no node is called {below}, or is below it{near}" if there else nothing_here("no nodes"))
         return exits.OK
     if png is not None:
         return _png(dot(made), png)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import replace
 
 from graphflow.cli import output
 from graphflow.cli.conditions import compiled
@@ -31,45 +30,8 @@ SILENT = 2.0
 """Seconds after which it is said that nobody publishes, or that nothing comes."""
 
 
-class Meter(Protocol):
-    """What takes in the messages of one topic."""
-
-    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
-        """Take in a message that came at a moment of the monotonic clock, and of the clock of stamps."""
-
-
-@dataclass
-class Rate:
-    """Counts messages, all or those for which an expression holds."""
-
-    arrivals: Arrivals
-    wanted: Callable[[bytes], bool] | None = None
-
-    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
-        if self.wanted is None or self.wanted(payload):
-            self.arrivals.add(now_ns)
-
-
-@dataclass
-class Weight:
-    """Weighs payloads."""
-
-    weights: Weights
-
-    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
-        self.weights.add(now_ns, len(payload))
-
-
-@dataclass
-class Delay:
-    """Compares the stamps of messages with the time at which they came."""
-
-    delays: Delays
-    decode: Callable[[bytes], Any]
-
-    def take(self, payload: bytes, now_ns: int, time_ns: int) -> None:
-        stamp = self.decode(payload).header.stamp
-        self.delays.add(time_ns - (stamp.sec * 10**9 + stamp.nanosec))
+Take = Callable[[bytes, int, int], object]
+"""Takes in a message that came at a moment of the monotonic clock, and of the clock of stamps, in nanoseconds."""
 
 
 def hz(topics: list[str], window: int, expression: str) -> int:
@@ -77,11 +39,12 @@ def hz(topics: list[str], window: int, expression: str) -> int:
     condition = compiled(expression) if expression else None
     rates = {topic: Arrivals(window) for topic in topics}
 
-    def meter(topic: str, type_name: str) -> Meter:
+    def meter(topic: str, type_name: str) -> Take:
+        add = rates[topic].add
         if condition is None:
-            return Rate(rates[topic])
-        codec = registry.codec(type_name)
-        return Rate(rates[topic], lambda payload: condition(codec.decode(payload)))
+            return lambda _, now_ns, __: add(now_ns)
+        decode = registry.codec(type_name).decode
+        return lambda payload, now_ns, _: condition(decode(payload)) and add(now_ns)
 
     def text(_: int) -> str:
         return table(rates) if len(topics) > 1 else rates[topics[0]].text()
@@ -93,38 +56,46 @@ def bw(topic: str, window: int) -> int:
     """Tell how many bytes come; returns the exit code."""
     weights = Weights(window)
     output.data(f"Subscribed to [{topic}]")
-    return visit(lambda node: _measure(node, [topic], lambda *_: Weight(weights), weights.text))
+
+    def take(payload: bytes, now_ns: int, _: int) -> None:
+        weights.add(now_ns, len(payload))
+
+    return visit(lambda node: _measure(node, [topic], lambda *_: take, weights.text))
 
 
 def delay(topic: str, window: int) -> int:
     """Tell how old messages are when they come; returns the exit code."""
     delays = Delays(window)
 
-    def meter(_: str, type_name: str) -> Meter:
+    def meter(_: str, type_name: str) -> Take:
         fields = {f.name: f.type.base for f in registry.message_schema(type_name).fields}
         if fields.get("header") != "std_msgs/msg/Header":
             raise UsageFault(f"{type_name} has no header, and so no stamp to tell a delay by")
-        return Delay(delays, registry.codec(type_name).decode)
+        decode = registry.codec(type_name).decode
+
+        def take(payload: bytes, _: int, time_ns: int) -> None:
+            stamp = decode(payload).header.stamp
+            delays.add(time_ns - (stamp.sec * 10**9 + stamp.nanosec))
+
+        return take
 
     return visit(lambda node: _measure(node, [topic], meter, lambda _: delays.text()))
 
 
-async def _measure(
-    node: Node, topics: list[str], meter: Callable[[str, str], Meter], text: Callable[[int], str]
-) -> int:
+async def _measure(node: Node, topics: list[str], meter: Callable[[str, str], Take], text: Callable[[int], str]) -> int:
     """Listen to topics, as soon as each is there, and print a text every second."""
     clock, cache = node.clock, node.context.cache
     failed: list[UsageFault] = []
     count = 0
 
     def listen(topic: str, type_name: str, type_hash: str) -> None:
-        takes = meter(topic, type_name)
+        take = meter(topic, type_name)
 
         def arrived(payload: bytes, _: MessageInfo) -> None:
             nonlocal count
             count += 1
             try:
-                takes.take(payload, clock.monotonic_ns(), clock.time_ns())
+                take(payload, clock.monotonic_ns(), clock.time_ns())
             except (UsageFault, DecodeError) as error:
                 failed.append(UsageFault(str(error)))
 
@@ -144,7 +115,8 @@ async def _measure(
             next_ns += to_ns(EVERY)
             if count > told:
                 told, heard_ns, is_silence_told = count, now_ns, False
-                output.data(text(now_ns))
+                if words := text(now_ns):  # of a single message there is nothing to tell yet
+                    output.data(words)
         if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
             is_silence_told = True
             _tell_silence(cache, sorted(waiting))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from graphflow.cli import output
 from graphflow.errors import UsageFault
+from graphflow.names import did_you_mean
 
 
 def use_project() -> None:
@@ -27,6 +28,9 @@ def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count:
     package, _, base = type_name.partition("/")
     wanted = {type_name, *(f"{package}/{kind}/{base}" for kind in ("msg", "srv", "action"))}
     found = [name for name, types in names.items() if wanted & {*types}]
+    if not found:
+        near = did_you_mean(type_name, {type_ for types in names.values() for type_ in types})
+        output.talk(f"nothing is of type {type_name}{near}")
     return [str(len(found))] if only_count else found
 
 

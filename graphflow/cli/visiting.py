@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 from collections.abc import Awaitable, Callable
 
+from graphflow.cli import output
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
@@ -23,11 +25,20 @@ def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None, *, ha
     return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services))
 
 
+class _Talk(logging.Handler):
+    """Tells what goes wrong in the words of a command; they may come from other processes."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        output.talk(self.format(record))
+
+
 async def _visit(work: Callable[[Node], Awaitable[int]], name: str, has_services: bool) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
     context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
+    talk = _Talk(logging.WARNING)
+    logging.getLogger("graphflow").addHandler(talk)
     node = Node(name, start_parameter_services=has_services, enable_rosout=False)
     try:
         await core_of(node).start(context)
@@ -43,3 +54,4 @@ async def _visit(work: Callable[[Node], Awaitable[int]], name: str, has_services
     finally:
         await core_of(node).stop()
         await context.close()
+        logging.getLogger("graphflow").removeHandler(talk)

@@ -86,11 +86,7 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
         for entity in list(users.values())[:ASKED]:
             try:
                 response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)
-                sources = sources_in(response, entity)
-                registry.give(sources)
-                if registry.hash_of(type_name) != entity.hash:
-                    registry.take_back(sources)
-                    raise InterfaceError(f"{entity.node_name} has other definitions of types in it than are here")
+                registry.adopt(type_name, entity.hash, sources_in(response, entity))
             except GraphflowError as error:
                 reasons.append(str(error))
             else:

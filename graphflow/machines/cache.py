@@ -106,9 +106,9 @@ class GraphCache:
         return self._types(Kind.SERVICE, Kind.CLIENT, hidden=hidden)
 
     def offered(self) -> tuple[set[str], set[str]]:
-        """The services that have a server: those that users have written, and those that every node or action has."""
+        """The services that have a server: those that users have written, and those hidden or of every node."""
         servers = self.endpoints(Kind.SERVICE)
-        inner = {e.name for e in servers if e.type.startswith(_OF_EVERY_NODE) or "/_action/" in e.name}
+        inner = {e.name for e in servers if e.type.startswith(_OF_EVERY_NODE) or is_hidden(e.name)}
         return {e.name for e in servers} - inner, inner
 
     def actions(self) -> dict[str, list[str]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.wire import idl
 from graphflow.wire.cdr import Codec
 from graphflow.wire.codegen import FORMATS, Types
+from graphflow.wire.described import verified
 from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import Action, Interface, Message, Service
 from graphflow.wire.typehash import referenced, type_hash
@@ -35,25 +36,30 @@ def add_root(folder: Path) -> None:
         _roots.append(folder)
 
 
-def give(definitions: Mapping[str, str]) -> None:
-    """Make definitions known that are in no file here. What is known stands.
+def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
+    """Make a type known from definitions of somebody else. What is known here stands.
 
     Args:
-        definitions: Their texts, by `package/kind/Name`.
+        name: `package/kind/Name`.
+        digest: The hash that it must have; empty for any.
+        sources: The texts of its definition file and of the others', by type.
+
+    Raises:
+        InterfaceError: They are wrong, too large, of another hash, or do not go with what is known here.
     """
-    for name, text in definitions.items():
+    new = {}
+    for needed in verified(name, digest, sources):
         try:
-            definition_file(name)
+            definition(needed)
         except UnknownInterface:
-            _given.setdefault(name, text)
-
-
-def take_back(names: Iterable[str]) -> None:
-    """Forget definitions that were given, and what has been made of them."""
-    gone = [name for name in names if _given.pop(name, None) is not None]
-    if gone:
-        for memory in (interface, _part, message_schema, hash_of):  # classes and codecs have not been made
+            new[needed] = sources[needed]
+    _given.update(new)
+    if digest and hash_of(name) != digest:
+        for needed in new:
+            del _given[needed]
+        for memory in (interface, _part, message_schema, hash_of):  # no class or codec has been made of them
             memory.cache_clear()
+        raise InterfaceError(f"{name}: types in it have other definitions here")
 
 
 def definition(name: str) -> str:

@@ -37,6 +37,8 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
         text = str(ended.stdout, "utf-8")
     except subprocess.TimeoutExpired:
         raise SubstitutionError(f"{written}: it has not ended within {LIMIT:g} s") from None
+    except FileNotFoundError:
+        raise SubstitutionError(f"{written}: there is no program {words[0]!r} on the PATH") from None
     except (OSError, ValueError) as error:
         raise SubstitutionError(f"{written}: {error}") from None
     complaint = (ended.stderr or b"").decode(errors="replace").strip()

@@ -6,11 +6,9 @@ import asyncio
 from typing import Any
 
 from graphflow.errors import GraphflowError
-from graphflow.introspect.echo import flow, plain
+from graphflow.introspect import offers
 from graphflow.introspect.parameters import RemoteParameters
-from graphflow.msgs import registry
 from graphflow.tui.hub import Hub, Verbs
-from graphflow.wire.liveliness import Kind
 
 ANSWER_LIMIT = 1.0
 """Seconds that a node has to tell its parameters."""
@@ -71,34 +69,16 @@ class Completer:
         live = self._hub.live
         if live is None:
             return []
-        cache = live.cache
         match what.upper():
             case "NODE" | "NODES":
                 return self._hub.nodes()
-            case "TOPIC":
-                return list(cache.topics())
-            case "SERVICE":
-                return sorted({e.name for e in cache.endpoints(Kind.SERVICE)})
-            case "ACTION":
-                return list(cache.actions())
-            case "TYPE":
-                return self._types(given)
             case "PARAMETER" | "PARAMETERS" if given:
                 return await self._parameters(given[0])
-            case "VALUES" | "GOAL" | "REQUEST" if len(given) >= 2:
-                return _template(given[1])
+            case word if word in offers.MESSAGES and len(given) >= 2:
+                return offers.message(given[1])
             case "HANDLER" if given:
                 return self._handlers(given[0])
-        return []
-
-    def _types(self, given: list[str]) -> list[str]:
-        """The type of what was named before."""
-        assert self._hub.live is not None
-        cache = self._hub.live.cache
-        if not given:
-            return []
-        tables = (cache.topics(hidden=True), cache.services(hidden=True), cache.actions())
-        return [type_ for table in tables for type_ in table.get(given[0], [])]
+        return offers.names_for(what, given, live.cache)
 
     def _handlers(self, node: str) -> list[str]:
         assert self._hub.live is not None
@@ -118,11 +98,3 @@ def _common(words: list[str]) -> str:
     """The beginning that all words share."""
     first, last = min(words), max(words)
     return next((first[:i] for i, c in enumerate(first) if last[i : i + 1] != c), first)
-
-
-def _template(type_name: str) -> list[str]:
-    """A message of a type with all its fields, for the user to fill in."""
-    try:
-        return [f"'{flow(plain(registry.prototype(registry.full_name(type_name))))}'"]
-    except GraphflowError:
-        return []

@@ -82,3 +82,40 @@ def test_one_that_is_damaged(tmp_path: Path) -> None:
     path.write_bytes(data)
     with pytest.raises(BagError, match=r"a\.db3: "):
         list(Db3File(path).records())
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ((1, START, 5_000_000_000), "it has a message that is none"),
+        ((1, START, None), "it has a message that is none"),
+        ((1, START, "text"), "it has a message that is none"),
+        ((1, -5, b"x"), "it has a message that is none"),
+    ],
+)
+def test_columns_of_other_kinds(tmp_path: Path, row: tuple[object, ...], message: str) -> None:
+    """SQLite holds anything anywhere: nothing is taken for a message that is none."""
+    path = old(tmp_path / "a.db3")
+    with closing(sqlite3.connect(path)) as base, base:
+        base.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", row)
+    with pytest.raises(BagError, match=message):
+        list(Db3File(path).records(start_ns=-10))
+
+
+def test_views_are_no_tables(tmp_path: Path) -> None:
+    """They may never end."""
+    path = tmp_path / "a.db3"
+    with closing(sqlite3.connect(old(path))) as base, base:
+        base.execute("DROP TABLE messages")
+        endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i AS timestamp FROM n"
+        base.execute(f"CREATE VIEW messages AS {endless}")
+    with pytest.raises(BagError, match="no such table: messages"):
+        Db3File(path)
+
+
+def test_one_that_was_not_closed(tmp_path: Path) -> None:
+    """Its last messages are in another file: they are not left out in silence."""
+    path = old(tmp_path / "a.db3")
+    path.with_name("a.db3-wal").touch()
+    with pytest.raises(BagError, match=r"it was not closed; let sqlite3 take in its -wal file"):
+        Db3File(path)

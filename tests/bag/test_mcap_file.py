@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -101,12 +102,39 @@ def test_a_chunk_that_claims_to_be_huge(tmp_path: Path) -> None:
         assert McapFile(file).contents.message_count == 0
 
 
-def test_a_summary_that_leads_into_a_chunk(tmp_path: Path) -> None:
+def test_a_summary_that_leads_into_a_chunk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Is no summary: what it names would be unpacked, however large."""
     path = plain_mcap(tmp_path / "a.mcap", list(range(100, 130)), chunk_size=200)
     data = bytearray(path.read_bytes())
     chunk = data.index(struct.pack("<B", 6), 8)
     data[-28:-20] = struct.pack("<Q", chunk)
     path.write_bytes(data)
-    bag = Bag(path)
-    assert len(list(bag.records())) == 30
+    monkeypatch.setattr("mcap.stream_reader.get_chunk_data_stream", lambda *_, **__: pytest.fail("it was unpacked"))
+    assert len(list(Bag(path).records())) == 30
+
+
+def test_a_byte_that_is_wrong_in_a_message(tmp_path: Path) -> None:
+    """Is no message."""
+    path = plain_mcap(tmp_path / "a.mcap", [1, 2], compression=CompressionType.NONE)
+    data = bytearray(path.read_bytes())
+    place = data.index(struct.pack("<HIQQ", 1, 0, 2, 2)) + 22
+    assert data[place : place + 1] == b"1"
+    data[place] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(BagError, match=r"a\.mcap: the chunk at byte \d+ is damaged \(its checksum is another\)"):
+        list(McapFile(path).records())
+
+
+def test_what_a_chunk_may_cost(tmp_path: Path) -> None:
+    """No more than it says, however much is in it."""
+    packed = zstandard.compress(bytes(100_000_000))
+    body = struct.pack("<QQQI", 1, 1, 100, 0) + struct.pack("<I", 4) + b"zstd"
+    body += struct.pack("<Q", len(packed)) + packed
+    file = tmp_path / "a.mcap"
+    file.write_bytes(b"\x89MCAP0\r\n" + struct.pack("<BQ", 6, len(body)) + body)
+    tracemalloc.start()
+    try:
+        McapFile(file)
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()

@@ -41,6 +41,7 @@ def test_what_is_no_profile(said: object) -> None:
     [
         {},
         {"history": 99, "depth": -1, "reliability": "unknown", "durability": [], "liveliness": None},
+        {"history": "1" * 5000, "reliability": "9" * 8},
         {"depth": 2**40, "deadline": {"sec": "x"}, "lifespan": 5, "reliability": "best_available"},
         {"deadline": {"sec": -5, "nsec": 0}, "lifespan": {"sec": 2**70, "nsec": 0}},
     ],

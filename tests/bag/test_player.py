@@ -271,3 +271,28 @@ async def test_a_type_that_is_nowhere_installed(graph: Graph, tmp_path: Path) ->
 def test_with_what_it_is_played(said: tuple[Qos, ...], qos: Qos) -> None:
     """What fits all who listened before; promises about time are not made again."""
     assert offered(topic_of("/a", Int32)._replace(qos=said)) == qos
+
+
+async def test_steps_that_were_not_taken(graph: Graph, tmp_path: Path) -> None:
+    """Are forgotten when it goes on."""
+    show = Show(graph, tmp_path / "bag")
+    player = await show.begin(is_paused=True)
+    player.step(30)
+    player.is_paused = False
+    await graph.clock.advance(0.5)
+    player.is_paused = True
+    await graph.clock.advance(0.1)
+    before = player.played
+    await graph.clock.advance(5.0)
+    assert player.played == before < 20
+    show.task.cancel()
+
+
+async def test_the_time_between_two_messages(graph: Graph, tmp_path: Path) -> None:
+    """Passes, too."""
+    records = [record(CHATTER, String(data=word), at) for word, at in (("a", 0.0), ("b", 10.0))]
+    show = Show(graph, tmp_path / "bag", records)
+    player = await show.begin()
+    await graph.clock.advance(5.0)
+    assert (player.now_ns - START) / 1e9 == pytest.approx(5.0, abs=0.05)
+    show.task.cancel()

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import errno
 import os
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -319,3 +320,85 @@ async def test_a_full_disk_without_discovery(graph: Graph, session: Session) -> 
     recorder._fail(BagError("the disk is full"))
     with pytest.raises(BagError, match="the disk is full"):
         await asyncio.wait_for(session.task, 5.0)
+
+
+async def test_an_error_of_the_writer(graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever it is, it ends the recording, and is told even where the bag cannot be finished."""
+
+    def broken(self: BagWriter, *_: object) -> None:
+        raise RuntimeError("broken")
+
+    publisher = await speaker(graph)
+    await session.start()
+    monkeypatch.setattr(BagWriter, "add", broken)
+    monkeypatch.setattr(BagWriter, "salvage", broken)
+    monkeypatch.setattr(threading, "excepthook", lambda _: None)
+    publisher.publish(String())
+    with pytest.raises(BagError, match="broken"):
+        await asyncio.wait_for(session.task, 5.0)
+    session.recorder._writer._part.abandon()
+
+
+async def test_what_waits_for_a_definition_is_bounded(
+    graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the cache, for all topics together; and what has been let go counts no more."""
+    gate = asyncio.Event()
+
+    async def slowly(self: Recorder, entity: Any) -> str:
+        await gate.wait()
+        return ""
+
+    monkeypatch.setattr(Recorder, "_definition", slowly)
+    one = await speaker(graph)
+    recorder = await session.start(cache=3000)
+    for _ in range(20):
+        one.publish(String())
+        await graph.settle()
+    held = 20 - recorder.dropped
+    assert 5 < held < 12
+    gate.set()
+    await session.until(lambda: recorder.recorded == held)
+    gate.clear()
+    two = await speaker(graph, "/news")
+    await session.until(lambda: recorder.topics == 2)
+    before = recorder.dropped
+    two.publish(String())
+    await graph.settle()
+    assert recorder.dropped == before
+    gate.set()
+    await session.end()
+
+
+async def test_what_its_own_queues_have_dropped(graph: Graph, session: Session) -> None:
+    """Is among what is told at the end."""
+    await speaker(graph)
+    recorder = await session.start()
+    [subscription] = recorder._subscriptions.values()
+    assert subscription._inbox is not None
+    subscription._inbox.dropped = 5
+    await session.end()
+    assert recorder.dropped == 5
+
+
+async def test_what_it_says_itself(graph: Graph, session: Session) -> None:
+    """Is not recorded."""
+    recorder = await session.start()
+    session.node.create_publisher(String, "/own")
+    await speaker(graph)
+    await session.until(lambda: recorder.topics == 1)
+    assert (await session.end()).contents.counts == {"/chatter": 0}
+
+
+async def test_another_definition_of_a_type_that_is_known(
+    graph: Graph, session: Session, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Is not recorded with the one that is known here."""
+    node = Node("stranger", start_parameter_services=False)
+    await graph.start(node)
+    raw.advertise(node, "std_msgs/msg/String", "/t", Qos(), type_hash="RIHS01_ab")
+    recorder = await session.start()
+    await session.until(lambda: recorder.topics == 1 and not recorder._held)
+    topic = (await session.end()).contents.topics["/t"]
+    assert (topic.hash, topic.definition) == ("RIHS01_ab", "")
+    assert "its definition here is another" in caplog.text

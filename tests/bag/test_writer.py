@@ -210,3 +210,16 @@ def test_a_disk_that_stays_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     bag = Bag(tmp_path / "bag")
     assert not bag.contents.is_whole
     assert len(list(bag.records())) == bag.contents.message_count > 20
+
+
+def test_the_metadata_of_a_bag_that_grows(tmp_path: Path) -> None:
+    """Follow it, every five seconds."""
+    clock = Clock()
+    writer = BagWriter(tmp_path / "bag", monotonic_ns=clock)
+    for seconds in (1, 6):
+        writer.add(record(CHATTER, String(data="a"), seconds))
+        clock.now_ns = seconds * 10**9
+        writer.keep_up()
+        said = yaml.safe_load((tmp_path / "bag" / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+        assert said["message_count"] == (0 if seconds < 5 else 2)
+    writer.close()

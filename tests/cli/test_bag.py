@@ -70,6 +70,7 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("record -a -o bag", 1, "bag is there already; choose another name with -o"),
         ("filter bag -o bag", 1, "bag is there already; choose another name with -o"),
         ("record a//b", 2, "a//b"),
+        ("filter bag -m /a:/b -o new", 2, "'/a:/b' is no remap rule; write OLD:=NEW"),
         ("echo bag --csv -n 0", 2, "0 is not in the range"),
         ("ply bag", 2, "did you mean 'play'?"),
     ],
@@ -77,3 +78,4 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
 def test_words_that_do_not_fit(machine: Machine, folder: Path, words: str, code: int, told: str) -> None:
     """Say what to write instead."""
     assert told in machine.look("bag", *words.split(), cwd=folder, code=code)
+    assert [file.name for file in folder.iterdir() if file.name not in ("state", "run")] == ["bag"]

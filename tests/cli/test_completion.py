@@ -39,6 +39,7 @@ line={line!r}
 COMP_LINE="$line"; COMP_POINT=${{#line}}; read -ra COMP_WORDS <<< "$line"
 [[ "$line" == *" " ]] && COMP_WORDS+=("")
 COMP_CWORD=$((${{#COMP_WORDS[@]}}-1)); _graphflow; printf '%s\\n' "${{COMPREPLY[@]}}"
+[[ $- == *f* ]] && echo "it left the shell without patterns" || true
 """
 
 

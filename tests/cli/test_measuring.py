@@ -79,6 +79,18 @@ def test_hz(things: Machine) -> None:
 
 
 @slow
+def test_a_single_message(things: Machine) -> None:
+    """Has no rate, and makes no line."""
+    program = things.start("topic", "hz", "/once", cwd=Path("/"))
+    program.wait_for("topic [/once] does not appear to be published yet")
+    words = ("topic", "pub", "/once", "std_msgs/msg/String", "data: x", "--once", "--keep-alive", "1.5")
+    things.run(*words, cwd=Path("/"))
+    program.wait_for("no new messages")
+    program.end()
+    assert "\n\n" not in program.text
+
+
+@slow
 def test_hz_of_some_and_of_several(things: Machine) -> None:
     """Only messages that fit, of a type that was learned; several topics in a table."""
     text = watch(things, "hz", "/things", "--filter", "m.x == 1", until="average rate")

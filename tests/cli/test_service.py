@@ -30,7 +30,7 @@ def test_type_find_and_info(standing: Machine) -> None:
     assert standing.look("service", "type", ADD) == f"{TYPE}\n"
     assert "no node offers the service /ad" in standing.look("service", "type", "/ad", code=1)
     assert ADD in standing.look("service", "find", TYPE).split()
-    assert standing.look("service", "find", "std_srvs/srv/Empty", "-c") == "0\n"
+    assert standing.look("service", "find", "std_srvs/srv/Empty", "-c").endswith("0\n")
     assert standing.look("service", "info", ADD) == f"Type: {TYPE}\nClients count: 0\nServices count: 1\n"
     assert "Services count: 1\n    /office/clerk\n" in standing.look("service", "info", "-v", ADD)
 

@@ -117,7 +117,8 @@ def test_type_and_find(standing: Machine) -> None:
     assert standing.look("topic", "find", STRING).split() == ["/chatter", "/office/minutes"]
     assert standing.look("topic", "find", "std_msgs/String", "-c") == "2\n"
     assert "/office/_drawer" in standing.look("topic", "find", STRING, "--include-hidden-topics")
-    assert standing.look("topic", "find", "std_msgs/msg/Int32") == ""
+    told = "nothing is of type std_msgs/msg/Strin; did you mean 'std_msgs/msg/String'?\n"
+    assert standing.look("topic", "find", "std_msgs/msg/Strin") == told
 
 
 def test_echo_of_what_fits(standing: Machine) -> None:
@@ -126,7 +127,10 @@ def test_echo_of_what_fits(standing: Machine) -> None:
     assert "Hello World" in standing.look(*words, "'World' in m.data")
     assert "is no expression" in standing.look(*words, "m.data >", code=2)
     assert "AttributeError: " in standing.look(*words, "m.nothing", code=2)
-    assert standing.look("topic", "echo", "/chatter", "--once", "--raw").startswith("b'\\x00\\x01\\x00\\x00")
+    for condition in ([], ["--filter", "'World' in m.data"]):
+        text = standing.look("topic", "echo", "/chatter", "--once", "--raw", *condition)
+        assert text.startswith("b'\\x00\\x01\\x00\\x00")
+        assert text.endswith("\\x00'\n---\n")
 
 
 def test_pub_once(standing: Machine) -> None:

@@ -103,3 +103,19 @@ def test_late_imports_are_nobodys_business() -> None:
         return int(node.context.search.watchdog.is_closed)
 
     assert visit(work) == 1
+
+
+def test_what_goes_wrong_is_told_plainly(capsys: pytest.CaptureFixture[str]) -> None:
+    """In words of a command, once, and without what a terminal would obey."""
+
+    async def work(node: Node) -> int:
+        node.log.warning("beware of %s", "\x1b[2Jothers")
+        node.log.info("this is nobody's business")
+        return 0
+
+    for _ in range(2):
+        assert visit(work) == 0
+        told = capsys.readouterr().err
+        assert told.count("beware of ") == 1
+        assert "\x1b" not in told
+        assert "nobody" not in told

@@ -31,6 +31,9 @@ from graphflow import (
 )
 from graphflow.deadlock import search as detector
 from graphflow.interface import DeadlockPolicy, GroupChange
+from graphflow.machines.reduction import deadlocked
+from graphflow.machines.rings import explained
+from graphflow.machines.wait_graph import joined
 from graphflow.machines.wait_graph_json import from_json, to_json
 from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.action import Fibonacci
@@ -805,6 +808,7 @@ async def test_a_ring_that_grows_is_one_report(graph: Graph, caplog: Caplog, del
     assert len(said) == 1
     assert said[0].startswith(f"service obey of {late.full_name} waits behind the deadlock of ")
 
+    assert not late.context.search._foreign  # it has no part in what was reported
     [run] = [run for runner in core_of(other).runners for run in runner.active]
     run.cancel()
     await graph.clock.advance(10.0)
@@ -812,6 +816,22 @@ async def test_a_ring_that_grows_is_one_report(graph: Graph, caplog: Caplog, del
     assert rest.startswith("DEADLOCK: 2 callbacks wait for each other in a ring\n")
     assert f"service obey of {late.full_name} waits for the response of service /answer " in flat(rest)
     assert len(cleared(caplog)) == 1
+
+
+async def test_what_another_has_reported(graph: Graph, caplog: Caplog) -> None:
+    """Stays its own, though the first of the members would report it today: it may have been blocked then (row 29)."""
+    graph.deadlock = "report"
+    peers = ring_of("ab")
+    await graph.start(*peers)
+    await say(graph, "/go")
+    await graph.clock.advance(0.3)
+    whole = joined([peer.context.search.snapshot.take() for peer in peers])
+    [deadlock] = explained(whole, deadlocked(whole))
+    first, second = sorted((peer.context for peer in peers), key=lambda context: context.session.zid)
+    first.search._tell(deadlock, whole, {frozenset(deadlock.ring): second.session.zid})
+    assert reports(caplog) == []
+    first.search._tell(deadlock, whole)
+    assert len(reports(caplog)) == 1
 
 
 async def test_two_rings_are_two_reports(graph: Graph, caplog: Caplog) -> None:

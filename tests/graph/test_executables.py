@@ -91,3 +91,13 @@ def test_where_packages_are(root: Path, tmp_path: Path) -> None:
     assert package_program("planner", "nav2", root, {}) is None
     assert package_program("calibrate", "my_robot", root, {}) == root / "scripts/calibrate"
     assert package_program("calibrate", "nav2", root, sourced) is None
+
+
+def test_hidden_folders_are_passed_over(root: Path) -> None:
+    """They are caches and environments, and may go while they are looked at."""
+    (root / ".venv" / "pkg").mkdir(parents=True)
+    (root / ".venv" / "pkg" / "package.xml").write_text("<package><name>theirs</name></package>")
+    assert package_folder("theirs", root) is None
+    (root / "pkg").mkdir()
+    (root / "pkg" / "package.xml").write_text("<package><name>mine</name></package>")
+    assert package_folder("mine", root) == root / "pkg"

@@ -124,3 +124,26 @@ def test_what_is_asked() -> None:
     """The service that every node of ROS 2 has, since Iron."""
     assert service_of(entity()) == "/speaker/get_type_description"
     assert request_for(entity()).include_type_sources
+
+
+def test_how_many_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A few; and none who use another type of that name."""
+    monkeypatch.setattr(registry, "_given", {})
+    view: Any = View(*(InterfaceError("broken") for _ in range(6)))
+    with pytest.raises(UnknownInterface):
+        learn(view, "/things", THING)
+    assert len(view.asked) == 3
+    other = "definitions_msgs/msg/Other"
+    with pytest.raises(UnknownInterface, match="no node that uses it gives its definition"):
+        learn(view, "/things", other)
+    assert len(view.asked) == 3
+
+
+def test_a_reason_that_is_long_or_strange() -> None:
+    """Is cut, and nothing in it is obeyed by a terminal."""
+    reason = "\x1b[2J" + "x" * 5000
+    answer: Any = registry.interface_class(f"{SERVICE}_Response")(successful=False, failure_reason=reason)
+    with pytest.raises(InterfaceError) as caught:
+        sources_in(answer, entity())
+    assert len(str(caught.value)) < 400
+    assert "\x1b" not in str(caught.value)

@@ -9,7 +9,9 @@ import pytest
 
 from graphflow.errors import InterfaceError, UnknownInterface
 from graphflow.msgs import registry
+from graphflow.wire.described import verified
 from graphflow.wire.schema import Action, Message, Service
+from graphflow.wire.typehash import type_hash
 from tests.cases import sample
 
 if TYPE_CHECKING:
@@ -217,3 +219,33 @@ def test_forget_reads_anew(save: Save, monkeypatch: pytest.MonkeyPatch) -> None:
     registry.forget()
     assert registry.hash_of("reg_forget/msg/Thing") != old
     assert len(registry.example("reg_forget/msg/Thing").to_bytes()) == 6
+
+
+def test_adopting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not known becomes known, and no more than is needed; what is known stands."""
+    monkeypatch.setattr(registry, "_given", {})
+    sources = {
+        "adopted_msgs/msg/A": "B b\nstd_msgs/String s",
+        "adopted_msgs/msg/B": "int32 x",
+        "std_msgs/msg/String": "string data",
+        "adopted_msgs/msg/Planted": "int32 y",
+    }
+    registry.adopt("adopted_msgs/msg/A", "", sources)
+    assert set(registry._given) == {"adopted_msgs/msg/A", "adopted_msgs/msg/B"}
+    assert registry.interface_class("adopted_msgs/msg/A")().b.x == 0
+    assert registry.definition("adopted_msgs/msg/B") == "int32 x"
+
+
+def test_what_does_not_go_with_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaves nothing behind, so that it is not taken for known later."""
+    monkeypatch.setattr(registry, "_given", {})
+    sources = {"clashing_msgs/msg/A": "std_msgs/String s", "std_msgs/msg/String": "string data\nint32 more"}
+    whole = verified("clashing_msgs/msg/A", "", sources)
+    messages = {name: message for name, message in whole.items() if isinstance(message, Message)}
+    digest = type_hash(messages["clashing_msgs/msg/A"], messages.__getitem__)
+    for _ in range(2):
+        with pytest.raises(InterfaceError, match="types in it have other definitions here"):
+            registry.adopt("clashing_msgs/msg/A", digest, sources)
+        assert registry._given == {}
+        with pytest.raises(UnknownInterface):
+            registry.full_name("clashing_msgs/msg/A")

@@ -139,3 +139,14 @@ async def test_what_is_no_type(graph: Graph) -> None:
         raw.subscribe(node, "foo\x1b", "/t", Heard(), DEFAULT)
     with pytest.raises(UnknownInterface, match="'a/b' is not an interface name"):
         raw.advertise(node, "a/b", "/t", DEFAULT)
+
+
+async def test_one_that_is_closed_within_a_process(graph: Graph) -> None:
+    """Is handed nothing any more."""
+    node, heard = Node("a"), Heard()
+    await graph.start(node)
+    publisher = node.create_publisher(String, "/t")
+    subscription = raw.subscribe(node, STRING, "/t", heard, DEFAULT)
+    assert publisher.is_wanted
+    subscription.close()
+    assert not publisher.is_wanted

@@ -40,7 +40,7 @@ def test_what_a_program_prints(text: str, output: str, tmp_path: Path, caplog: p
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("$(command 'no_such_program x')", "No such file or directory: 'no_such_program'"),
+        ("$(command 'no_such_program x')", "there is no program 'no_such_program' on the PATH"),
         ("$(command 'sh -c \"echo oh >&2; exit 3\"')", "exit code 3: oh"),
         ("$(command 'false' ignore)", "$(command false): exit code 1"),
         ("$(command 'sh -c \"echo oh >&2\"')", "wrote to its error output: oh; to allow that: $(command '...' warn)"),
