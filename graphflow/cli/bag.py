@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.plot_options import plot_options
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import pattern_option
@@ -214,6 +215,27 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
             when = f"{said.time_ns // 10**9}.{said.time_ns % 10**9:09d}"
             output.data(f"# {said.topic} {when}\n{texts.block(shown)}\n---")
     return exits.OK
+
+
+@bag.command(short_help="Draw numbers of a bag as curves.")
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@click.argument("names", metavar="TOPIC[.FIELD,...]...", nargs=-1, required=True)
+@click.option("--start", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
+@click.option("--end", type=click.FloatRange(0), help="Second of the bag to stop at.")
+@plot_options
+def plot(path: Path, names: tuple[str, ...], start: float, end: float | None, **options: Any) -> int:
+    """Draw numbers of a bag as curves, in the terminal or into a file.
+
+    \b
+    graphflow bag plot my_bag /turtle1/pose.x,y
+    graphflow bag plot my_bag /turtle1/pose.theta --png theta.png
+    """  # noqa: D301 - click wants the character
+    from graphflow.cli import plotting
+
+    use_project()
+    chosen = plotting.PlotOptions(**options)
+    chosen.check()
+    return plotting.recorded(path, names, start, end, chosen)
 
 
 def _made(command: F) -> F:

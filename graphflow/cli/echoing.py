@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -11,10 +10,9 @@ from graphflow.cli import exits, output
 from graphflow.cli.conditions import compiled
 from graphflow.cli.echo_options import EchoOptions
 from graphflow.cli.visiting import visit
-from graphflow.errors import UsageFault
 from graphflow.introspect.echo import block, csv, flow, plain, truncated
+from graphflow.introspect.fields import Path, field_path, value_at
 from graphflow.msgs import registry
-from graphflow.names import did_you_mean
 from graphflow.qos import Qos
 from graphflow.runtime import raw
 from graphflow.runtime.events import QosEvent
@@ -23,7 +21,6 @@ from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Kind
-from graphflow.wire.schema import FieldType
 
 _EVENTS = {0: "REQUEST_SENT", 1: "REQUEST_RECEIVED", 2: "RESPONSE_SENT", 3: "RESPONSE_RECEIVED"}
 """What a service with introspection tells of: service_msgs/msg/ServiceEventInfo."""
@@ -33,7 +30,7 @@ DISCOVERY = 0.2
 
 def run(topic: str, type_name: str, options: EchoOptions) -> int:
     """Print messages until done or stopped; returns the exit code."""
-    path = _field_path(options.field, type_name) if options.field else []
+    path = field_path(options.field, type_name) if options.field else []
     wanted = compiled(options.condition) if options.condition else None
 
     async def work(node: Node) -> int:
@@ -47,7 +44,7 @@ async def _echo(
     topic: str,
     type_name: str,
     options: EchoOptions,
-    path: list[str | int],
+    path: Path,
     wanted: Callable[[Any], bool] | None,
 ) -> int:
     await _known(node, topic)
@@ -113,17 +110,14 @@ async def _known(node: Node, topic: str) -> None:
         return
 
 
-def render(message: Any, info: MessageInfo, options: EchoOptions, path: list[str | int]) -> str:
+def render(message: Any, info: MessageInfo, options: EchoOptions, path: Path) -> str:
     """One message as text."""
     if options.raw:
         return f"{message!r}\n---"
-    value = message
-    for part in path:
-        try:
-            value = value[part] if isinstance(part, int) else getattr(value, part)
-        except IndexError:
-            return f"# this message has no element {options.field}\n---"
-    data = plain(value)
+    try:
+        data = plain(value_at(message, path))
+    except IndexError:
+        return f"# this message has no element {options.field}\n---"
     if not path and type(message).SCHEMA.name.endswith("_Event") and "info" in data:
         data["info"]["event_type"] = _EVENTS.get(data["info"]["event_type"], data["info"]["event_type"])
     if options.as_json:
@@ -151,37 +145,3 @@ def _reduced(data: Any, options: EchoOptions) -> Any:
     if isinstance(data, str) and options.no_str:
         return f"<string of {len(data)}>"
     return truncated(data, None if options.full_length else options.truncate_length)
-
-
-def _field_path(text: str, type_name: str) -> list[str | int]:
-    """`a.b[0].c` as parts, checked against the type.
-
-    Raises:
-        UsageFault: The type has no such field or element.
-    """
-    if not re.fullmatch(r"\w+(\[\d+\])?(\.\w+(\[\d+\])?)*", text):
-        raise UsageFault(f"{text!r} is not a field of a message; write FIELD.FIELD or FIELD[0]")
-    parts: list[str | int] = []
-    type_, at = FieldType(type_name), ""
-    for word, index in re.findall(r"(\w+)(?:\[(\d+)\])?", text):
-        type_ = _field_type(type_, at, word)
-        at = f"{at}.{word}" if at else word
-        parts.append(word)
-        if index:
-            if not type_.array:
-                raise UsageFault(f"{at} is of type {type_} and has no elements")
-            type_, at = type_._replace(array="", size=0), f"{at}[{index}]"
-            parts.append(int(index))
-    return parts
-
-
-def _field_type(type_: FieldType, at: str, word: str) -> FieldType:
-    """The type of field `word` in what stands at `at`."""
-    if type_.array:
-        raise UsageFault(f"{at} is a list; say which element, as in {at}[0]")
-    if type_.is_primitive:
-        raise UsageFault(f"{at} is of type {type_} and has no field {word!r}")
-    fields = {f.name: f.type for f in registry.message_schema(type_.base).fields}
-    if word not in fields:
-        raise UsageFault(f"{type_.base} has no field {word!r}{did_you_mean(word, fields)}")
-    return fields[word]

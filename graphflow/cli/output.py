@@ -69,6 +69,11 @@ def clear() -> None:
         print("\x1b[2J\x1b[H", end="")
 
 
+def screen(text: str) -> None:
+    """Lines in place of all that the terminal showed; the caller answers for their escape sequences."""
+    print("\x1b[H" + "".join(f"{line}\x1b[K\n" for line in text.splitlines()) + "\x1b[J", end="", flush=True)
+
+
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:
     """Rows as lines, each column as wide as it must be."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]

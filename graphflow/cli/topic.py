@@ -1,4 +1,4 @@
-"""`graphflow topic list`, `info`, `type`, `find`, `echo`, `hz`, `bw`, `delay` and `pub`."""
+"""`graphflow topic list`, `info`, `type`, `find`, `echo`, `hz`, `bw`, `delay`, `plot` and `pub`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.cli.echo_options import echo_options, taken
+from graphflow.cli.plot_options import plot_options
 from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.types import names_of_type
 from graphflow.cli.verbs import Verbs
@@ -248,6 +249,33 @@ def delay(name: str, window: int) -> int:
     full = expand(name, "/", "cli")
     _learn(full)
     return measuring.delay(full, window)
+
+
+@topic.command(short_help="Draw numbers of messages as curves.")
+@click.argument("names", metavar="TOPIC[.FIELD,...]...", nargs=-1, required=True)
+@click.option("-s", "--seconds", type=click.FloatRange(1), default=30.0, show_default=True, help="Seconds to show.")
+@click.option("--duration", type=click.FloatRange(0, min_open=True), help="Seconds to listen. [until Ctrl-C]")
+@plot_options
+def plot(names: tuple[str, ...], seconds: float, duration: float | None, **options: Any) -> int:
+    """Draw numbers of messages as curves, in the terminal or into a file. Ctrl-C stops it.
+
+    \b
+    graphflow topic plot /turtle1/pose.x,y
+    graphflow topic plot /turtle1/pose/theta --duration 10 --png theta.png
+    """  # noqa: D301 - click wants the character
+    from graphflow.cli import plotting
+
+    chosen = plotting.PlotOptions(seconds=seconds, duration=duration, **options)
+    chosen.check()
+    with View(domain_id()) as view:
+        topics = view.cache.topics(hidden=True)
+    meant = plotting.wanted(names, topics)
+    for full in meant:
+        if full not in topics:
+            near = did_you_mean(full, [t for t in topics if not is_hidden(t)])
+            raise CallError(f"topic {full} does not appear to be published yet{near}")
+    _learn(*meant)
+    return plotting.live(meant, {full: topics[full][0] for full in meant}, chosen)
 
 
 def _learn(*topics: str) -> None:

@@ -5,11 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-import pytest
-
 from graphflow.cli.echo_options import EchoOptions
-from graphflow.cli.echoing import _field_path, render
-from graphflow.errors import UsageFault
+from graphflow.cli.echoing import render
 from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import Point, Polygon, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
@@ -88,46 +85,6 @@ def test_a_part_of_a_message() -> None:
     assert shown(values, ["double_array_value", 1]) == "1.5\n---"
     assert shown(values, ["double_array_value"]) == "- 0.5\n- 1.5\n---"
     assert shown(Point(), ["x"], csv=True) == "0.0"
-
-
-@pytest.mark.parametrize(
-    ("text", "type_name", "path"),
-    [
-        ("linear", "geometry_msgs/msg/Twist", ["linear"]),
-        ("linear.x", "geometry_msgs/msg/Twist", ["linear", "x"]),
-        ("points[1].x", "geometry_msgs/msg/Polygon", ["points", 1, "x"]),
-        ("double_array_value[10]", "rcl_interfaces/msg/ParameterValue", ["double_array_value", 10]),
-    ],
-)
-def test_paths(text: str, type_name: str, path: list[str | int]) -> None:
-    """A path is field names with dots, and elements in square brackets."""
-    assert _field_path(text, type_name) == path
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("liner.x", "geometry_msgs/msg/Twist has no field 'liner'; did you mean 'linear'?"),
-        ("linear.w", "geometry_msgs/msg/Vector3 has no field 'w'; there is x, y, z"),
-        ("linear.x.y", "linear.x is of type float64 and has no field 'y'"),
-        ("linear[0]", "linear is of type geometry_msgs/msg/Vector3 and has no elements"),
-        ("[0]", "write FIELD.FIELD or FIELD[0]"),
-        ("linear[a]", "write FIELD.FIELD or FIELD[0]"),
-        ("linear..x", "write FIELD.FIELD or FIELD[0]"),
-        (".", "write FIELD.FIELD or FIELD[0]"),
-    ],
-)
-def test_wrong_paths(text: str, message: str) -> None:
-    """A field that the type does not have is an error before the first message comes."""
-    with pytest.raises(UsageFault) as caught:
-        _field_path(text, "geometry_msgs/msg/Twist")
-    assert message in str(caught.value)
-
-
-def test_a_field_of_a_list_needs_an_element() -> None:
-    """Who forgets the index is told how to give it."""
-    with pytest.raises(UsageFault, match=r"points is a list; say which element, as in points\[0\]"):
-        _field_path("points.x", "geometry_msgs/msg/Polygon")
 
 
 def test_calls_of_a_service() -> None:

@@ -5,32 +5,21 @@ from __future__ import annotations
 import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
-from graphflow.msgs.sensor_msgs.msg import Range
-from graphflow.msgs.std_msgs.msg import Bool, String
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views import plot
-from graphflow.tui.views.plot import numbers
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
-def test_the_numbers_of_a_message() -> None:
-    """By their paths, nested ones too; texts and arrays are none."""
-    assert dict(numbers(Twist(linear=Vector3(x=1.5))))["linear.x"] == 1.5
-    assert numbers(String(data="x")) == []
-    assert numbers(Bool(data=True)) == [("data", 1.0)]
-    assert "range" in dict(numbers(Range()))
-
-
 async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """`topic.a,b` are two curves, a topic alone all its numbers; a field that is not there says so."""
+    """`topic.a,b` are two curves, a topic alone all its numbers."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
     node = Talker()
     await graph.start(node)
-    async with stage(Content("plot", "/speed.linear.x,angular.q"), Content("plot", "/speed"), graph=graph) as s:
+    async with stage(Content("plot", "/speed.linear.x,angular.z"), Content("plot", "/speed"), graph=graph) as s:
         await s.look()
         await graph.settle()
         for x in (0.0, 1.0, 2.0):
@@ -38,7 +27,8 @@ async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPa
             await graph.settle()
         await s.look()
         assert "━ linear.x 2" in s.text
-        assert "━ angular.q no such number" in s.text
+        assert "━ angular.z 0" in s.text
+        assert any("\u2800" < letter <= "\u28ff" for letter in s.text), "no curve is drawn"
         await s.press("minus")
         await s.look()
         assert "60 s" in s.text
@@ -49,3 +39,20 @@ async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPa
         await graph.settle()
         await s.look()
         assert "━ angular.z 0" in s.text
+
+
+@pytest.mark.parametrize(
+    ("about", "message"),
+    [("/speed.linear.q", "has no field 'q'"), ("/speed.linear", "no number"), ("/nothing", "nobody publishes /nothing")],
+)
+async def test_what_cannot_be_drawn(graph: Graph, about: str, message: str) -> None:
+    """Is told in its place."""
+    node = Talker()
+    await graph.start(node)
+    async with stage(Content("plot", about), graph=graph) as s:
+        await s.look()
+        await graph.settle()
+        node.speed.publish(Twist())
+        await graph.settle()
+        await s.look()
+        assert message in s.text
