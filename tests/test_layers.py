@@ -26,12 +26,23 @@ CELLAR = (
     "machines",
     "graph",
 )
-FLOORS = ("transport", "executor", "deadlock", "runtime", "introspect", "bag", "supervisor", "testing", "nodes")
+FLOORS = (
+    "transport",
+    "executor",
+    "deadlock",
+    "runtime",
+    "introspect",
+    "bag",
+    "viewer",
+    "supervisor",
+    "testing",
+    "nodes",
+)
 DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)
 """From the bottom up: a room imports itself and the rooms before it. No door imports another."""
 
-ONLY_IN = {"zenoh": ("transport",), "textual": ("tui",), "click": ("cli",)}
+ONLY_IN = {"zenoh": ("transport",), "textual": ("tui",), "click": ("cli",), "websockets": ("viewer",)}
 """Libraries that one room knows."""
 
 OPENS = {"cli/console.py": ("graphflow.tui.main", "graphflow.tui.web")}

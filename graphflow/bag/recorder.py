@@ -12,15 +12,12 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from graphflow.bag.choice import Choice
 from graphflow.bag.contents import Record, Topic
-from graphflow.bag.definitions import joined, known
+from graphflow.bag.definitions import asked
 from graphflow.bag.writer import FLUSH_EVERY, BagWriter
-from graphflow.errors import BagError, CallError, GraphflowError, InterfaceError, printable
-from graphflow.introspect.definitions import LIMIT, SERVICE, endpoints_of, request_for, service_of, sources_in
-from graphflow.msgs import registry
+from graphflow.errors import BagError, GraphflowError, printable
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
@@ -193,33 +190,11 @@ class Recorder:
     async def _define(self, entity: Entity) -> None:
         """Find the definition of a topic's type, and let its messages go on."""
         try:
-            definition = await self._definition(entity)
+            definition = await asked(self._node, entity)
         except Exception as error:  # whatever another process has answered
             definition, why = "", printable(str(error))
             logger.warning("%s is recorded without the definition of %s: %s", entity.name, entity.type, why)
         self._release(entity.name, self._topic(entity.name, definition))
-
-    async def _definition(self, entity: Entity) -> str:
-        if "_" in entity.type.rpartition("/")[2] and "/msg/" not in entity.type:
-            return ""  # a part of a service or action, such as its events: it follows from a type that has a file
-        try:
-            if not entity.hash or registry.hash_of(entity.type) == entity.hash:
-                return known(entity.type)
-        except InterfaceError as error:
-            unknown = error
-        else:
-            unknown = InterfaceError("its definition here is another")
-        reasons = [str(unknown)]
-        for user in endpoints_of(self._node.context.cache, entity.name, (Kind.PUBLISHER,))[:3]:
-            client: Any = self._node.create_client(registry.interface_class(SERVICE), service_of(user))
-            try:
-                response = await client.call(request_for(user), timeout=LIMIT)
-                return joined(entity.type, sources_in(response, user))
-            except (CallError, InterfaceError) as error:
-                reasons.append(str(error))
-            finally:
-                client.close()
-        raise InterfaceError("; ".join(reasons))
 
     def _topic(self, name: str, definition: str) -> Topic:
         publishers = self._node.context.cache.endpoints(Kind.PUBLISHER, name)

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 import sys
 from inspect import getfile
+from typing import NoReturn
 
 import click
 
 from graphflow.errors import GraphflowError, UsageFault
 
+_VERBS = {("rmw_zenoh_cpp", "rmw_zenohd"): "router", ("rqt_graph", "rqt_graph"): "graph"}
+"""Programs of ROS 2 that are verbs here."""
+
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.option("--prefix", help="A command before the node's, such as 'gdb -ex run --args' or 'nice -n 10'.")
 @click.argument("what", metavar="MODULE:CLASS|FILE.py|NAME")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED)
-def run(what: str, words: tuple[str, ...]) -> None:
+def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     """Run one node: `graphflow run nodes.talker:Talker --ros-args -r chatter:=news -p rate:=2.0`.
 
     A file (nodes/talker.py) or module (nodes.talker) will do where it has one node class, and the name of a node that
@@ -30,6 +37,10 @@ def run(what: str, words: tuple[str, ...]) -> None:
     from graphflow.runtime.args import parse_ros_args
     from graphflow.runtime.run import run as run_node
 
+    verb = _VERBS.get((what, *words[:1]))  # type: ignore[arg-type]
+    command = [verb, *words[1:]] if verb else ["run", what, *words]
+    if prefix or verb:
+        _become([*shlex.split(prefix or ""), sys.executable, "-m", "graphflow", *command])
     cls, rest = find_class(what, words)
     try:
         ros = parse_ros_args(rest)
@@ -39,3 +50,15 @@ def run(what: str, words: tuple[str, ...]) -> None:
     names = Resolver(cls.interface().node_name, "/", ros.remaps)
     refuse_taken_names([names.full_name], domain_id(), hint="give this one another name with -r __node:=NAME")
     run_node(cls, args=rest)
+
+
+def _become(command: list[str]) -> NoReturn:
+    """Go on as another program.
+
+    Raises:
+        UsageFault: There is none of that name.
+    """
+    try:
+        os.execvp(command[0], command)
+    except FileNotFoundError:
+        raise UsageFault(f"--prefix: there is no program {command[0]!r} on the PATH") from None

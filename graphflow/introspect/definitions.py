@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface, printable
+from graphflow.errors import CallError, GraphflowError, InterfaceError, UnknownInterface, printable
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
+from graphflow.runtime.node import Node
 from graphflow.wire.described import FieldSaid, definition_of, verified
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -21,6 +22,7 @@ SAID = 300
 """Characters of a node's reason that are told."""
 ASKED = 3
 """Nodes that are asked, one after the other."""
+NOBODY = "no node that uses it gives its definition"
 
 
 def request_for(entity: Entity) -> Any:
@@ -65,6 +67,24 @@ def endpoints_of(cache: GraphCache, name: str, kinds: tuple[Kind, ...]) -> list[
     return [e for kind in kinds for e in cache.endpoints(kind, name) if e.node_name in servers]
 
 
+async def asked_sources(node: Node, entity: Entity) -> dict[str, str]:
+    """The texts of the type of an endpoint and of all types in it, asked of the nodes on its name.
+
+    Raises:
+        InterfaceError: Nobody gives a definition that has the hash.
+    """
+    reasons = []
+    for user in endpoints_of(node.context.cache, entity.name, (entity.kind,))[:ASKED]:
+        client: Any = node.create_client(registry.interface_class(SERVICE), service_of(user))
+        try:
+            return sources_in(await client.call(request_for(user), timeout=LIMIT), user)
+        except (CallError, InterfaceError) as error:
+            reasons.append(str(error))
+        finally:
+            client.close()
+    raise InterfaceError("; ".join(reasons) or NOBODY)
+
+
 def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind.PUBLISHER, Kind.SUBSCRIPTION)) -> None:
     """Make the type of a name known here; nothing is asked if it is.
 
@@ -91,5 +111,5 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
                 reasons.append(str(error))
             else:
                 return
-        why = "; ".join(reasons) or "no node that uses it gives its definition"
+        why = "; ".join(reasons) or NOBODY
         raise UnknownInterface(f"{unknown}; {why}") from None

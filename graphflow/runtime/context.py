@@ -135,6 +135,16 @@ class Context:
                 raise
         return context
 
+    @property
+    def is_rendezvous(self) -> bool:
+        """Whether this process is where others of the machine find each other."""
+        return self._takeover is not None and self._takeover.is_router
+
+    @property
+    def router_id(self) -> str:
+        """The Zenoh id of that place; empty as long as there is none."""
+        return "" if self._takeover is None else self._takeover.router_id
+
     def open_link(self) -> None:
         """Link this machine to others, if the environment says so.
 

@@ -42,6 +42,16 @@ class Takeover:
         self._watcher = session.watch_transports(self._changed)
         self._look()
 
+    @property
+    def is_router(self) -> bool:
+        """Whether this process is the rendezvous."""
+        return self._router is not None
+
+    @property
+    def router_id(self) -> str:
+        """The Zenoh id of the rendezvous; empty as long as there is none."""
+        return next(iter(self._session.routers()), "") if self._session is not None else ""
+
     def _is_needed(self) -> bool:
         if self._closed or self._router is not None or self._session is None:
             return False

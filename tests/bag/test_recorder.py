@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from graphflow import Node
+from graphflow.bag import recorder as recorder_module
 from graphflow.bag import writer as writing
 from graphflow.bag.choice import Choice
 from graphflow.bag.reader import Bag
@@ -136,14 +137,14 @@ async def test_what_is_kept_for_late_ones(graph: Graph, session: Session) -> Non
 
 async def test_a_type_nobody_installed(graph: Graph, session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its definition comes from the publisher, and messages that came before it are not lost."""
-    from graphflow.bag import recorder as module
+    from graphflow.bag import definitions
     from graphflow.errors import UnknownInterface
 
     def unknown(name: str) -> str:
         raise UnknownInterface(f"there is no interface package {name!r}")
 
     publisher = await speaker(graph)
-    monkeypatch.setattr(module, "known", unknown)
+    monkeypatch.setattr(definitions, "known", unknown)
     recorder = await session.start()
     publisher.publish(String(data="early"))
     await session.until(lambda: recorder.recorded == 1)
@@ -345,11 +346,11 @@ async def test_what_waits_for_a_definition_is_bounded(
     """By the cache, for all topics together; and what has been let go counts no more."""
     gate = asyncio.Event()
 
-    async def slowly(self: Recorder, entity: Any) -> str:
+    async def slowly(node: Node, entity: Any) -> str:
         await gate.wait()
         return ""
 
-    monkeypatch.setattr(Recorder, "_definition", slowly)
+    monkeypatch.setattr(recorder_module, "asked", slowly)
     one = await speaker(graph)
     recorder = await session.start(cache=3000)
     for _ in range(20):

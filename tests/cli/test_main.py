@@ -18,6 +18,9 @@ VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
 VERBS += (
     "demo",
     "graph",
+    "view",
+    "top",
+    "router",
     "node",
     "topic",
     "service",

@@ -164,3 +164,13 @@ def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
     shutil.copy(PROGRAMS / "run" / "bare.py", tmp_path)
     text = machine.run("run", "bare:Bare", cwd=tmp_path, code=2)
     assert text == "error: Bare.__init__ must call super().__init__(...)\n"
+
+
+@slow
+def test_a_command_before_it(machine: Machine) -> None:
+    """Such as a debugger; one that is not there is told."""
+    program = machine.start("run", "--prefix", "env GREETING=1", "demo_nodes_cpp", "talker")
+    program.wait_for("Hello World: 1")
+    assert program.end(signal.SIGINT) == 0
+    words = ("run", "--prefix", "no-such-program -x", "demo_nodes_cpp", "talker")
+    assert "there is no program 'no-such-program' on the PATH" in machine.run(*words, code=2)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 
-import psutil
 from rich.text import Text
 
+from graphflow.introspect.costs import Costs
 from graphflow.names import is_hidden
 from graphflow.system import host_name
 from graphflow.tui.actions import Action
@@ -30,33 +30,23 @@ class Top(TableView):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self._known: dict[int, psutil.Process] = {}
+        self._costs = Costs()
         self._by_memory = False
         self._by_pid: dict[int, list[str]] = {}
 
     def rows(self) -> dict[str, Cells]:
         self._by_pid = self._owners()
-        found: list[tuple[float, int, Cells]] = []
-        for pid, nodes in self._by_pid.items():
-            try:
-                process = self._known.setdefault(pid, psutil.Process(pid))
-                with process.oneshot():
-                    cpu, memory = process.cpu_percent(None), process.memory_info().rss
-                    threads, times = process.num_threads(), process.cpu_times()
-            except psutil.Error:
-                self._known.pop(pid, None)
-                continue
-            used = times.user + times.system
-            cells: Cells = (
-                Text(str(pid), justify="right"),
-                Text(f"{cpu:.0f}%", style=self.ink.warn if cpu > 80 else "", justify="right"),
-                Text(f"{memory / 1e6:.0f}M", justify="right"),
-                Text(str(threads), justify="right"),
-                Text(f"{used:.1f}s", justify="right"),
-                Text(", ".join(nodes), style=self.ink.node(nodes[0])),
+        return {
+            str(cost.pid): (
+                Text(str(cost.pid), justify="right"),
+                Text(f"{cost.cpu:.0f}%", style=self.ink.warn if cost.cpu > 80 else "", justify="right"),
+                Text(f"{cost.memory / 1e6:.0f}M", justify="right"),
+                Text(str(cost.threads), justify="right"),
+                Text(f"{cost.seconds:.1f}s", justify="right"),
+                Text(", ".join(cost.nodes), style=self.ink.node(cost.nodes[0])),
             )
-            found.append((memory if self._by_memory else cpu, pid, cells))
-        return {str(pid): cells for _, pid, cells in sorted(found, key=lambda row: (-row[0], row[1]))}
+            for cost in self._costs.look(self._by_pid, by_memory=self._by_memory)
+        }
 
     def _owners(self) -> dict[int, list[str]]:
         found: dict[int, list[str]] = {}

@@ -43,7 +43,11 @@ async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize(
     ("about", "message"),
-    [("/speed.linear.q", "has no field 'q'"), ("/speed.linear", "no number"), ("/nothing", "nobody publishes /nothing")],
+    [
+        ("/speed.linear.q", "has no field 'q'"),
+        ("/speed.linear", "no number"),
+        ("/nothing", "nobody publishes /nothing"),
+    ],
 )
 async def test_what_cannot_be_drawn(graph: Graph, about: str, message: str) -> None:
     """Is told in its place."""

@@ -1,0 +1,94 @@
+"""`graphflow top`: what the processes of the running graph cost, and what flows through their nodes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import click
+
+from graphflow.cli import output
+from graphflow.domain import domain_id
+from graphflow.errors import harmless
+from graphflow.introspect.costs import Cost, Costs
+from graphflow.introspect.elsewhere import nothing_here
+from graphflow.introspect.numbers import Numbers
+from graphflow.introspect.view import View
+from graphflow.names import is_hidden
+from graphflow.system import host_name
+from graphflow.wire.process import NUMBERS, answer_key
+
+ANSWER_LIMIT = 1.0
+"""Seconds that the processes of a graph have to answer."""
+HEAD = ("PID", "CPU", "MEM", "THREADS", "LAG", "OUT/S", "IN/S", "DROPPED", "NODES")
+
+
+@click.command()
+@click.option(
+    "-d", "--delay", type=click.FloatRange(0.1), default=1.0, show_default=True, help="Seconds between looks."
+)
+@click.option("-M", "--by-memory", is_flag=True, help="The largest first, not the busiest.")
+@click.option("--once", is_flag=True, help="Print one look, and end; so it is without a terminal.")
+@click.option("--json", "as_json", is_flag=True, help="Print one look as JSON.")
+def top(delay: float, by_memory: bool, once: bool, as_json: bool) -> None:
+    """Show what the processes of the running graph cost, the dearest first. Ctrl-C ends it.
+
+    \b
+    LAG      milliseconds that the event loop needed to come round
+    OUT, IN  messages a second that nodes publish, and that reach their subscriptions
+    DROPPED  messages that subscriptions were too slow for, since their start
+    """  # noqa: D301 - click wants the character
+    costs, numbers = Costs(), Numbers()
+    with View(domain_id()) as view:
+        _look(view, costs, numbers, by_memory=by_memory)
+        while True:
+            time.sleep(delay)
+            view.refresh()
+            found = _look(view, costs, numbers, by_memory=by_memory)
+            if as_json:
+                output.as_json([{**cost._asdict(), **_flows(cost, numbers)} for cost in found])
+            elif once or not output.is_terminal():
+                output.lines(_table(found, numbers))
+            else:
+                output.screen("\n".join(harmless(line) for line in _table(found, numbers)))
+                continue
+            if not found and not as_json:
+                output.talk(nothing_here("no nodes"))
+            return
+
+
+def _look(view: View, costs: Costs, numbers: Numbers, *, by_memory: bool) -> list[Cost]:
+    numbers.take(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), time.monotonic())
+    pids = {token.zid: token.pid for token in view.processes().values() if token.host == host_name()}
+    owners: dict[int, list[str]] = {}
+    for entity in view.cache:
+        pid = pids.get(entity.zid)
+        if pid is not None and not is_hidden(entity.node_name) and entity.node_name not in owners.setdefault(pid, []):
+            owners[pid].append(entity.node_name)
+    return costs.look({pid: sorted(nodes) for pid, nodes in owners.items() if nodes}, by_memory=by_memory)
+
+
+def _flows(cost: Cost, numbers: Numbers) -> Mapping[str, float | None]:
+    """What flows through the nodes of a process; None where no process has told."""
+    lags = [numbers.lags[node] for node in cost.nodes if node in numbers.lags]
+
+    def rate(kind: str) -> float:
+        return sum(n for flow, n in numbers.rates.items() if flow.node in cost.nodes and flow.kind == kind)
+
+    dropped = sum(n for flow, n in numbers.dropped.items() if flow.node in cost.nodes)
+    return {
+        "lag": max(lags, default=None),
+        "out": round(rate("publisher"), 1),
+        "in": round(rate("subscription"), 1),
+        "dropped": dropped,
+    }
+
+
+def _table(found: list[Cost], numbers: Numbers) -> list[str]:
+    rows = [HEAD]
+    for cost in found:
+        flows = _flows(cost, numbers)
+        lag = "-" if flows["lag"] is None else f"{flows['lag'] * 1000:.1f}"
+        used = (str(cost.pid), f"{cost.cpu:.0f}%", f"{cost.memory / 1e6:.0f}M", str(cost.threads), lag)
+        rows.append((*used, f"{flows['out']:.1f}", f"{flows['in']:.1f}", f"{flows['dropped']}", ", ".join(cost.nodes)))
+    return output.columns(rows)

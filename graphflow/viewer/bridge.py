@@ -1,0 +1,269 @@
+"""Serves a graph to viewers: keeps what they are shown in line with the graph, and brings in what they send."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import re
+from collections import defaultdict
+from http import HTTPStatus
+from typing import Any
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+from websockets.typing import Subprotocol
+
+from graphflow.errors import GraphflowError, TransportError, UsageFault, printable
+from graphflow.machines.cache import GraphCache
+from graphflow.msgs import registry
+from graphflow.names import is_hidden
+from graphflow.qos import CLOCK
+from graphflow.runtime.node import Node
+from graphflow.viewer import protocol
+from graphflow.viewer.client import Client
+from graphflow.viewer.parameters import Parameters, Words
+from graphflow.viewer.protocol import told
+from graphflow.viewer.publications import ENCODINGS, Publications
+from graphflow.viewer.services import Services
+from graphflow.viewer.topics import Topics
+from graphflow.wire.liveliness import Kind
+
+logger = logging.getLogger("graphflow")
+
+LOOK_EVERY = 0.2
+"""Seconds between two looks at a graph that changes."""
+CLIENTS_BOUND = 32
+"""Viewers at a time."""
+MESSAGE_BOUND = 16 << 20
+"""Bytes that one message of a viewer may have."""
+PAGES = re.compile(r"https://([a-z0-9-]+\.)*foxglove\.dev|https?://(localhost|127\.0\.0\.1|\[::1\])(:\d+)?")
+"""Web pages that may connect, besides programs and those that the user allows: any page can ask a browser to connect to
+this machine."""
+
+
+class Bridge:
+    """Serves the graph of a node from `open` to `close`.
+
+    Args:
+        name: What viewers call it.
+        is_read_only: Viewers look, and neither publish, nor call, nor set.
+        pages: Origins of further web pages that may connect: `https://viewer.example`.
+    """
+
+    def __init__(
+        self, node: Node, name: str, *, is_read_only: bool = False, pages: frozenset[str] = frozenset()
+    ) -> None:
+        self._node, self._name, self._pages = node, name, pages
+        self._is_read_only = is_read_only
+        self._clients: set[Client] = set()
+        self._topics = Topics(node, self._tell)
+        self._services = Services(node, self._tell)
+        self._publications = Publications(node)
+        self._parameters = Parameters(node, self._changed)
+        self._has_clock = bool(node.context.cache.endpoints(Kind.PUBLISHER, "/clock"))
+        self._server: Server | None = None
+        self._following: asyncio.Task[None] | None = None
+
+    async def open(self, host: str, port: int) -> int:
+        """Begin to serve; returns the port.
+
+        Args:
+            port: 0 for any.
+
+        Raises:
+            TransportError: Nobody can be served there.
+        """
+        try:
+            self._server = await serve(
+                self._serve,
+                host,
+                port,
+                subprotocols=[Subprotocol(name) for name in protocol.SUBPROTOCOLS],
+                process_request=self._admit,
+                max_size=MESSAGE_BOUND,
+                logger=logging.getLogger("graphflow.viewer.websockets"),
+            )
+        except OSError as error:
+            raise TransportError(
+                f"viewers cannot be served on {host}:{port}: {error.strerror or error}; take another --port"
+            ) from None
+        if self._has_clock:
+            clock: Any = registry.interface_class("rosgraph_msgs/msg/Clock")
+            self._node.create_subscription(clock, "/clock", self._ticked, CLOCK)
+        self._following = asyncio.ensure_future(self._follow())
+        found: int = next(iter(self._server.sockets)).getsockname()[1]
+        return found
+
+    async def close(self) -> None:
+        """Send the viewers away."""
+        if self._following is not None:
+            self._following.cancel()
+        if self._server is not None:
+            self._server.close()
+            await self._server.wait_closed()
+        self._topics.close()
+        self._services.close()
+
+    # clients
+
+    def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Let a client in, unless it is a page of a stranger or one too many."""
+        origin = request.headers.get("Origin", "")
+        is_page = origin.partition(":")[0] in ("http", "https", "null")
+        if is_page and origin not in self._pages and not PAGES.fullmatch(origin):
+            logger.warning(
+                "a page of %s was refused; if it is your viewer: --allow-page %s", *[printable(origin[:200])] * 2
+            )
+            return connection.respond(HTTPStatus.FORBIDDEN, "this page may not look; see graphflow view --help\n")
+        if len(self._clients) >= CLIENTS_BOUND:
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, f"there are {CLIENTS_BOUND} viewers already\n")
+        return None
+
+    async def _serve(self, connection: ServerConnection) -> None:
+        client = Client(connection)
+        self._greet(client)
+        self._clients.add(client)
+        writing = asyncio.ensure_future(client.write())
+        try:
+            async for message in connection:
+                try:
+                    self._take(client, message)
+                except GraphflowError as error:
+                    client.warn(str(error))
+        except ConnectionClosed:
+            logger.debug("a viewer has gone without a word")
+        finally:
+            self._clients.discard(client)
+            writing.cancel()
+            client.close()
+            self._topics.leave(client)
+            self._publications.leave(client)
+
+    def _greet(self, client: Client) -> None:
+        may = ["parameters", "parametersSubscribe", "connectionGraph"]
+        may += [] if self._is_read_only else ["clientPublish", "services"]
+        may += ["time"] if self._has_clock else []
+        client.say(told("serverInfo", name=self._name, capabilities=may, supported_encodings=ENCODINGS, metadata={}))
+        self._topics.greet(client)
+        if not self._is_read_only:
+            self._services.greet(client)
+
+    def _take(self, client: Client, message: str | bytes) -> None:
+        """Do what a client says.
+
+        Raises:
+            GraphflowError: It cannot be done; the text is for the client.
+        """
+        said = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
+        match said:
+            case protocol.Subscribe():
+                for wanted in said.subscriptions:
+                    self._topics.subscribe(client, wanted)
+            case protocol.Unsubscribe():
+                for number in said.subscription_ids:
+                    self._topics.unsubscribe(client, number)
+            case protocol.GetParameters():
+                client.begin(lambda: self._show_parameters(client, said.parameter_names, said.id))
+            case protocol.FollowParameters():
+                names = {*said.parameter_names}
+                client.followed = client.followed | names if said.op.startswith("s") else client.followed - names
+            case protocol.FollowGraph():
+                client.graph = {} if said.op.startswith("s") else None
+                self._show_graph(client, connections(self._node.context.cache))
+            case _ if self._is_read_only:
+                raise UsageFault("this server is for looking only")
+            case protocol.SetParameters():
+                client.begin(lambda: self._set_parameters(client, said))
+            case protocol.Advertise():
+                for announced in said.channels:
+                    try:
+                        self._publications.announce(client, announced)
+                    except GraphflowError as error:  # the others are not to blame
+                        client.warn(str(error))
+            case protocol.Unadvertise():
+                for number in said.channel_ids:
+                    self._publications.withdraw(client, number)
+            case protocol.Message():
+                self._publications.publish(client, said)
+            case protocol.Call():
+                client.begin(lambda: self._services.call(client, said))
+
+    def _tell(self, text: str | bytes) -> None:
+        for client in self._clients:
+            client.say(text)
+
+    # parameters, time and graph
+
+    async def _show_parameters(self, client: Client, names: list[str], about: str | None) -> None:
+        client.say(told("parameterValues", parameters=await self._parameters.get(names), id=about))
+
+    async def _set_parameters(self, client: Client, said: protocol.SetParameters) -> None:
+        try:
+            await self._parameters.set(said.parameters)
+        finally:
+            await self._show_parameters(client, [value.name for value in said.parameters], said.id)
+
+    def _changed(self, parameters: list[Words]) -> None:
+        for client in self._clients:
+            if wanted := [parameter for parameter in parameters if parameter["name"] in client.followed]:
+                client.say(told("parameterValues", parameters=wanted))
+
+    def _ticked(self, message: Any) -> None:
+        self._tell(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
+
+    async def _follow(self) -> None:
+        is_new = asyncio.Event()
+        stop = self._node.context.on_change(lambda _: is_new.set())
+        try:
+            while True:
+                is_new.clear()
+                self._topics.look()
+                if not self._is_read_only:
+                    self._services.look()
+                graph = connections(self._node.context.cache)
+                for client in self._clients:
+                    self._show_graph(client, graph)
+                await is_new.wait()
+                await asyncio.sleep(LOOK_EVERY)
+        finally:
+            stop()
+
+    def _show_graph(self, client: Client, graph: Connections) -> None:
+        """Tell a client what has changed since it was told last."""
+        if client.graph is None or client.graph == graph:
+            return
+        known, update = client.graph, {}
+        for part, (key, members) in PARTS.items():
+            now, then = graph[part], known.get(part, {})
+            update[part] = [{key: name, members: users} for name, users in now.items() if then.get(name) != users]
+        topics = {*known.get("publishedTopics", ()), *known.get("subscribedTopics", ())}
+        left = {
+            "removedTopics": sorted(topics - {*graph["publishedTopics"], *graph["subscribedTopics"]}),
+            "removedServices": sorted({*known.get("advertisedServices", ())} - {*graph["advertisedServices"]}),
+        }
+        client.graph = graph
+        client.say(told("connectionGraphUpdate", **update, **left))
+
+
+PARTS = {
+    "publishedTopics": ("name", "publisherIds"),
+    "subscribedTopics": ("name", "subscriberIds"),
+    "advertisedServices": ("name", "providerIds"),
+}
+"""The parts of the graph of connections, and the words of their entries."""
+
+Connections = dict[str, dict[str, list[str]]]
+"""For each part, the nodes of each topic or service."""
+
+
+def connections(cache: GraphCache) -> Connections:
+    """Who publishes, listens and serves what; hidden names are left out."""
+    found: Connections = {}
+    for part, kind in zip(PARTS, (Kind.PUBLISHER, Kind.SUBSCRIPTION, Kind.SERVICE), strict=True):
+        nodes: dict[str, set[str]] = defaultdict(set)
+        for entity in cache.endpoints(kind):
+            if not (is_hidden(entity.name) or is_hidden(entity.node_name)):
+                nodes[entity.name].add(entity.node_name)
+        found[part] = {name: sorted(users) for name, users in sorted(nodes.items())}
+    return found

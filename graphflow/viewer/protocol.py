@@ -1,0 +1,173 @@
+"""Foxglove's WebSocket protocol: what clients say, checked, and what they are told.
+
+Source: github.com/foxglove/ws-protocol, docs/spec.md.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic.alias_generators import to_camel
+
+from graphflow.errors import DecodeError
+
+SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+"""The names of the protocol, the latest first."""
+
+MANY = 5_000
+"""Entries that one message of a client may have."""
+
+Id = Annotated[int, Field(ge=0, lt=1 << 32)]
+Name = Annotated[str, Field(max_length=1_000)]
+Names = Annotated[list[Name], Field(max_length=MANY)]
+Ids = Annotated[list[Id], Field(max_length=MANY)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(alias_generator=to_camel, strict=True)
+
+
+class Subscription(_Part):
+    """The number by which a client wants to know what comes on a channel."""
+
+    id: Id
+    channel_id: Id
+
+
+class Announced(_Part):
+    """What a client wants to publish."""
+
+    id: Id
+    topic: Name
+    encoding: Name
+    schema_name: Name
+    """Its type: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist`."""
+
+
+class Value(_Part):
+    """A parameter with its value; without one, it is to be unset."""
+
+    name: Name
+    value: Any = None
+    type: Name | None = None
+
+
+class Subscribe(_Part):
+    op: Literal["subscribe"]
+    subscriptions: Annotated[list[Subscription], Field(max_length=MANY)]
+
+
+class Unsubscribe(_Part):
+    op: Literal["unsubscribe"]
+    subscription_ids: Ids
+
+
+class Advertise(_Part):
+    op: Literal["advertise"]
+    channels: Annotated[list[Announced], Field(max_length=MANY)]
+
+
+class Unadvertise(_Part):
+    op: Literal["unadvertise"]
+    channel_ids: Ids
+
+
+class GetParameters(_Part):
+    op: Literal["getParameters"]
+    parameter_names: Names
+    id: Name | None = None
+
+
+class SetParameters(_Part):
+    op: Literal["setParameters"]
+    parameters: Annotated[list[Value], Field(max_length=MANY)]
+    id: Name | None = None
+
+
+class FollowParameters(_Part):
+    op: Literal["subscribeParameterUpdates", "unsubscribeParameterUpdates"]
+    parameter_names: Names
+
+
+class FollowGraph(_Part):
+    op: Literal["subscribeConnectionGraph", "unsubscribeConnectionGraph"]
+
+
+class Message(NamedTuple):
+    """A message that a client publishes on one of its channels."""
+
+    channel_id: int
+    data: bytes
+
+
+class Call(NamedTuple):
+    """A call of a service by a client."""
+
+    service_id: int
+    call_id: int
+    encoding: str
+    data: bytes
+
+
+Said = (
+    Subscribe | Unsubscribe | Advertise | Unadvertise | GetParameters | SetParameters | FollowParameters | FollowGraph
+)
+_SAID: TypeAdapter[Said] = TypeAdapter(Annotated[Said, Field(discriminator="op")])
+
+
+def read_text(text: str) -> Said:
+    """What a client says in JSON.
+
+    Raises:
+        DecodeError: It is nothing that a client may say; the text is for the client.
+    """
+    try:
+        return _SAID.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise DecodeError(
+            f"this message is not of the protocol: {where + ': ' if where else ''}{first['msg']}"
+        ) from None
+
+
+def read_bytes(data: bytes) -> Message | Call:
+    """What a client says in bytes.
+
+    Raises:
+        DecodeError: As for `read_text`.
+    """
+    try:
+        if data[:1] == b"\x01":
+            return Message(struct.unpack_from("<I", data, 1)[0], data[5:])
+        if data[:1] == b"\x02":
+            service, call, length = struct.unpack_from("<III", data, 1)
+            if length <= len(data) - 13:
+                return Call(service, call, data[13 : 13 + length].decode(), data[13 + length :])
+    except (struct.error, UnicodeDecodeError):
+        pass
+    raise DecodeError(f"these {len(data)} bytes are not of the protocol")
+
+
+def told(op: str, **fields: Any) -> str:
+    """What a client is told in JSON; fields in the words of the protocol, and those that are None left out."""
+    return json.dumps({"op": op, **{to_camel(name): value for name, value in fields.items() if value is not None}})
+
+
+def message_head(subscription_id: int, time_ns: int) -> bytes:
+    """What stands before a message of a channel."""
+    return struct.pack("<BIQ", 1, subscription_id, time_ns)
+
+
+def time_frame(time_ns: int) -> bytes:
+    """The server's time."""
+    return struct.pack("<BQ", 2, time_ns)
+
+
+def answer_frame(call: Call, data: bytes) -> bytes:
+    """The answer to a call, in the encoding of its request."""
+    encoding = call.encoding.encode()
+    return struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding)) + encoding + data

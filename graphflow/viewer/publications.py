@@ -1,0 +1,70 @@
+"""What viewers publish, such as the commands of a joystick on the screen."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from graphflow.errors import UsageFault
+from graphflow.msgs import registry
+from graphflow.msgs.values import from_plain
+from graphflow.names import expand
+from graphflow.qos import DEFAULT
+from graphflow.runtime import raw
+from graphflow.runtime.node import Node
+from graphflow.viewer.client import Client
+from graphflow.viewer.protocol import Announced, Message
+
+BOUND = 200
+"""Publishers of all clients together."""
+ENCODINGS = ("cdr", "json")
+"""In which messages may come."""
+
+
+class Publications:
+    """The publishers of the clients of a viewer. What is wrong is raised as a GraphflowError, with a text for them."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._publishers: dict[tuple[Client, int], tuple[raw.RawPublisher, str]] = {}
+
+    def __len__(self) -> int:
+        return len(self._publishers)
+
+    def announce(self, client: Client, announced: Announced) -> None:
+        """Make a publisher for a client."""
+        if announced.encoding not in ENCODINGS:
+            raise UsageFault(f"{announced.topic}: messages come as cdr or json here, not as {announced.encoding!r}")
+        self.withdraw(client, announced.id)
+        if len(self._publishers) >= BOUND:
+            raise UsageFault(f"viewers have {BOUND} publishers already")
+        topic, type_name = expand(announced.topic, "/", self._node.name), registry.full_name(announced.schema_name)
+        publisher = raw.advertise(self._node, type_name, topic, DEFAULT)
+        self._publishers[client, announced.id] = publisher, announced.encoding
+
+    def publish(self, client: Client, message: Message) -> None:
+        """Send a message of a client."""
+        if (client, message.channel_id) not in self._publishers:
+            raise UsageFault(f"channel {message.channel_id} was not advertised")
+        publisher, encoding = self._publishers[client, message.channel_id]
+        data = message.data
+        if encoding == "json":
+            kind: Any = registry.interface_class(publisher.type_name)
+            try:
+                data = from_plain(kind, json.loads(data)).to_bytes()
+            except (ValueError, RecursionError) as error:
+                raise UsageFault(f"{publisher.name}: {error}") from None
+        else:
+            registry.codec(publisher.type_name).decode(data)
+        publisher.publish(data)
+
+    def withdraw(self, client: Client, number: int) -> None:
+        """End a publisher of a client, if there is one."""
+        if (client, number) in self._publishers:
+            self._publishers.pop((client, number))[0].close()
+
+    def leave(self, client: Client) -> None:
+        """A client has gone."""
+        for who, number in list(self._publishers):
+            if who is client:
+                self.withdraw(client, number)

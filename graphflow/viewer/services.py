@@ -1,0 +1,119 @@
+"""Services of a graph as services of viewers."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from graphflow.bag.definitions import known
+from graphflow.errors import GraphflowError, UnknownInterface, UsageFault, printable
+from graphflow.introspect.definitions import asked_sources
+from graphflow.msgs import registry
+from graphflow.runtime.node import Node
+from graphflow.viewer.client import Client
+from graphflow.viewer.protocol import Call, answer_frame, told
+from graphflow.wire.liveliness import Entity, Kind
+
+logger = logging.getLogger("graphflow")
+
+LIMIT = 60.0
+"""Seconds that a call may take."""
+BOUND = 2_000
+"""Services that are shown."""
+
+
+class _Shown(NamedTuple):
+    id: int
+    name: str
+    type: str
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """As the protocol has it."""
+        service = registry.service_schema(self.type)
+        parts = {"request": service.request.name, "response": service.response.name}
+        return {"id": self.id, "name": self.name, "type": self.type, **{p: _schema(name) for p, name in parts.items()}}
+
+
+def _schema(name: str) -> dict[str, str]:
+    return {"encoding": "cdr", "schemaName": name, "schemaEncoding": "ros2msg", "schema": known(name)}
+
+
+class Services:
+    """The services of a node's graph that somebody wrote: those that every node has are left out.
+
+    Args:
+        tell: Tells all clients something.
+    """
+
+    def __init__(self, node: Node, tell: Callable[[str], object]) -> None:
+        self._node, self._tell = node, tell
+        self._ids = itertools.count(1)
+        self._shown: dict[str, _Shown] = {}
+        self._coming: dict[str, asyncio.Task[None]] = {}
+        self._left_out: set[tuple[str, str]] = set()
+
+    def look(self) -> None:
+        """Show the services that have come, and no longer those that have gone."""
+        cache = self._node.context.cache
+        there = {name: cache.endpoints(Kind.SERVICE, name)[0] for name in sorted(cache.offered()[0])[:BOUND]}
+        gone = [s for s in self._shown.values() if s.name not in there or there[s.name].type != s.type]
+        for service in gone:
+            del self._shown[service.name]
+        if gone:
+            self._tell(told("unadvertiseServices", service_ids=[service.id for service in gone]))
+        self._left_out &= {(name, entity.type) for name, entity in there.items()}
+        for name, entity in there.items():
+            if name not in self._shown and name not in self._coming and (name, entity.type) not in self._left_out:
+                self._coming[name] = asyncio.ensure_future(self._show(entity))
+
+    async def _show(self, entity: Entity) -> None:
+        try:
+            try:
+                registry.full_name(entity.type)
+            except UnknownInterface:
+                registry.adopt(entity.type, entity.hash, await asked_sources(self._node, entity))
+            service = _Shown(next(self._ids), entity.name, entity.type)
+            words = service.words
+        except GraphflowError as error:
+            self._left_out.add((entity.name, entity.type))
+            logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
+            return
+        finally:
+            self._coming.pop(entity.name, None)
+        self._shown[entity.name] = service
+        self._tell(told("advertiseServices", services=[words]))
+
+    def greet(self, client: Client) -> None:
+        """Tell a new client what there is."""
+        client.say(told("advertiseServices", services=[service.words for service in self._shown.values()]))
+
+    async def call(self, client: Client, call: Call) -> None:
+        """Call a service for a client, and tell it what came of it."""
+        try:
+            client.say(answer_frame(call, await self._answer(call)))
+        except GraphflowError as error:
+            failure = {"service_id": call.service_id, "call_id": call.call_id, "message": printable(str(error))}
+            client.say(told("serviceCallFailure", **failure))
+
+    async def _answer(self, call: Call) -> bytes:
+        if call.encoding != "cdr":
+            raise UsageFault(f"requests come as cdr here, not as {call.encoding!r}")
+        service = next((s for s in self._shown.values() if s.id == call.service_id), None)
+        if service is None:
+            raise UsageFault(f"there is no service {call.service_id}")
+        request = registry.codec(registry.service_schema(service.type).request.name).decode(call.data)
+        client: Any = self._node.create_client(registry.interface_class(service.type), service.name)
+        try:
+            response: bytes = (await client.call(request, timeout=LIMIT)).to_bytes()
+            return response
+        finally:
+            client.close()
+
+    def close(self) -> None:
+        """End what is under way."""
+        for task in self._coming.values():
+            task.cancel()

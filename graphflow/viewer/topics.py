@@ -1,0 +1,146 @@
+"""Topics as channels of viewers: each is listened to while somebody looks at it, and nothing is decoded."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from graphflow.bag.definitions import asked
+from graphflow.errors import GraphflowError, UsageFault, printable
+from graphflow.names import is_hidden
+from graphflow.qos import BEST_AVAILABLE
+from graphflow.runtime import raw
+from graphflow.runtime.node import Node
+from graphflow.viewer.client import Client
+from graphflow.viewer.protocol import Subscription, message_head, told
+from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Entity, Kind
+
+logger = logging.getLogger("graphflow")
+
+BOUND = 5_000
+"""Topics that are shown, and looks of one client at them."""
+HEARD = replace(BEST_AVAILABLE, depth=100)
+
+Key = tuple[str, str]
+"""A topic's name and its type: topics of two types are two channels."""
+
+
+class _Channel(NamedTuple):
+    id: int
+    entity: Entity
+    definition: str
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """As the protocol has it."""
+        said = {"id": self.id, "topic": self.entity.name, "encoding": "cdr", "schemaName": self.entity.type}
+        return {**said, "schema": self.definition, "schemaEncoding": "ros2msg"}
+
+
+class Topics:
+    """The topics of a node's graph, as channels.
+
+    Args:
+        tell: Tells all clients something.
+    """
+
+    def __init__(self, node: Node, tell: Callable[[str], object]) -> None:
+        self._node, self._tell = node, tell
+        self._ids = itertools.count(1)
+        self._shown: dict[Key, _Channel] = {}
+        self._by_id: dict[int, Key] = {}
+        self._coming: dict[Key, asyncio.Task[None]] = {}
+        self._left_out: set[Key] = set()
+        self._looks: dict[tuple[Client, int], tuple[Key, raw.RawSubscription]] = {}
+        self._is_full = False
+
+    def look(self) -> None:
+        """Show the topics that have come, and no longer those that have gone."""
+        there: dict[Key, Entity] = {}
+        for entity in self._node.context.cache.endpoints(Kind.PUBLISHER):
+            if not is_hidden(entity.name):
+                there.setdefault((entity.name, entity.type), entity)
+        for key in self._coming.keys() - there.keys():
+            self._coming.pop(key).cancel()
+        if gone := self._shown.keys() - there.keys():
+            self._hide(gone)
+        self._left_out &= there.keys()
+        for key in sorted(there.keys() - self._shown.keys() - self._coming.keys() - self._left_out):
+            if len(self._shown) + len(self._coming) >= BOUND:
+                if not self._is_full:
+                    logger.warning("only %s topics are shown", BOUND)
+                self._is_full = True
+                return
+            self._coming[key] = asyncio.ensure_future(self._show(key, there[key]))
+
+    async def _show(self, key: Key, entity: Entity) -> None:
+        try:
+            definition = await asked(self._node, entity)
+        except GraphflowError as error:
+            self._left_out.add(key)
+            logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
+            return
+        finally:
+            self._coming.pop(key, None)
+        channel = self._shown[key] = _Channel(next(self._ids), entity, definition)
+        self._by_id[channel.id] = key
+        self._tell(told("advertise", channels=[channel.words]))
+
+    def _hide(self, gone: set[Key]) -> None:
+        for look, (key, subscription) in list(self._looks.items()):
+            if key in gone:
+                subscription.close()
+                del self._looks[look]
+        ids = [self._shown.pop(key).id for key in gone]
+        for number in ids:
+            del self._by_id[number]
+        self._tell(told("unadvertise", channel_ids=ids))
+
+    def greet(self, client: Client) -> None:
+        """Tell a new client what there is."""
+        client.say(told("advertise", channels=[channel.words for channel in self._shown.values()]))
+
+    def subscribe(self, client: Client, wanted: Subscription) -> None:
+        """Show a client what comes on a channel.
+
+        Each look is a subscription of its own, so that each begins with what a latched topic has said.
+
+        Raises:
+            UsageFault: There is no such channel, or the number is in use.
+        """
+        key, look = self._by_id.get(wanted.channel_id), (client, wanted.id)
+        if key is None:
+            raise UsageFault(f"there is no channel {wanted.channel_id}")
+        if look in self._looks:
+            raise UsageFault(f"the subscription {wanted.id} is there already")
+        if sum(who is client for who, _ in self._looks) >= BOUND:
+            raise UsageFault(f"a viewer looks at no more than {BOUND} topics")
+        entity = self._shown[key].entity
+
+        def arrived(payload: bytes, info: MessageInfo) -> None:
+            is_time = 0 < info.source_ns < 1 << 63
+            client.show(message_head(wanted.id, info.source_ns if is_time else self._node.clock.time_ns()), payload)
+
+        subscription = raw.subscribe(self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash)
+        self._looks[look] = key, subscription
+
+    def unsubscribe(self, client: Client, number: int) -> None:
+        """A client looks away."""
+        if (client, number) in self._looks:
+            self._looks.pop((client, number))[1].close()
+
+    def leave(self, client: Client) -> None:
+        """A client has gone."""
+        for who, number in list(self._looks):
+            if who is client:
+                self.unsubscribe(client, number)
+
+    def close(self) -> None:
+        """End what is under way."""
+        for task in self._coming.values():
+            task.cancel()

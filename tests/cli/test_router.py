@@ -1,0 +1,26 @@
+"""`graphflow router`."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+
+@pytest.mark.parametrize("words", [("router",), ("run", "rmw_zenoh_cpp", "rmw_zenohd")])
+def test_it_is_the_rendezvous(machine: Machine, words: tuple[str, ...]) -> None:
+    """In the words of ROS 2, too; a second one waits."""
+    first = machine.start(*words)
+    first.wait_for("find each other at")
+    assert first.text.startswith("Started Zenoh router with id ")
+    second = machine.start("router")
+    second.wait_for("waits to take over")
+    zid = first.text.splitlines()[0].rpartition(" ")[2]
+    assert f"already, with id {zid}" in second.text
+    assert "no topics in domain" in machine.look("topic", "list")
+    assert first.end(signal.SIGINT) == 0
+    assert second.end(signal.SIGINT) == 0

@@ -1,0 +1,164 @@
+"""A graph in a viewer, seen by a client of the protocol."""
+
+from __future__ import annotations
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from graphflow import Node, Publisher
+from graphflow.errors import TransportError
+from graphflow.msgs.geometry_msgs.msg import Twist
+from graphflow.msgs.rosgraph_msgs.msg import Clock
+from graphflow.qos import CLOCK
+from graphflow.testing import Graph
+from graphflow.viewer import bridge as bridge_module
+from graphflow.viewer import client
+from graphflow.viewer.bridge import Bridge
+from tests.viewer.cast import Robot, served, viewer
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_what_a_viewer_is_told(graph: Graph) -> None:
+    """Topics with definitions, services, who is connected with whom; what a node takes away goes."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        assert seen.info["name"] == "lab"
+        assert {"clientPublish", "services", "parameters", "connectionGraph"} <= {*seen.info["capabilities"]}
+        await seen.until(lambda: "/speed" in seen.channels)
+        channel = seen.channels["/speed"]
+        assert (channel["encoding"], channel["schemaName"]) == ("cdr", "geometry_msgs/msg/Twist")
+        assert channel["schemaEncoding"] == "ros2msg"
+        assert "MSG: geometry_msgs/Vector3" in channel["schema"]
+        await seen.until(lambda: "/power" in seen.services)
+        power = seen.services["/power"]
+        assert power["type"] == "std_srvs/srv/SetBool"
+        assert power["request"]["schemaName"] == "std_srvs/srv/SetBool_Request"
+        assert power["request"]["schema"] == "bool data\n"
+        assert not [name for name in seen.services if "parameters" in name]
+        await seen.send("subscribeConnectionGraph")
+        await seen.until(lambda: seen.graph)
+        assert seen.graph["publishedTopics"]["/speed"] == ["/robot"]
+        assert seen.graph["subscribedTopics"]["/cmd_vel"] == ["/robot"]
+        assert seen.graph["advertisedServices"]["/power"] == ["/robot"]
+        await graph.stop(robot)
+        await seen.until(lambda: "/speed" not in seen.channels and "/power" not in seen.services)
+
+
+async def test_only_looking(graph: Graph) -> None:
+    """Nobody publishes, calls or sets, whatever is sent."""
+    robot = Robot()
+    async with served(graph, robot, is_read_only=True) as lab, viewer(lab.port) as seen:
+        assert not {"clientPublish", "services"} & {*seen.info["capabilities"]}
+        channel = {"id": 1, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"}
+        await seen.send("advertise", channels=[channel])
+        await seen.publish(1, Twist().to_bytes())
+        await seen.send("setParameters", parameters=[{"name": "/robot.gain", "value": 2}], id="set")
+        await seen.until(lambda: "this server is for looking only" in seen.statuses)
+        await seen.subscribe(1, "/speed")
+        await seen.until(lambda: robot.speed.get_subscription_count() == 1)
+        assert (robot.gain, robot.heard, seen.services) == (1.0, [], {})
+
+
+class Simulator(Node):
+    """Has a clock."""
+
+    clock_ = Publisher(Clock, "/clock", qos=CLOCK)
+
+
+async def test_simulated_time(graph: Graph) -> None:
+    """Is the viewers' time, if there is one."""
+    node = Simulator()
+    async with served(graph, node) as lab, viewer(lab.port) as seen:
+        assert "time" in seen.info["capabilities"]
+        await graph.settle()
+        node.clock_.publish(Clock(clock={"sec": 5, "nanosec": 6}))
+        await seen.until(lambda: seen.times == [5_000_000_006])
+
+
+async def test_a_port_that_is_taken(graph: Graph) -> None:
+    """Is an error that says what to do."""
+    async with served(graph) as lab:
+        node = Node("second")
+        await graph.start(node)
+        with pytest.raises(TransportError, match="take another --port"):
+            await Bridge(node, "x").open("127.0.0.1", lab.port)
+
+
+@pytest.mark.parametrize(
+    ("origin", "is_let_in"),
+    [
+        ("https://app.foxglove.dev", True),
+        ("http://localhost:8080", True),
+        ("http://127.0.0.1:3000", True),
+        ("file://", True),
+        ("https://viewer.example", True),
+        ("https://evil.example", False),
+        ("https://app.foxglove.dev.evil.example", False),
+        ("http://localhost.evil.example", False),
+        ("http://app.foxglove.dev", False),
+        ("null", False),
+    ],
+)
+async def test_pages(graph: Graph, origin: str, is_let_in: bool) -> None:
+    """Of strangers cannot connect: a browser would let them."""
+    async with served(graph, pages=("https://viewer.example",)) as lab:
+        if is_let_in:
+            async with viewer(lab.port, origin):
+                return
+        with pytest.raises(InvalidStatus, match="403"):
+            async with viewer(lab.port, origin):
+                pass
+
+
+WRONG: list[str | bytes] = [
+    "{",
+    "[]",
+    "[" * 100_000,
+    '{"op": "no"}',
+    '{"op": 5}',
+    '{"op": "subscribe"}',
+    '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 99}]}',
+    '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 1}]}',
+    '{"op": "subscribe", "subscriptions": [{"id": 1e99, "channelId": "1"}]}',
+    '{"op": "unsubscribe", "subscriptionIds": [4294967296]}',
+    '{"op": "getParameters", "parameterNames": [5]}',
+    '{"op": "setParameters", "parameters": [{"name": "/robot.gain", "value": {"a": [1]}}]}',
+    '{"op": "setParameters", "parameters": [{"name": "/robot.gain"}]}',
+    '{"op": "setParameters", "parameters": [{"name": "", "value": 1}]}',
+    '{"op": "advertise", "channels": [{"id": 1, "topic": "/a", "encoding": "cdr"}]}',
+    b"",
+    b"\xff\x00",
+    b"\x01",
+    b"\x01\x00\x00\x00\x00xyz",
+    b"\x02\x00\x00\x00\x00",
+    b"\x02" + bytes(8) + b"\xff\xff\xff\xff" + b"cdr",
+    b"\x02" + bytes(8) + b"\x02\x00\x00\x00" + b"\xff\xff",
+]
+
+
+async def test_what_is_not_of_the_protocol(graph: Graph) -> None:
+    """Is answered with a warning each, and costs nobody anything."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as bad, viewer(lab.port) as good:
+        for count, wrong in enumerate(WRONG, 1):
+            await bad.say(wrong)
+            await bad.until(lambda count=count: len(bad.statuses) >= count)  # type: ignore[misc]
+        await good.subscribe(1, "/speed")
+        await good.until(lambda: robot.speed.get_subscription_count() == 1)
+        robot.speed.publish(Twist())
+        await good.until(lambda: good.messages)
+        assert robot.gain == 1.0
+
+
+async def test_too_much_at_once(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is refused."""
+    monkeypatch.setattr(client, "WORK_BOUND", 2)
+    monkeypatch.setattr(bridge_module, "CLIENTS_BOUND", 1)
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        with pytest.raises(InvalidStatus, match="503"):
+            async with viewer(lab.port):
+                pass
+        for number in range(4):
+            await seen.send("getParameters", parameterNames=[], id=str(number))
+        await seen.until(lambda: "2 requests are under way already" in seen.statuses)

@@ -1,0 +1,33 @@
+"""Parameters in a viewer."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.testing import Graph
+from tests.viewer.cast import Robot, served, viewer
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_parameters(graph: Graph) -> None:
+    """Are read, set and followed; what is refused says why."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        await seen.send("getParameters", parameterNames=[], id="all")
+        await seen.until(lambda: "/robot.gain" in seen.parameters)
+        assert seen.parameters["/robot.title"] == "robot"
+        await seen.send("setParameters", parameters=[{"name": "/robot.gain", "value": 2}], id="set")
+        await seen.until(lambda: seen.parameters["/robot.gain"] == 2)
+        assert robot.gain == 2.0
+        await seen.send("setParameters", parameters=[{"name": "/robot.gain", "value": 9}], id="set")
+        await seen.until(lambda: seen.statuses)
+        assert "/robot.gain" in seen.statuses[0]
+        assert robot.gain == 2.0
+        await seen.send("setParameters", parameters=[{"name": "/nobody.gain", "value": 9}], id="set")
+        await seen.until(lambda: len(seen.statuses) == 2)
+        assert "no node /nobody has parameters" in seen.statuses[1]
+        await seen.send("subscribeParameterUpdates", parameterNames=["/robot.title"])
+        await graph.settle()
+        robot.title = "hero"
+        await seen.until(lambda: seen.parameters["/robot.title"] == "hero")

@@ -1,0 +1,26 @@
+"""Services in a viewer."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.msgs.std_srvs.srv import SetBool
+from graphflow.testing import Graph
+from tests.viewer.cast import Robot, served, viewer
+
+pytestmark = pytest.mark.usefixtures("graphflow_runner")
+
+
+async def test_calls(graph: Graph) -> None:
+    """Get their answer, or why there is none."""
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        await seen.call(1, "/power", SetBool.Request(data=True).to_bytes())
+        await seen.until(lambda: 1 in seen.answers)
+        assert SetBool.Response.from_bytes(seen.answers[1]) == SetBool.Response(success=True, message="on")
+        await seen.call(2, "/power", SetBool.Request(data=False).to_bytes())
+        await seen.until(lambda: 2 in seen.failures)
+        assert "the robot cannot be switched off" in seen.failures[2]
+        await seen.call(3, "/power", b"\x00")
+        await seen.call(4, "/power", b"{}", b"json")
+        await seen.until(lambda: {3, 4} <= {*seen.failures})
+        assert seen.failures[4] == "requests come as cdr here, not as 'json'"
