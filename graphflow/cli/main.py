@@ -54,7 +54,7 @@ _VERBS = {
     "lifecycle": ("lifecycle", "Bring lifecycle nodes from state to state."),
     "waits": ("waits", "Show which handlers hold slots, what they wait for, and where."),
     "groups": ("waits", "Show a node's groups, or move a handler into another."),
-    "doctor": ("waits", "Check the running graph for problems."),
+    "doctor": ("doctor", "Check the running graph for problems."),
     "console": ("console", "Open the console on a running graph, here or in a browser."),
     "completion": ("completion", "Let TAB complete verbs, options, live names, types and messages."),
     "interface": ("interface", "Show message, service and action types."),

@@ -1,28 +1,21 @@
-"""`graphflow waits`, `groups` and `doctor`: who holds what, who waits for whom, and what is wrong with the graph."""
+"""`graphflow waits` and `groups`: who holds what, and who waits for whom."""
 
 from __future__ import annotations
 
 import json
-import time
 from typing import Any
 
 import click
 
-from graphflow.cli import exits, output
+from graphflow.cli import output
 from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallTimeout, RemoteError, UsageFault
 from graphflow.introspect import concurrency as found
-from graphflow.introspect.health import examine
 from graphflow.introspect.view import View
-from graphflow.machines.matching import complaints
-from graphflow.names import is_hidden
-from graphflow.wire.process import NUMBERS, answer_key
 
 ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
-BETWEEN_LOOKS = 0.5
-"""Seconds between two looks at what nodes have counted."""
 
 
 def _read(view: View) -> found.ConcurrencyReport:
@@ -149,53 +142,3 @@ def move(node: str, handlers: tuple[str, ...], group: str, timeout: float) -> No
     _show(full, told["groups"], as_json=False)
     output.data(f"\nTo keep it so, {told['where']}")
     output.lines(told["yaml"])
-
-
-@click.command()
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def doctor(as_json: bool) -> int:
-    """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
-    that are blocked or were late, endpoints that do not match, nodes of one name, nodes that hear themselves, lost
-    messages, floods in logs, topics that nobody publishes.
-
-    Exit code 1 when there is one; late loops alone do not count, nor does what may be meant so.
-    """
-    with View(domain_id()) as view:
-        counted, began = view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), time.monotonic()
-        read = _read(view)
-        time.sleep(max(0.0, began + BETWEEN_LOOKS - time.monotonic()))
-        again = view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT)
-        health = examine(view, counted, again, time.monotonic() - began)
-        misfits = list(complaints(view.cache))
-        unresponsive = found.unresponsive(read, view)
-        ours = view.processes()
-        nodes = view.cache.nodes(hidden=False)
-        others = [name for name in nodes if not any(e.zid in ours for e in view.cache.owners(name))]
-    late = [
-        f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
-        for who, n, most in read.late
-    ]
-    blocked = [
-        f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log" for who, seconds in read.blocked
-    ]
-    faults = {
-        "deadlocks": read.reports,
-        "stalls": read.stalls,
-        "unresponsive": unresponsive,
-        "blocked": blocked,
-        "misfits": misfits,
-        "health": health.faults,
-    }
-    if as_json:
-        output.as_json({**faults, "late": late, "hints": health.hints, "silent": others})
-    else:
-        output.lines(f"{text}\n" for text in read.reports + read.stalls)
-        output.lines([*unresponsive, *blocked, *misfits, *health.faults, *late, *health.hints])
-        if others:
-            output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(others)}")
-        if read.unreadable:
-            output.data(f"processes running another version of graphflow, not understood: {read.unreadable}")
-        if not any(faults.values()) and not late:
-            count = sum(not is_hidden(name) for name in read.nodes)
-            output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
-    return exits.FAILED if any(faults.values()) else exits.OK

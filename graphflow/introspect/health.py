@@ -1,5 +1,5 @@
 """What is wrong with a graph besides its waits: nodes that share a name, hear themselves, lose messages, log in floods,
-or listen where nobody speaks.
+or listen where nobody speaks; remaps that match nothing; clocks that differ.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from graphflow.introspect.numbers import REPLY_BOUND
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.names import is_hidden, nearest
+from graphflow.system import host_name
 from graphflow.wire.liveliness import Kind
+from graphflow.wire.process import ProcessToken
 
 FLOOD = 50.0
 """Lines a second from which on a log is a flood."""
@@ -21,6 +23,11 @@ ECHO = 1.0
 """Messages a second that a node hears of itself, from which on that is told."""
 LOST_PART, LOST_LEAST = 0.5, 20
 """Part of the messages, and number of them, from which on the loss is told."""
+TOLD_BOUND = 10
+"""Nodes, or texts of one node, that are told."""
+SKEW = 0.1
+"""Seconds by which clocks differ, beyond the time of the answer, from which on that is told."""
+CLOCK = "/clock"
 _EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
 
 Counts = Mapping[tuple[str, str], Mapping[str, float]]
@@ -35,13 +42,19 @@ class Health(NamedTuple):
     """What may be meant to be so."""
 
 
-def examine(view: View, before: list[bytes], now: list[bytes], seconds: float) -> Health:
-    """What is wrong.
+class Look(NamedTuple):
+    """What the processes of a domain have counted."""
 
-    Args:
-        before, now: Two looks at what the processes have counted.
-        seconds: The time between them.
-    """
+    replies: list[bytes]
+    began_ns: int
+    """When they were asked, nanoseconds since 1970 by the clock of this machine."""
+    ended_ns: int
+    """When all had answered."""
+
+
+def examine(view: View, first: Look, second: Look) -> Health:
+    """What is wrong, by two looks at what the processes have counted."""
+    before, now, seconds = first.replies, second.replies, (second.began_ns - first.began_ns) / 1e9
     then, counts = read(before), read(now)
     faults = [
         *_twins(view),
@@ -49,9 +62,12 @@ def examine(view: View, before: list[bytes], now: list[bytes], seconds: float) -
         *_losses(counts),
         *_floods(then, counts, seconds),
         *_refused(view.cache),
+        *_unused_remaps(now),
+        *_timeless(view.cache),
+        *_skews(view.processes(), second),
     ]
     near, far = _unheard(view.cache)
-    return Health([*faults, *near], far)
+    return Health([*faults, *near], [*far, *_strangers(view)])
 
 
 def read(replies: Iterable[bytes]) -> Counts:
@@ -115,6 +131,63 @@ def _refused(cache: GraphCache) -> Iterator[str]:
             f"{cache.refused} announcements of nodes or endpoints are malformed and were left out; some process here "
             "speaks another protocol, or means harm"
         )
+
+
+def _unused_remaps(replies: Iterable[bytes]) -> Iterator[str]:
+    for data in map(_told, replies):
+        remaps = data.get("remaps")
+        for node, texts in list(remaps.items())[:TOLD_BOUND] if isinstance(remaps, dict) else ():
+            for text in texts[:TOLD_BOUND] if isinstance(texts, list) else ():
+                yield f"{node}: {text}"
+
+
+def _timeless(cache: GraphCache) -> Iterator[str]:
+    """Nodes whose time stands still."""
+    waiting = sorted({e.node_name for e in cache.endpoints(Kind.SUBSCRIPTION, CLOCK) if not is_hidden(e.node_name)})
+    if waiting and not cache.endpoints(Kind.PUBLISHER, CLOCK):
+        verb = "goes" if len(waiting) == 1 else "go"
+        yield (
+            f"{' and '.join(waiting)} {verb} by simulated time (use_sim_time), and nobody publishes {CLOCK}: timers "
+            "stand still. Start the simulator, or play a bag with --clock, or set use_sim_time to false"
+        )
+
+
+def _skews(processes: Mapping[str, ProcessToken], look: Look) -> Iterator[str]:
+    """Machines whose clocks tell another time than this one's, by more than the time in which they answered."""
+    found: dict[str, float] = {}
+    for data in map(_told, look.replies):
+        token, time_ns = processes.get(str(data.get("process"))), data.get("time_ns")
+        if token is None or token.host == host_name() or not isinstance(time_ns, int):
+            continue
+        ahead = max(0, time_ns - look.ended_ns) + min(0, time_ns - look.began_ns)
+        if abs(ahead) >= SKEW * 1e9:
+            found[token.host] = ahead / 1e9
+    for host, seconds in sorted(found.items()):
+        where = "ahead of" if seconds > 0 else "behind"
+        yield (
+            f"the clock of {host} is {abs(seconds):.1f} s {where} this machine's: stamps and transforms do not fit "
+            "together; have both set by NTP (timedatectl set-ntp true)"
+        )
+
+
+def _strangers(view: View) -> Iterator[str]:
+    """Nodes of other machines and other users."""
+    here, tokens = host_name(), view.processes()
+    for host in sorted({token.host for token in tokens.values()} - {here}):
+        zids = {zid for zid, token in tokens.items() if token.host == host}
+        nodes = sorted({e.node_name for e in view.cache if e.zid in zids and not is_hidden(e.node_name)})
+        if nodes:
+            more = f" and {len(nodes) - TOLD_BOUND} more" if len(nodes) > TOLD_BOUND else ""
+            yield f"{', '.join(nodes[:TOLD_BOUND])}{more} on another machine, {host}"
+
+
+def _told(reply: bytes) -> dict[str, Any]:
+    """What a process has told; nothing, where it cannot be read."""
+    try:
+        data = json.loads(reply) if len(reply) <= REPLY_BOUND else {}
+    except (ValueError, RecursionError):
+        return {}
+    return data if isinstance(data, dict) else {}
 
 
 def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:

@@ -329,8 +329,13 @@ class NodeCore:
 
     def warn_unused_remaps(self) -> None:
         """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later."""
-        for problem in unused_remaps(self.names, self._own_services, self.instance.dynamic_names, self.parameters):
+        for problem in self.unused_remaps():
             self.log.warning("%s", problem)
+
+    def unused_remaps(self) -> list[str]:
+        """What is wrong with the remap rules that have matched nothing so far, a sentence for each."""
+        dynamic = self.instance.dynamic_names
+        return list(unused_remaps(self.names, self._own_services, dynamic, self.parameters))
 
     def shutdown(self) -> None:
         """End the node from within: the code that runs it will stop it."""

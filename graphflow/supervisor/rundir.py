@@ -344,6 +344,12 @@ def running() -> list[GraphRun]:
     return sorted((r for r in found if r is not None and r.is_alive), key=lambda r: (r.graph, r.domain))
 
 
+def left_over() -> list[tuple[Path, GraphRun]]:
+    """What graphs have left that were killed with all that guards them: their folders, and what ran."""
+    found = [(path.parent, read_run(path)) for path in sorted(runtime_root().glob("*/*/run.json"))]
+    return [(folder, run) for folder, run in found if run is not None and not run.is_alive and not run._is_guarded]
+
+
 def running_here(*, everything: bool = False) -> list[GraphRun]:
     """The graphs that run in the domain and at the endpoint that this process would use, at least one.
 

@@ -57,15 +57,11 @@ def test_exit_codes_and_what_is_shown(lab: Lab) -> None:
         ("waits", 3, "error: nothing is running"),
         ("doctor --json", 3, "error: nothing is running"),
         ("groups move /a answer answers", 3, "error: nothing is running"),
-        ("doctor now", 2, "unexpected extra argument"),
     ],
 )
 def test_nothing_runs(machine: Machine, words: str, code: int, told: str) -> None:
     """Exit code 3, or 2 when the words are wrong anyway."""
     assert told in machine.look(*words.split(), code=code)
-
-
-STANDING_FAULT = "/office/minutes: the publisher of /office/clerk offers less than the subscription of /office/auditor"
 
 
 def test_a_graph_in_which_nobody_waits(standing: Machine) -> None:
@@ -85,24 +81,6 @@ def test_the_groups_of_a_node(standing: Machine) -> None:
     found = json.loads(standing.look("groups", "/office/clerk", "--json"))
     assert found["node"] == "/office/clerk"
     assert [h["handler"] for g in found["groups"] if g["name"] == "desk" for h in g["handlers"]] == ["add"]
-
-
-def test_the_doctor_tells_of_endpoints_that_do_not_fit(standing: Machine) -> None:
-    """They are a fault, so that the exit code is 1."""
-    assert standing.look("doctor", code=1).startswith(STANDING_FAULT)
-    found = json.loads(standing.look("doctor", "--json", code=1))
-    assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
-    found.pop("late")
-    hint = "/office/clerk calls /bank/add, which nobody offers"
-    assert found == {
-        "deadlocks": [],
-        "stalls": [],
-        "unresponsive": [],
-        "blocked": [],
-        "silent": [],
-        "health": [],
-        "hints": [hint],
-    }
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,9 @@ class Actor:
     def statistics(self) -> dict[str, dict[str, Any]]:
         return {}
 
+    def unused_remaps(self) -> list[str]:
+        return []
+
 
 class Stage:
     """A process; made inside of a running loop."""

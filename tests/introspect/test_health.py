@@ -9,9 +9,11 @@ from typing import Any
 import pytest
 
 from graphflow.introspect import health
-from graphflow.introspect.health import examine, read
+from graphflow.introspect.health import Look, examine, read
 from graphflow.machines.cache import GraphCache
+from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
+from graphflow.wire.process import ProcessToken
 
 
 class Seen:
@@ -20,8 +22,13 @@ class Seen:
     def __init__(self, *tokens: str) -> None:
         self.cache = GraphCache(tokens)
 
+        self.tokens: dict[str, ProcessToken] = {}
+
     def owner(self, name: str) -> str:
         return "process 7"
+
+    def processes(self) -> dict[str, ProcessToken]:
+        return self.tokens
 
 
 _numbers = itertools.count(1)
@@ -37,7 +44,7 @@ def look(**nodes: dict[str, dict[str, float]]) -> list[bytes]:
 
 
 def found(seen: Any, before: list[bytes], now: list[bytes]) -> health.Health:
-    return examine(seen, before, now, 2.0)
+    return examine(seen, Look(before, 0, 0), Look(now, 2 * 10**9, 2 * 10**9))
 
 
 PUB, SUB, CLIENT, SERVICE = Kind.PUBLISHER, Kind.SUBSCRIPTION, Kind.CLIENT, Kind.SERVICE
@@ -132,3 +139,53 @@ def test_an_answer_that_is_too_long_is_not_read(monkeypatch: pytest.MonkeyPatch)
     """It could cost any time."""
     monkeypatch.setattr(health, "REPLY_BOUND", 10)
     assert read(look(a={"log": {"lines": 5}})) == {}
+
+
+def test_remaps_that_match_nothing() -> None:
+    """Are told again, long after the start; what a process sends is bounded and may be anything."""
+    reply = json.dumps({"nodes": {}, "remaps": {"/a": ["the remap x:=y matches no name of this node"]}}).encode()
+    assert found(Seen(), [], [reply]).faults == ["/a: the remap x:=y matches no name of this node"]
+    wrong: Any
+    for wrong in ([], {"/a": "x"}, {"/a": {}}, 5, None):
+        assert found(Seen(), [], [json.dumps({"nodes": {}, "remaps": wrong}).encode()]).faults == []
+    many = {f"/{n}": [str(i) for i in range(1000)] for n in range(1000)}
+    assert len(found(Seen(), [], [json.dumps({"remaps": many}).encode()]).faults) <= 100
+
+
+def test_simulated_time_that_nobody_tells() -> None:
+    """Timers stand still, which looks like a node that does nothing."""
+    listens = entity_token("/a", kind=SUB, name="/clock")
+    [told] = found(Seen(listens), [], []).faults
+    assert told.startswith("/a goes by simulated time (use_sim_time), and nobody publishes /clock: timers stand still.")
+    assert found(Seen(listens, entity_token("/sim", kind=PUB, name="/clock")), [], []).faults == []
+
+
+@pytest.mark.parametrize(
+    ("told_ns", "where"),
+    [
+        (2.0, ""),
+        (2.05, ""),
+        (1.95, ""),
+        (5.5, "3.5 s ahead of"),
+        (-8.0, "10.0 s behind"),
+        ("now", ""),
+    ],
+)
+def test_clocks_that_differ(told_ns: float | str, where: str) -> None:
+    """Of other machines, by more than the time of an answer explains."""
+    seen = Seen()
+    seen.tokens = {"a1": ProcessToken("a1", "0", 5, "robot"), "b2": ProcessToken("b2", "0", 5, host_name())}
+    at = round(told_ns * 1e9) if isinstance(told_ns, float) else told_ns
+    replies = [json.dumps({"process": zid, "time_ns": at, "nodes": {}}).encode() for zid in ("a1", "b2", "c3")]
+    faults = found(seen, [], replies).faults
+    assert len(faults) == bool(where)
+    assert not where or f"the clock of robot is {where} this machine's" in faults[0]
+
+
+def test_strangers() -> None:
+    """Nodes of other machines are named: they may be a neighbour's."""
+    seen = Seen(entity_token("/here", zid="b2"), *(entity_token(f"/n{i:02}", zid="a1") for i in range(12)))
+    seen.tokens = {"a1": ProcessToken("a1", "0", 5, "robot"), "b2": ProcessToken("b2", "0", 5, host_name())}
+    [hint] = found(seen, [], []).hints
+    assert hint.startswith("/n00, /n01,")
+    assert hint.endswith("/n09 and 2 more on another machine, robot")

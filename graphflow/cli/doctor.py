@@ -1,0 +1,157 @@
+"""`graphflow doctor`: what is wrong, and what to do about it; `doctor hello`: who hears whom."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from importlib import metadata
+
+import click
+
+from graphflow.cli import exits, output
+from graphflow.cli.verbs import Verbs
+from graphflow.domain import domain_id
+from graphflow.errors import SupervisorError
+from graphflow.introspect import concurrency, installation
+from graphflow.introspect.health import Look, examine
+from graphflow.introspect.view import View
+from graphflow.machines.matching import complaints
+from graphflow.names import is_hidden
+from graphflow.wire.process import NUMBERS, WAITS, answer_key
+
+ANSWER_LIMIT = 1.0
+"""Seconds that the processes of a graph have to answer."""
+BETWEEN_LOOKS = 0.5
+"""Seconds between two looks at what nodes have counted."""
+
+Findings = dict[str, list[str]]
+"""What was found, by the name of the check."""
+
+
+@click.group(cls=Verbs, invoke_without_command=True, subcommand_metavar="[hello]")
+@click.option("-r", "--report", is_flag=True, help="Print all that is known of this system and the graph.")
+@click.option("-rf", "--report-failed", is_flag=True, help="The same, only where a check has failed.")
+@click.option("-iw", "--include-warnings", is_flag=True, help="Hints count as faults.")
+@click.option("-ep", "--exclude-packages", is_flag=True, hidden=True, help="For ROS 2's commands: none are checked.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: bool, **_: bool) -> int:
+    """Check the running graph for problems: deadlocks, groups held for long, processes that do not answer, event loops
+    that are blocked or were late, endpoints that do not match, nodes of one name, nodes that hear themselves, lost
+    messages, floods in logs, topics that nobody publishes, remaps that match nothing, clocks that differ. And what is
+    here without it: what is installed, graphs that were killed, a ROS 2 in this shell that would not see the graph.
+
+    Exit code 1 when there is one; late loops alone do not count, nor does what may be meant so.
+    """
+    if click.get_current_context().invoked_subcommand is not None:
+        return exits.OK
+    here = {"installation": list(installation.faults(os.environ, _version)), "runs": list(_left_over())}
+    try:
+        faults, notes, count = _graph()
+    except SupervisorError as error:
+        if error.exit_code != exits.NOT_RUNNING:
+            raise
+        if report or report_failed:
+            from graphflow.cli.report import installed
+
+            output.lines(installed())
+        if as_json:
+            output.as_json(here)
+        elif not (report or report_failed):
+            output.lines(text for texts in here.values() for text in texts)
+        if any(here.values()) or not (report or report_failed):
+            raise
+        return exits.OK
+    faults |= here
+    failed = [name for name, texts in faults.items() if texts]
+    if report or report_failed:
+        from graphflow.cli.report import sections
+
+        output.lines(sections(None if report else failed))
+    elif as_json:
+        output.as_json({**faults, **notes})
+    else:
+        _print(faults, notes, count)
+    is_well = not failed and not (include_warnings and any(notes.values()))
+    return exits.OK if is_well else exits.FAILED
+
+
+def _graph() -> tuple[Findings, Findings, int]:
+    """What is wrong with the graph, what is only to be noted, and the number of its nodes."""
+    with View(domain_id()) as view:
+        first = _look(view)
+        read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
+        time.sleep(max(0.0, first.began_ns / 1e9 + BETWEEN_LOOKS - time.time()))
+        health = examine(view, first, _look(view))
+        ours = view.processes()
+        others = [
+            name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
+        ]
+        faults = {
+            "deadlocks": read.reports,
+            "stalls": read.stalls,
+            "unresponsive": concurrency.unresponsive(read, view),
+            "blocked": [
+                f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log"
+                for who, seconds in read.blocked
+            ],
+            "misfits": list(complaints(view.cache)),
+            "health": health.faults,
+        }
+    late = [
+        f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
+        for who, n, most in read.late
+    ]
+    unread = (
+        [f"processes running another version of graphflow, not understood: {read.unreadable}"]
+        if read.unreadable
+        else []
+    )
+    notes = {"late": late, "hints": health.hints, "silent": others, "unreadable": unread}
+    return faults, notes, sum(not is_hidden(name) for name in read.nodes)
+
+
+def _look(view: View) -> Look:
+    began_ns = time.time_ns()
+    return Look(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), began_ns, time.time_ns())
+
+
+def _print(faults: Findings, notes: Findings, count: int) -> None:
+    output.lines(f"{text}\n" for name in ("deadlocks", "stalls") for text in faults[name])
+    output.lines(t for name, texts in faults.items() if name not in ("deadlocks", "stalls") for t in texts)
+    output.lines([*notes["late"], *notes["hints"]])
+    if notes["silent"]:
+        output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(notes['silent'])}")
+    output.lines(notes["unreadable"])
+    if not any(faults.values()) and not notes["late"]:
+        output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
+
+
+def _version(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _left_over() -> Iterator[str]:
+    from graphflow.supervisor.rundir import left_over
+
+    for folder, run in left_over():
+        yield (
+            f"graph {run.graph} (domain {run.domain}) was killed and has left {folder}: start it again, "
+            "which clears up, or delete that folder"
+        )
+
+
+@doctor.command()
+@click.option("-t", "--topic", default="/canyouhearme", show_default=True, help="Topic to speak and listen on.")
+@click.option("-ep", "--emit-period", type=click.FloatRange(0.01), default=0.1, help="Seconds between two words. [0.1]")
+@click.option("-pp", "--print-period", type=click.FloatRange(0.1), default=1.0, help="Seconds between tables. [1.0]")
+@click.option("-1", "--once", is_flag=True, help="End after the first table.")
+@click.option("--ttl", type=int, hidden=True, help="For ROS 2's commands: nothing is sent by multicast.")
+def hello(topic: str, emit_period: float, print_period: float, once: bool, ttl: int | None) -> int:  # noqa: ARG001
+    """Find out which machines hear each other: run it on each of them. Ctrl-C ends it."""
+    from graphflow.cli.greeting import greet
+
+    return greet(topic, emit_period, print_period, once=once)

@@ -1,0 +1,64 @@
+"""`graphflow doctor`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+STANDING_FAULT = "/office/minutes: the publisher of /office/clerk offers less than the subscription of /office/auditor"
+
+
+@pytest.fixture(autouse=True)
+def no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A shell in which no ROS 2 is sourced."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+
+
+def test_endpoints_that_do_not_fit(standing: Machine) -> None:
+    """They are a fault, so that the exit code is 1."""
+    assert standing.look("doctor", code=1).startswith(STANDING_FAULT)
+    found = json.loads(standing.look("wtf", "--json", code=1))
+    assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
+    found.pop("late")
+    assert found.pop("hints") == ["/office/clerk calls /bank/add, which nobody offers"]
+    others = (
+        "deadlocks",
+        "stalls",
+        "unresponsive",
+        "blocked",
+        "silent",
+        "health",
+        "installation",
+        "runs",
+        "unreadable",
+    )
+    assert found == {name: [] for name in others}
+
+
+def test_nothing_runs(machine: Machine) -> None:
+    """What is installed is looked at all the same."""
+    assert "no graph is running" in machine.look("doctor", code=3) or "nothing is running" in machine.look(
+        "doctor", code=3
+    )
+    assert "PACKAGE VERSIONS" in machine.look("doctor", "-r")
+    assert "no such command 'now'" in machine.look("doctor", "now", code=2)
+
+
+def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
+    """Is told, with the folder that it has left."""
+    (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}}\n")
+    machine.run("up", "-d", "g.yaml", cwd=tmp_path)
+    [run_file] = Path(machine.env["XDG_RUNTIME_DIR"]).glob("graphflow/*/*/run.json")
+    run = json.loads(run_file.read_text())
+    machine.run("down", cwd=tmp_path)
+    run_file.parent.mkdir(parents=True, exist_ok=True)
+    run_file.write_text(json.dumps({**run, "pid": 2**22 + 1, "guardian": 0}))
+    text = machine.look("doctor", code=3)
+    assert f"was killed and has left {run_file.parent}" in text
+    run_file.unlink()

@@ -1,0 +1,26 @@
+"""`graphflow doctor hello`."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+
+@pytest.mark.parametrize("words", [("-ep", "0.05", "-pp", "0.5"), ()])
+def test_hello(machine: Machine, words: tuple[str, ...]) -> None:
+    """Two that run it hear each other, and not themselves."""
+    first = machine.start("doctor", "hello", *words)
+    first.wait_for("Subscribed from: nobody")
+    second = machine.start("doctor", "hello", *words)
+    name = os.uname().nodename
+    first.wait_for(f"  {name}")
+    second.wait_for("messages in")
+    assert "MULTIMACHINE COMMUNICATION SUMMARY\nTopic: /canyouhearme, Published Msg Count: " in first.text
+    assert first.end() == 0
+    assert second.end() == 0
+    assert "Subscribed from: nobody" in machine.run("doctor", "hello", "--once", "-pp", "0.3")

@@ -1,0 +1,19 @@
+"""`graphflow doctor --report`."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import Machine
+
+pytestmark = pytest.mark.real
+
+
+def test_a_report(standing: Machine) -> None:
+    """In ROS 2's sections; only those of checks that failed, if so wanted."""
+    text = standing.look("doctor", "--report", code=1)
+    for title in ("PLATFORM INFORMATION", "NETWORK CONFIGURATION", "RMW MIDDLEWARE", "TOPIC LIST", "PACKAGE VERSIONS"):
+        assert f"\n   {title}\n" in text
+    assert "topic            : /chatter" in text
+    failed = standing.look("doctor", "-rf", code=1)
+    assert [line.strip() for line in failed.splitlines() if line.startswith("   ")] == ["QOS COMPATIBILITY LIST"]

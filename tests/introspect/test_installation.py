@@ -1,0 +1,63 @@
+"""What is wrong with what is installed."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.introspect.installation import faults
+
+ROS = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
+
+
+def found(env: dict[str, str], **versions: str) -> list[str]:
+    known = {"eclipse-zenoh": "1.10.2"} | {name.replace("_", "-"): version for name, version in versions.items()}
+    return list(faults(env, known.get))
+
+
+@pytest.fixture(autouse=True)
+def defaults(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("GRAPHFLOW_RENDEZVOUS", raising=False)
+    monkeypatch.delenv("GRAPHFLOW_WIRE", raising=False)
+
+
+def test_nothing() -> None:
+    """Is wrong, with and without a ROS 2 that fits."""
+    assert found({}) == []
+    assert found(ROS) == []
+    assert found(ROS | {"ROS_DOMAIN_ID": "3"}) == []
+    assert found(ROS | {"ROS_DOMAIN_ID": "3", "GRAPHFLOW_DOMAIN": "3"}) == []
+    assert found({"GRAPHFLOW_DOMAIN": "3"}) == []
+
+
+@pytest.mark.parametrize(
+    ("env", "told"),
+    [
+        ({"RMW_IMPLEMENTATION": ""}, "they speak DDS; export RMW_IMPLEMENTATION=rmw_zenoh_cpp"),
+        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "they speak rmw_cyclonedds_cpp; export"),
+        ({"ROS_DISTRO": "kilted"}, "graphflow speaks as jazzy: export GRAPHFLOW_WIRE=kilted"),
+        ({"ROS_DISTRO": "humble"}, "humble is sourced here, which has no type hashes"),
+        ({"GRAPHFLOW_DOMAIN": "5"}, "GRAPHFLOW_DOMAIN is 5, and ROS 2's nodes are in domain 0"),
+        ({"GRAPHFLOW_DOMAIN": "5", "ROS_DOMAIN_ID": "4"}, "in domain 4: unset GRAPHFLOW_DOMAIN"),
+    ],
+)
+def test_a_ros_that_would_not_see_the_graph(env: dict[str, str], told: str) -> None:
+    """Each with the command that mends it."""
+    [text] = found(ROS | env)
+    assert told in text
+
+
+def test_a_rendezvous_that_ros_does_not_know(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keeps the two apart."""
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/127.0.0.1:9999")
+    [text] = found(ROS)
+    assert "whose nodes look at tcp/127.0.0.1:7447, and graphflow at tcp/127.0.0.1:9999" in text
+    assert found({}) == []
+
+
+def test_packages() -> None:
+    """Another package of our name, and a Zenoh that is too old."""
+    [text] = found({}, graphflow="0.3")
+    assert "pip uninstall graphflow" in text
+    [text] = found({}, eclipse_zenoh="1.9.9")
+    assert "eclipse-zenoh 1.9.9 is too old: pip install -U 'eclipse-zenoh>=1.10'" in text
+    assert found({}, eclipse_zenoh="2.0.0rc1") == []
