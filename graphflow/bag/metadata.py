@@ -21,13 +21,13 @@ FILE = "metadata.yaml"
 VERSION = 9
 BOUND = 10_000_000
 """Bytes that the file may have."""
-_ENUMS: dict[str, type[IntEnum]] = {
+ENUMS: dict[str, type[IntEnum]] = {
     "history": History,
     "reliability": Reliability,
     "durability": Durability,
     "liveliness": Liveliness,
 }
-_DURATIONS = {"deadline": "deadline_ns", "lifespan": "lifespan_ns", "liveliness_lease_duration": "lease_ns"}
+DURATIONS = {"deadline": "deadline_ns", "lifespan": "lifespan_ns", "liveliness_lease_duration": "lease_ns"}
 _MAX_PROFILES = 100
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
@@ -41,8 +41,12 @@ class FileContents(NamedTuple):
     contents: Contents
 
 
-def written(files: list[FileContents], whole: Contents, storage: str = "mcap") -> str:
-    """The text of the file."""
+def written(files: list[FileContents], whole: Contents, custom: Mapping[str, str], storage: str = "mcap") -> str:
+    """The text of the file.
+
+    Args:
+        custom: What the user has to say about the bag.
+    """
 
     def times(contents: Contents) -> dict[str, Any]:
         return {
@@ -73,7 +77,7 @@ def written(files: list[FileContents], whole: Contents, storage: str = "mcap") -
         "compression_mode": "",
         "relative_file_paths": [file.name for file in files],
         "files": [{"path": file.name, **times(file.contents)} for file in files],
-        "custom_data": {},
+        "custom_data": dict(custom),
         "ros_distro": wire_profile(),
     }
     return _dumped({"rosbag2_bagfile_information": information})
@@ -91,7 +95,7 @@ def read(folder: Path) -> dict[str, Any]:
             text = file.read(BOUND + 1)
         if len(text) > BOUND:
             raise BagError(f"{path}: larger than {BOUND:,} bytes")
-        data = _loaded(text)
+        data = loaded(text)
         return dict(data["rosbag2_bagfile_information"])
     except FileNotFoundError:
         return {}
@@ -113,7 +117,7 @@ def plain(qos: Qos) -> dict[str, Any]:
         "depth": qos.depth,
         "reliability": qos.reliability.name.lower(),
         "durability": qos.durability.name.lower(),
-        **{word: span(getattr(qos, name)) for word, name in list(_DURATIONS.items())[:2]},
+        **{word: span(getattr(qos, name)) for word, name in list(DURATIONS.items())[:2]},
         "liveliness": qos.liveliness.name.lower(),
         "liveliness_lease_duration": span(qos.lease_ns),
         "avoid_ros_namespace_conventions": False,
@@ -124,7 +128,7 @@ def profiles(said: object) -> tuple[Qos, ...]:
     """Profiles as a bag has them: as a list, or as the text of one; what cannot be read is left out."""
     if isinstance(said, str):
         try:
-            said = _loaded(said[:BOUND])
+            said = loaded(said[:BOUND])
         except (yaml.YAMLError, RecursionError, ValueError):
             return ()
     rows = said if isinstance(said, list) else []
@@ -133,7 +137,7 @@ def profiles(said: object) -> tuple[Qos, ...]:
 
 def _profile(row: Mapping[Any, Any]) -> Qos:
     given: dict[str, Any] = {}
-    for key, enum in _ENUMS.items():
+    for key, enum in ENUMS.items():
         said = row.get(key, "")
         word = str(said).upper() if isinstance(said, (str, int)) else ""
         if word in enum.__members__ and word != "BEST_AVAILABLE":
@@ -143,7 +147,7 @@ def _profile(row: Mapping[Any, Any]) -> Qos:
     depth = row.get("depth")
     if isinstance(depth, int) and 0 < depth < 2**31:
         given["depth"] = depth
-    for key, name in _DURATIONS.items():
+    for key, name in DURATIONS.items():
         given[name] = _span(row.get(key))
     return Qos(**given)
 
@@ -161,7 +165,7 @@ def as_text(offered: Iterable[Qos]) -> str:
     return _dumped([plain(qos) for qos in offered])
 
 
-def _loaded(text: str | bytes) -> Any:
+def loaded(text: str | bytes) -> Any:
     """What a text of YAML says; one with aliases is refused: a few of them can stand for more than any memory holds."""
     if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, _LOADER)):
         raise ValueError("it has aliases")

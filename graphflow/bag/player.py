@@ -60,6 +60,12 @@ class PlayOptions:
     choice: Choice = field(default_factory=lambda: Choice(all=True, hidden=True))
     remaps: Mapping[str, str] = field(default_factory=dict)
     """New names by those in the bag."""
+    qos: Mapping[str, Qos] = field(default_factory=dict)
+    """Profiles by names in the bag, in place of those that the bag has."""
+    clock_topics: frozenset[str] = frozenset()
+    """Topics with each of whose messages the time is published on /clock, too."""
+    clocks_all: bool = False
+    """Whether that is so for every message."""
 
 
 class Player:
@@ -85,6 +91,7 @@ class Player:
         """Where in the bag it is, nanoseconds since 1970."""
         self._steps = 0
         self._sought: int | None = None
+        self._is_clocked = options.clocks_all or bool(options.clock_topics)
         self._topics = dict(self._chosen())
         self._publishers: dict[str, raw.RawPublisher] = {}
         if not self._topics:
@@ -96,10 +103,14 @@ class Player:
             raise BagError(f"{bag.path}: there is nothing to play{why}")
         for name, topic in self._topics.items():
             self._publishers[name] = raw.advertise(
-                node, topic.type, options.remaps.get(name, name), offered(topic), type_hash=_hash(topic)
+                node,
+                topic.type,
+                options.remaps.get(name, name),
+                options.qos.get(name) or offered(topic),
+                type_hash=_hash(topic),
             )
         self._clock: Any = None
-        if options.clock_hz:
+        if options.clock_hz or self._is_clocked:
             type_ = registry.interface_class("rosgraph_msgs/msg/Clock")
             self._clock = node.create_publisher(type_, "/clock", CLOCK)
 
@@ -113,7 +124,7 @@ class Player:
                 self.refused.append(f"{name} would have others act; to play it: --allow-commands")
             elif topic.encoding != "cdr":
                 self.refused.append(f"{name} is serialized as {topic.encoding!r}, not as CDR")
-            elif goes == "/clock" and self._options.clock_hz:
+            elif goes == "/clock" and (self._options.clock_hz or self._is_clocked):
                 self.refused.append(f"{name} is published by --clock")
             else:
                 try:
@@ -140,7 +151,7 @@ class Player:
         Raises:
             BagError: The bag cannot be read on.
         """
-        clock = asyncio.ensure_future(self._tell_time()) if self._clock is not None else None
+        clock = asyncio.ensure_future(self._tell_time()) if self._options.clock_hz else None
         try:
             await self._node.clock.sleep(self._options.delay)
             while True:
@@ -159,6 +170,22 @@ class Player:
         """Send the next messages, if it is paused."""
         if self.is_paused:
             self._steps += count
+
+    async def burst(self, count: int) -> None:
+        """Send the first messages at once: so many, or for 0 all; returns when they are sent.
+
+        Raises:
+            BagError: The bag cannot be read on.
+        """
+        await self._node.clock.sleep(self._options.delay)
+        start_ns = self._bag.contents.start_ns + to_ns(self._options.start_offset)
+        for number, record in enumerate(self._bag.records(self._topics, start_ns, None)):
+            if count and number == count:
+                return
+            self.now_ns = record.log_ns
+            self._send(record)
+            if number % AT_ONCE == 0:
+                await asyncio.sleep(0)
 
     def seek(self, time_ns: int) -> None:
         """Go on from another moment of the bag."""
@@ -215,18 +242,20 @@ class Player:
                 await asyncio.sleep(0)
 
     def _send(self, record: Record) -> None:
+        if self._is_clocked and (self._options.clocks_all or record.topic.name in self._options.clock_topics):
+            self._publish_time()
         self._publishers[record.topic.name].publish(record.data)
         self.played += 1
 
     async def _tell_time(self) -> None:
+        async for _ in self._node.clock.every(hz=self._options.clock_hz):
+            self._publish_time()
+
+    def _publish_time(self) -> None:
         from graphflow.msgs.builtin_interfaces.msg import Time
         from graphflow.msgs.rosgraph_msgs.msg import Clock
 
-        assert self._clock is not None
-        async for _ in self._node.clock.every(hz=self._options.clock_hz):
-            self._clock.publish(
-                Clock(clock=Time(sec=min(self.now_ns // 10**9, 2**31 - 1), nanosec=self.now_ns % 10**9))
-            )
+        self._clock.publish(Clock(clock=Time(sec=min(self.now_ns // 10**9, 2**31 - 1), nanosec=self.now_ns % 10**9)))
 
 
 def offered(topic: Topic) -> Qos:

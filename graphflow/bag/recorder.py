@@ -10,7 +10,7 @@ import asyncio
 import logging
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from graphflow.bag.choice import Choice
@@ -18,7 +18,7 @@ from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import asked
 from graphflow.bag.writer import FLUSH_EVERY, BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
-from graphflow.qos import BEST_AVAILABLE
+from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime import raw
 from graphflow.runtime.node import Node
 from graphflow.wire.attachment import MessageInfo
@@ -46,6 +46,9 @@ class Recorder:
         choice: What is recorded.
         cache: Bytes that may wait to be written.
         discovery: Whether topics that appear later are recorded, too.
+        qos: Profiles by topic, to listen with in place of one that fits.
+        unpublished: Whether topics are in the bag that are only listened to.
+        leaves: Whether topics are recorded that nobody else listens to.
         snapshot: Whether nothing is written before `take_snapshot`; the cache holds the last messages until then.
         told: Called with a line on each topic.
     """
@@ -58,11 +61,17 @@ class Recorder:
         *,
         cache: int = CACHE,
         discovery: bool = True,
+        qos: Mapping[str, Qos] | None = None,
+        unpublished: bool = False,
+        leaves: bool = True,
         snapshot: bool = False,
         told: Callable[[str], object] = logger.info,
     ) -> None:
         self._node, self._writer, self._choice = node, writer, choice
         self._cache, self._is_discovering, self._is_snapshot, self._tell = cache, discovery, snapshot, told
+        self._qos = qos or {}
+        self._kinds = (Kind.PUBLISHER, Kind.SUBSCRIPTION) if unpublished else (Kind.PUBLISHER,)
+        self._records_leaves = leaves
         self.is_paused = False
         """Whether what comes is left out."""
         self.recorded = self.dropped = self.lost = 0
@@ -110,8 +119,9 @@ class Recorder:
         self._thread.start()
         try:
             while not self.failed.done():
-                for entity in cache.endpoints(Kind.PUBLISHER):
-                    self._consider(entity)
+                for kind in self._kinds:
+                    for entity in cache.endpoints(kind):
+                        self._consider(entity)
                 if not self._is_discovering:
                     await asyncio.wait([self.failed])
                     break
@@ -168,13 +178,15 @@ class Recorder:
             return
         if entity.zid == self._node.context.session.zid:  # what the recorder itself says
             return
+        if not self._records_leaves and not self._is_heard(entity.name):
+            return
 
         def arrived(payload: bytes, info: MessageInfo) -> None:
             self._arrived(entity.name, payload, info)
 
         try:
             self._subscriptions[entity.name] = raw.subscribe(
-                self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash
+                self._node, entity.type, entity.name, arrived, self._qos.get(entity.name, HEARD), type_hash=entity.hash
             )
         except (GraphflowError, ValueError) as error:  # whoever announced it may call its type anything
             if (entity.name, entity.type) not in self._left_out:
@@ -186,6 +198,10 @@ class Recorder:
         task = asyncio.ensure_future(self._define(entity))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def _is_heard(self, name: str) -> bool:
+        own = self._node.context.session.zid
+        return any(e.zid != own for e in self._node.context.cache.endpoints(Kind.SUBSCRIPTION, name))
 
     async def _define(self, entity: Entity) -> None:
         """Find the definition of a topic's type, and let its messages go on."""

@@ -11,7 +11,7 @@ import errno
 import logging
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any, Self, cast
 
@@ -164,6 +164,7 @@ class BagWriter:
         compression: One of `COMPRESSIONS`, of the chunks in a file.
         max_size: Bytes after which a new file is begun; 0 for never.
         max_seconds: Seconds of recording after which a new file is begun; 0 for never.
+        custom: What the user has to say about the bag, for its metadata.
         monotonic_ns: The clock by which files are flushed.
 
     Raises:
@@ -177,9 +178,11 @@ class BagWriter:
         compression: str = "zstd",
         max_size: int = 0,
         max_seconds: float = 0.0,
+        custom: Mapping[str, str] | None = None,
         monotonic_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self.folder = folder
+        self._custom = custom or {}
         self._compression = "" if compression == "none" else compression
         self._max_size, self._max_ns = max_size, round(max_seconds * 1e9)
         self._now_ns = monotonic_ns
@@ -294,7 +297,7 @@ class BagWriter:
 
     def _finish(self) -> None:
         mine = FileContents(self._part.path.name, self._part.contents)
-        self._part.finish(metadata.written([mine], mine.contents))
+        self._part.finish(metadata.written([mine], mine.contents, self._custom))
         self._sizes += self._part.size
         self._done.append(mine)
         self._is_finished = True
@@ -305,7 +308,7 @@ class BagWriter:
 
     def _write_metadata(self) -> None:
         files = self._files()
-        text = metadata.written(files, together([file.contents for file in files]))
+        text = metadata.written(files, together([file.contents for file in files]), self._custom)
         fresh = self.folder / f".{metadata.FILE}"
         fresh.write_text(text, encoding="utf-8")
         fresh.replace(self.folder / metadata.FILE)

@@ -17,12 +17,21 @@ from graphflow.cli.words import pattern_option
 from graphflow.errors import UsageFault
 from graphflow.names import expand
 
+DELAY = 0.5
+"""Seconds before the first message, in which subscriptions find the publishers."""
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 @click.group(cls=Verbs)
 def bag() -> None:
     """Record topics into bags, and play and change bags."""
+
+
+def _qos_path(command: F) -> F:
+    """Add the file of QoS profiles by topic."""
+    file = click.Path(path_type=Path)
+    return click.option("--qos-profile-overrides-path", "qos_path", type=file, help="QoS by topic, in YAML.")(command)
 
 
 def _names(words: tuple[str, ...]) -> frozenset[str]:
@@ -82,6 +91,17 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
 @click.option("--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
 @click.option("--snapshot-mode", is_flag=True, help="Write the last messages when ~/snapshot is called or S pressed.")
 @click.option("--duration", type=click.FloatRange(0, min_open=True), help="Seconds to record.")
+@click.option(
+    "--qos-profile-overrides-path", "qos_path", type=click.Path(path_type=Path), help="QoS by topic, in YAML."
+)
+@click.option("--include-unpublished-topics", is_flag=True, help="Topics that are only listened to, too.")
+@click.option("--ignore-leaf-topics", is_flag=True, help="No topics that nobody else listens to.")
+@click.option("--use-sim-time", is_flag=True, help="Stamp messages by /clock.")
+@click.option("--custom-data", multiple=True, help="KEY=VALUE, for the bag's metadata.")
+@click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")
+@click.option("-f", "--serialization-format", type=click.Choice(["cdr"]), hidden=True, help="For ROS 2's commands.")
+@click.option("--compression-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
+@click.option("--compression-threads", type=int, hidden=True, help="For ROS 2's commands.")
 @click.option("--node-name", default="rosbag2_recorder", show_default=True, help="Name of the recording node.")
 @click.option(
     "-p", "--polling-interval", type=int, hidden=True, help="For ROS 2's commands: the graph tells by itself."
@@ -97,7 +117,8 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     choice = _choice(options, topics, **more, hidden=options.pop("include_hidden_topics"))
     if not (everything or types or choice.all_services or choice.topics or choice.services or choice.regex):
         raise UsageFault("nothing to record was named; write topics, or -a for all: graphflow bag record -a")
-    for unused in ("storage", "polling_interval"):
+    ours = ("storage", "polling_interval", "serialization_format", "compression_queue_size", "compression_threads")
+    for unused in ours:
         options.pop(unused)
     return recording.run(choice, recording.RecordOptions(**options))
 
@@ -111,14 +132,20 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
 @click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
 @click.option("--playback-duration", type=click.FloatRange(0, min_open=True), help="Seconds of the bag to play.")
 @click.option(
-    "-d", "--delay", type=click.FloatRange(0), default=0.5, show_default=True, help="Seconds before the start."
+    "-d", "--delay", type=click.FloatRange(0), default=DELAY, show_default=True, help="Seconds before the start."
 )
 @click.option("--clock", "clock", is_flag=False, flag_value="40", default="0", help="Publish /clock, so often. [40 Hz]")
+@click.option("--clock-topics", multiple=True, help="Publish /clock with each message of these topics, too.")
+@click.option("--clock-topics-all", is_flag=True, help="Publish /clock with each message.")
+@click.option(
+    "--qos-profile-overrides-path", "qos_path", type=click.Path(path_type=Path), help="QoS by topic, in YAML."
+)
 @click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
 @click.option("--allow-commands", is_flag=True, help="Play what makes others act: goals of actions, calls of services.")
 @click.option("--node-name", default="rosbag2_player", show_default=True, help="Name of the playing node.")
 @click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
 @click.option("--read-ahead-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
+@click.option("--disable-loan-message", is_flag=True, hidden=True, help="For ROS 2's commands.")
 @click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")
 def play(path: Path, **options: Any) -> int:
     """Play a bag into the running graph: a folder, an MCAP file or a .db3 file.
@@ -128,6 +155,7 @@ def play(path: Path, **options: Any) -> int:
     RIGHT, or s  send the next message while paused
     UP, DOWN     faster, slower, by a tenth
     """  # noqa: D301 - click wants the character
+    from graphflow.bag.overrides import read as read_overrides
     from graphflow.bag.player import PlayOptions
     from graphflow.cli import playing
 
@@ -151,8 +179,43 @@ def play(path: Path, **options: Any) -> int:
         allows_commands=options["allow_commands"],
         choice=_choice(options, hidden=True),
         remaps=_remaps(options["remaps"]),
+        qos={} if options["qos_path"] is None else read_overrides(options["qos_path"]),
+        clock_topics=_names(options["clock_topics"]),
+        clocks_all=options["clock_topics_all"],
     )
     return playing.run(path, chosen, options["node_name"], keys=not options["disable_keyboard_controls"])
+
+
+@bag.command(short_help="Send messages of a bag at once.")
+@click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
+@_chosen
+@click.option("-n", "--num-messages", type=click.IntRange(0), default=0, help="How many; 0 for all. [0]")
+@click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
+@click.option("-m", "--remap", "remaps", multiple=True, help="OLD:=NEW, for a topic.")
+@click.option(
+    "--qos-profile-overrides-path", "qos_path", type=click.Path(path_type=Path), help="QoS by topic, in YAML."
+)
+@click.option("--allow-commands", is_flag=True, help="Send what makes others act: goals of actions, calls of services.")
+@click.option("--node-name", default="rosbag2_player", show_default=True, help="Name of the sending node.")
+@click.option("-s", "--storage", hidden=True, help="For ROS 2's commands: the file says it.")
+@click.option("--read-ahead-queue-size", type=int, hidden=True, help="For ROS 2's commands.")
+@click.option("--disable-loan-message", is_flag=True, hidden=True, help="For ROS 2's commands.")
+def burst(path: Path, num_messages: int, **options: Any) -> int:
+    """Send messages of a bag into the running graph, one right after the other."""
+    from graphflow.bag.overrides import read as read_overrides
+    from graphflow.bag.player import PlayOptions
+    from graphflow.cli import playing
+
+    use_project()
+    chosen = PlayOptions(
+        start_offset=options["start_offset"],
+        delay=DELAY,
+        allows_commands=options["allow_commands"],
+        choice=_choice(options, hidden=True),
+        remaps=_remaps(options["remaps"]),
+        qos={} if options["qos_path"] is None else read_overrides(options["qos_path"]),
+    )
+    return playing.run(path, chosen, options["node_name"], keys=False, burst=num_messages)
 
 
 def _remaps(words: tuple[str, ...]) -> dict[str, str]:

@@ -32,20 +32,24 @@ STAY = 0.2
 SHOWN_EVERY = 0.2
 
 
-def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True) -> int:
-    """Play until done or stopped; returns the exit code."""
+def run(path: Path, options: PlayOptions, name: str, *, keys: bool = True, burst: int | None = None) -> int:
+    """Play until done or stopped; returns the exit code.
+
+    Args:
+        burst: Only so many messages, all at once; 0 for all of them.
+    """
     bag = Bag(path)
     if not bag.contents.is_whole:
         count = bag.contents.message_count
         output.talk(f"note: {path} was not closed properly; {count:,} messages can be read")
 
     async def work(node: Node) -> int:
-        return await _play(node, bag, options, keys=keys)
+        return await _play(node, bag, options, burst, keys=keys)
 
     return visit(work, name, has_services=True)
 
 
-async def _play(node: Node, bag: Bag, options: PlayOptions, *, keys: bool) -> int:
+async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *, keys: bool) -> int:
     player = Player(node, bag, options)
     for line in player.refused:
         output.talk(f"not played: {line}")
@@ -65,7 +69,7 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, *, keys: bool) -> in
         output.talk(f"playing {len(player.topics)} topics of {bag.path}.{hint}")
         shown = asyncio.ensure_future(_show(player, bag)) if sys.stderr.isatty() else None
         try:
-            await player.run()
+            await (player.run() if burst is None else player.burst(burst))
             await node.clock.sleep(STAY)
         finally:
             if shown is not None:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from graphflow.bag.choice import Choice
 from graphflow.bag.info import size
+from graphflow.bag.overrides import read as read_overrides
 from graphflow.bag.recorder import CACHE, Recorder
 from graphflow.bag.writer import BagWriter
 from graphflow.cli import exits, output
 from graphflow.cli.keys import pressed
 from graphflow.cli.visiting import visit
-from graphflow.errors import BagError
+from graphflow.errors import BagError, UsageFault
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
+from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
 TOLD_EVERY = 1.0
@@ -37,28 +41,47 @@ class RecordOptions:
     start_paused: bool = False
     snapshot_mode: bool = False
     duration: float | None = None
+    qos_path: Path | None = None
+    custom_data: tuple[str, ...] = ()
+    include_unpublished_topics: bool = False
+    ignore_leaf_topics: bool = False
+    use_sim_time: bool = False
+    disable_keyboard_controls: bool = False
     node_name: str = "rosbag2_recorder"
 
 
 def run(choice: Choice, options: RecordOptions) -> int:
     """Record until stopped; returns the exit code."""
+    qos = {} if options.qos_path is None else read_overrides(options.qos_path)
+    custom = dict(_pair(word) for word in options.custom_data)
     folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     split = {"max_size": options.max_bag_size, "max_seconds": options.max_bag_duration}
-    writer = BagWriter(folder, compression=options.compression, **split)  # type: ignore[arg-type]
+    writer = BagWriter(folder, compression=options.compression, custom=custom, **split)  # type: ignore[arg-type]
 
     async def work(node: Node) -> int:
-        return await _record(node, writer, choice, options)
+        return await _record(node, writer, choice, options, qos)
 
-    return visit(work, options.node_name, has_services=True)
+    given = {"use_sim_time": True} if options.use_sim_time else {}
+    return visit(work, options.node_name, has_services=True, parameters=given)
 
 
-async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions) -> int:
+def _pair(word: str) -> tuple[str, str]:
+    key, sign, value = word.partition("=")
+    if not (key and sign):
+        raise UsageFault(f"--custom-data {word!r}: write KEY=VALUE")
+    return key, value
+
+
+async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions, qos: Mapping[str, Qos]) -> int:
     recorder = Recorder(
         node,
         writer,
         choice,
         cache=options.max_cache_size or CACHE,
         discovery=not options.no_discovery,
+        qos=qos,
+        unpublished=options.include_unpublished_topics,
+        leaves=not options.ignore_leaf_topics,
         snapshot=options.snapshot_mode,
         told=lambda text: _tell(node, text),
     )
@@ -75,7 +98,7 @@ async def _record(node: Node, writer: BagWriter, choice: Choice, options: Record
             _tell(node, "Snapshot taken")
 
     began = time.monotonic()
-    with pressed(key) as has_keys:
+    with contextlib.nullcontext(False) if options.disable_keyboard_controls else pressed(key) as has_keys:
         if has_keys:
             keys = "SPACE pauses, S takes a snapshot" if options.snapshot_mode else "SPACE pauses"
             _tell(node, f"Recording into {writer.folder}. {keys}, Ctrl-C ends it")

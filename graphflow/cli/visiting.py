@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
 
 from graphflow.cli import output
 from graphflow.runtime.context import Context
@@ -15,14 +16,21 @@ from graphflow.runtime.run import catch_signals
 from graphflow.transport import loop
 
 
-def visit(work: Callable[[Node], Awaitable[int]], name: str | None = None, *, has_services: bool = False) -> int:
+def visit(
+    work: Callable[[Node], Awaitable[int]],
+    name: str | None = None,
+    *,
+    has_services: bool = False,
+    parameters: Mapping[str, Any] | None = None,
+) -> int:
     """Run `work` with a hidden node that is up; Ctrl-C ends it with code 0.
 
     Args:
         name: Of the node, which is not hidden then.
+        parameters: Values for its parameters.
         has_services: Whether it has the services of any node, such as those for parameters and definitions.
     """
-    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services))
+    return loop.run(_visit(work, name or f"_graphflow_{os.getpid()}", has_services, parameters or {}))
 
 
 class _Talk(logging.Handler):
@@ -32,14 +40,16 @@ class _Talk(logging.Handler):
         output.talk(self.format(record))
 
 
-async def _visit(work: Callable[[Node], Awaitable[int]], name: str, has_services: bool) -> int:
+async def _visit(
+    work: Callable[[Node], Awaitable[int]], name: str, has_services: bool, parameters: Mapping[str, Any]
+) -> int:
     stop = asyncio.Event()
     catch_signals(stop)
     context = await Context.open()
     context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
     talk = _Talk(logging.WARNING)
     logging.getLogger("graphflow").addHandler(talk)
-    node = Node(name, start_parameter_services=has_services, enable_rosout=False)
+    node = Node(name, start_parameter_services=has_services, enable_rosout=False, **parameters)
     try:
         await core_of(node).start(context)
         task = asyncio.ensure_future(work(node))

@@ -296,3 +296,40 @@ async def test_the_time_between_two_messages(graph: Graph, tmp_path: Path) -> No
     await graph.clock.advance(5.0)
     assert (player.now_ns - START) / 1e9 == pytest.approx(5.0, abs=0.05)
     show.task.cancel()
+
+
+async def test_a_burst(graph: Graph, tmp_path: Path) -> None:
+    """So many messages at once, or all."""
+    show = Show(graph, tmp_path / "bag")
+    player = await show.begin(is_paused=True)
+    show.task.cancel()
+    for count in (5, 0):
+        task = asyncio.create_task(player.burst(count))
+        await graph.clock.advance(0.001)
+        await task
+        await graph.settle()
+        assert {at for at, _, _ in show.heard[:5]} <= {0.0, 0.001}
+    assert player.played == 5 + 41  # the listener's queue is shorter
+
+
+async def test_other_profiles(graph: Graph, tmp_path: Path) -> None:
+    """In place of those in the bag."""
+    show = Show(graph, tmp_path / "bag")
+    player = await show.begin(qos={"/chatter": SENSOR_DATA})
+    assert player._publishers["/chatter"].qos == SENSOR_DATA
+    assert player._publishers["/count"].qos == DEFAULT
+
+
+@pytest.mark.parametrize(
+    ("options", "count"), [({"clocks_all": True}, 41), ({"clock_topics": frozenset({"/count"})}, 20)]
+)
+async def test_time_with_messages(graph: Graph, tmp_path: Path, options: dict[str, Any], count: int) -> None:
+    """The time of each message, before it."""
+    show = Show(graph, tmp_path / "bag")
+    tap = graph.tap(Clock, "/clock")
+    await show.begin(**options)
+    await graph.clock.advance(3.0)
+    await show.task
+    assert len(tap.messages) == count
+    last = tap.messages[-1].clock
+    assert last.sec * 10**9 + last.nanosec == round(show.heard[-1][0] * 10**9) + START

@@ -403,3 +403,25 @@ async def test_another_definition_of_a_type_that_is_known(
     topic = (await session.end()).contents.topics["/t"]
     assert (topic.hash, topic.definition) == ("RIHS01_ab", "")
     assert "its definition here is another" in caplog.text
+
+
+async def test_topics_by_who_is_there(graph: Graph, session: Session) -> None:
+    """Those that are only listened to, too; or none that nobody listens to."""
+    node = Node("listener")
+    await graph.start(node)
+    node.create_subscription(String, "/wanted", lambda _: None)
+    await speaker(graph, "/alone")
+    recorder = await session.start(unpublished=True, leaves=False)
+    await session.until(lambda: recorder.topics == 1)
+    assert (await session.end()).contents.counts == {"/wanted": 0}
+
+
+async def test_other_profiles(graph: Graph, session: Session) -> None:
+    """A topic is listened to with the profile that was given for it."""
+    await speaker(graph)
+    await speaker(graph, "/other")
+    recorder = await session.start(qos={"/chatter": Qos(depth=3)})
+    await session.until(lambda: recorder.topics == 2)
+    assert recorder._subscriptions["/chatter"].qos.depth == 3
+    assert recorder._subscriptions["/other"].qos.depth == 1000
+    await session.end()

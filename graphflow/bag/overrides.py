@@ -1,0 +1,83 @@
+"""Files of QoS profiles by topic, with which a bag is recorded or played: `--qos-profile-overrides-path`.
+
+    /turtle1/pose:
+      reliability: best_effort
+      history: keep_last
+      depth: 5
+      durability: volatile
+
+Source: ROS 2's guide "Overriding QoS policies for recording and playback".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from graphflow.bag.metadata import DURATIONS, ENUMS, loaded
+from graphflow.errors import GraphflowError, UsageFault
+from graphflow.names import check_full_name, did_you_mean
+from graphflow.qos import Qos
+
+BOUND = 1 << 20
+"""Bytes that such a file may have."""
+_ROS_ONLY = "avoid_ros_namespace_conventions"
+_KEYS = (*ENUMS, "depth", *DURATIONS, _ROS_ONLY)
+
+
+def read(path: Path) -> dict[str, Qos]:
+    """The profiles of a file, by the full names of topics; what a profile leaves open is as by default.
+
+    Raises:
+        UsageFault: It cannot be read, or something in it is wrong; the text says what and where.
+    """
+    try:
+        with path.open("rb") as file:
+            data = loaded(file.read(BOUND))
+    except OSError as error:
+        raise UsageFault(f"{path}: {error.strerror}") from None
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise UsageFault(f"{path}: {' '.join(str(error).split())[:300]}") from None
+    if not isinstance(data, Mapping):
+        raise UsageFault(f"{path}: it has no topics; write /topic: {{reliability: best_effort}}")
+    found = {}
+    for topic, row in data.items():
+        try:
+            check_full_name(str(topic))
+            found[str(topic)] = _profile(row)
+        except (GraphflowError, ValueError) as error:
+            raise UsageFault(f"{path}: {topic}: {error}") from None
+    return found
+
+
+def _profile(row: Any) -> Qos:
+    if not isinstance(row, Mapping):
+        raise ValueError("a profile has policies, such as reliability: best_effort")
+    given: dict[str, Any] = {}
+    for key, said in row.items():
+        if key in ENUMS:
+            members = ENUMS[key].__members__
+            if str(said).upper() not in members:
+                raise ValueError(f"{key}: {said!r} is none of {', '.join(m.lower() for m in members)}")
+            given[key] = members[str(said).upper()]
+        elif key == "depth":
+            if type(said) is not int or not 0 <= said < 2**31:
+                raise ValueError(f"depth: {said!r} is no number of messages")
+            given[key] = said
+        elif key in DURATIONS:
+            given[DURATIONS[key]] = _span(key, said)
+        elif key != _ROS_ONLY:
+            raise ValueError(f"there is no policy {key!r}{did_you_mean(str(key), _KEYS)}")
+    return replace(Qos(), **given)
+
+
+def _span(key: str, said: Any) -> int:
+    if isinstance(said, Mapping) and {*said} <= {"sec", "nsec"}:
+        sec, nsec = said.get("sec", 0), said.get("nsec", 0)
+        if type(sec) is int and type(nsec) is int and 0 <= sec * 10**9 + nsec < 2**63:
+            return sec * 10**9 + nsec
+    raise ValueError(f"{key}: {said!r} is no duration; write {{sec: 1, nsec: 0}}")

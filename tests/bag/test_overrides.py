@@ -1,0 +1,66 @@
+"""QoS profiles by topic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.bag.overrides import read
+from graphflow.errors import UsageFault
+from graphflow.qos import Durability, History, Qos, Reliability
+
+
+def test_a_file_as_ros_has_it(tmp_path: Path) -> None:
+    """What is left open is as by default."""
+    file = tmp_path / "qos.yaml"
+    file.write_text(
+        """
+/pose:
+  reliability: best_effort
+  history: keep_all
+/map:
+  durability: transient_local
+  depth: 1
+  deadline: {sec: 1, nsec: 500}
+  liveliness: automatic
+  avoid_ros_namespace_conventions: false
+"""
+    )
+    assert read(file) == {
+        "/pose": Qos(reliability=Reliability.BEST_EFFORT, history=History.KEEP_ALL),
+        "/map": Qos(durability=Durability.TRANSIENT_LOCAL, depth=1, deadline_ns=1_000_000_500),
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[", "node content"),
+        ("5", "it has no topics"),
+        ("/a: best_effort", "/a: a profile has policies"),
+        ("/a: {reliabilty: best_effort}", "there is no policy 'reliabilty'; did you mean 'reliability'?"),
+        ("/a: {reliability: good}", "reliability: 'good' is none of"),
+        ("/a: {depth: -1}", "depth: -1 is no number of messages"),
+        ("/a: {depth: true}", "depth: True is no number of messages"),
+        ("/a: {deadline: 1}", "deadline: 1 is no duration; write {sec: 1, nsec: 0}"),
+        ("/a: {deadline: {sec: 99999999999}}", "is no duration"),
+        ("/a//b: {depth: 1}", "/a//b"),
+        ("a: {depth: 1}", "a:"),
+        ("/a: &x {depth: 1}\n/b: *x", "it has aliases"),
+    ],
+)
+def test_what_is_wrong(tmp_path: Path, text: str, told: str) -> None:
+    """Is told with its place."""
+    file = tmp_path / "qos.yaml"
+    file.write_text(text)
+    with pytest.raises(UsageFault) as caught:
+        read(file)
+    assert str(file) in str(caught.value)
+    assert told in str(caught.value)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    """Says so."""
+    with pytest.raises(UsageFault, match="No such file or directory"):
+        read(tmp_path / "none.yaml")
