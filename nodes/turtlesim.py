@@ -7,7 +7,7 @@ use too, and closed when it is killed. What turtles do is in `turtle_world.py`, 
 There is no window. With `-p view:=true` a page in your browser shows the turtles live; its address is logged. Or ask
 for a picture, an SVG file in the response's `message`, whenever you want one:
 
-    graphflow service call /turtlesim/snapshot std_srvs/srv/Trigger
+    graphflow snapshot
 
 Source: turtlesim 1.8.
 """

@@ -40,6 +40,7 @@ _VERBS = {
     "run": ("run", "Run one node."),
     "demo": ("demo", "Walk through an example, step by step."),
     "graph": ("graph", "Draw the nodes and topics that run."),
+    "snapshot": ("snapshot", "Write what turtlesim has drawn into FILE, an SVG picture."),
     "view": ("view", "Serve the running graph to Foxglove, Lichtblick and PlotJuggler."),
     "top": ("top", "Show what the processes of the running graph cost."),
     "router": ("router", "Run a Zenoh router, the rendezvous of this machine."),

@@ -18,6 +18,7 @@ VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
 VERBS += (
     "demo",
     "graph",
+    "snapshot",
     "view",
     "top",
     "router",
