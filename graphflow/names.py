@@ -149,10 +149,14 @@ def _substitute(word: str, name: str, namespace: str, node: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Remap:
-    """One rule `match:=replacement`, perhaps for one node only, perhaps for one kind of name only."""
+    r"""One rule `match:=replacement`, perhaps for one node only, perhaps for one kind of name only.
+
+    In `match`, `*` stands for one part of a name and `**` for any number of them: `/turtle1/**:=/robot/\1`.
+    """
 
     match: str
     replacement: str
+    r"""May have `\1` and so on, for what the wildcards stand for."""
     node: str | None = None
     kind: Kind | None = None
     source: str = ""
@@ -184,6 +188,30 @@ class Remap:
             known = ("__ns", "__node", "__name")
             raise InvalidName(f"{match!r} is not a remap key{did_you_mean(match, known)}")
         return cls(match, replacement, node, kind, source)
+
+
+_STAND_INS = {"*": "wildcardOne", "**": "wildcardMany"}
+"""Legal parts of a name, in the place of wildcards while a rule is made a full name."""
+_WILDCARDS = {"wildcardOne": "/([^/]+)", "wildcardMany": "((?:/[^/]+)*)"}
+
+
+def _filled(replacement: str, found: re.Match[str]) -> str:
+    """A replacement with what the wildcards stand for.
+
+    Raises:
+        InvalidName: It asks for one that is not there.
+    """
+
+    def part(reference: re.Match[str]) -> str:
+        number = int(reference[1])
+        if not 0 < number <= found.re.groups:
+            raise InvalidName(f"{replacement!r} has {reference[0]}, for which the rule has no wildcard")
+        return found[number].removeprefix("/")
+
+    if "\\" not in replacement:
+        return replacement
+    text = re.sub(r"\\(\d)", part, replacement)
+    return re.sub("//+", "/", text).removesuffix("/") or "/"
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,6 +274,18 @@ class Resolver:
         """The full name before any remap. Raises InvalidName when it is not legal."""
         return expand(name, self.namespace, self.name)
 
+    def pattern(self, match: str) -> re.Pattern[str]:
+        """What the full names are like that a rule matches. Raises InvalidName when its match is not legal."""
+        if "*" not in match:
+            return re.compile(re.escape(self.full(match)))
+        try:
+            full = self.full("/".join(_STAND_INS.get(token, token) for token in match.split("/")))
+        except InvalidName:
+            raise InvalidName(
+                f"{match!r}: a wildcard stands for whole parts of a name, as in */pose or /a/**"
+            ) from None
+        return re.compile("".join(_WILDCARDS.get(token, f"/{token}") for token in full[1:].split("/")))
+
     def resolve(self, name: str, kind: Kind = "topic") -> str:
         """The full, remapped name.
 
@@ -254,9 +294,9 @@ class Resolver:
         """
         expanded = self.full(name)
         for rule in self.rules:
-            if rule.kind in (None, kind) and self.full(rule.match) == expanded:
+            if rule.kind in (None, kind) and (found := self.pattern(rule.match).fullmatch(expanded)):
                 self.used.add(rule)
-                resolved = self.full(rule.replacement)
+                resolved = self.full(_filled(rule.replacement, found))
                 self.derivations[expanded] = Resolution(name, expanded, resolved, rule)
                 return resolved
         self.derivations[expanded] = Resolution(name, expanded, expanded)

@@ -374,3 +374,38 @@ def test_nearest_is_none_when_nothing_is_near() -> None:
     """No choice is better than a wild one."""
     assert nearest("cmd_vel", iter(["cmd_val", "odom"])) == "cmd_val"
     assert nearest("cmd_vel", ["odom", "tf"]) is None
+
+
+@pytest.mark.parametrize(
+    ("rule", "name", "resolved"),
+    [
+        ("/turtle1/*:=/robot/\\1", "/turtle1/pose", "/robot/pose"),
+        ("/turtle1/*:=/robot/\\1", "/turtle1/a/pose", "/turtle1/a/pose"),
+        ("/turtle1/**:=/robot/\\1", "/turtle1/a/pose", "/robot/a/pose"),
+        ("/turtle1/**:=/robot/\\1", "/turtle1", "/robot"),
+        ("/**/pose:=/poses/\\1", "/a/b/pose", "/poses/a/b"),
+        ("/*/*:=/\\2/\\1", "/a/b", "/b/a"),
+        ("*:=x", "chatter", "/ns/x"),
+        ("~/*:=\\1", "~/state", "/ns/state"),
+        ("**:=/all/\\1", "a/b", "/all/a/b"),
+    ],
+)
+def test_wildcards(rule: str, name: str, resolved: str) -> None:
+    """`*` stands for one part of a name, `**` for any number; the new name may use what they stand for."""
+    assert Resolver("node", "/ns", [Remap.parse(rule)]).resolve(name) == resolved
+
+
+@pytest.mark.parametrize(
+    ("rule", "message"),
+    [
+        ("*chatter:=/a", "a wildcard stands for whole parts of a name"),
+        ("/a*/b:=/a", "a wildcard stands for whole parts of a name"),
+        ("/***:=/a", "a wildcard stands for whole parts of a name"),
+        ("/*:=/a/\\2", "for which the rule has no wildcard"),
+        ("/*:=/a/\\0", "for which the rule has no wildcard"),
+    ],
+)
+def test_wildcards_that_are_wrong(rule: str, message: str) -> None:
+    """Are told when the first name is looked at."""
+    with pytest.raises(InvalidName, match=message):
+        Resolver("node", "/", [Remap.parse(rule)]).resolve("chatter")

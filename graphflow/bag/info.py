@@ -62,6 +62,11 @@ def as_json(bag: Bag) -> dict[str, Any]:
     }
 
 
+def topics_of(count: int) -> str:
+    """So many topics, in words."""
+    return f"{count:,} topic{'s' if count != 1 else ''}"
+
+
 def size(count: float) -> str:
     """Bytes, 1024-based as rosbag2 tells them."""
     for unit in ("B", "KiB", "MiB"):

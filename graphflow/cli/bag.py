@@ -358,7 +358,7 @@ def merge(paths: tuple[Path, ...], **options: Any) -> int:
 def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Any = None) -> int:
     from graphflow.bag.choice import Choice
     from graphflow.bag.copying import beside, copy, times
-    from graphflow.bag.info import size
+    from graphflow.bag.info import size, topics_of
     from graphflow.bag.reader import Bag
     from graphflow.bag.writer import BagWriter
 
@@ -369,5 +369,5 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     with BagWriter(folder, compression=options["compression"], max_size=options["max_bag_size"]) as writer:
         every = choice or Choice(all=True, hidden=True, all_services=True)
         copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns)
-    output.data(f"{folder}: {copied.message_count:,} messages of {len(copied.topics)} topics, {size(writer.size)}")
+    output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")
     return exits.OK

@@ -10,7 +10,8 @@ import click
 from graphflow.errors import GraphflowError
 
 _PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
-LIVE = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION", "TYPE", "PARAMETER", "PARAMETERS")
+NAMES = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION")
+LIVE = (*NAMES, "TYPE", "PARAMETER", "PARAMETERS")
 """Places for which the graph is asked."""
 ANSWER_LIMIT = 1.0
 """Seconds that a node has to tell its parameters."""
@@ -93,15 +94,17 @@ def _expected(command: click.Command, words: Sequence[str]) -> tuple[str, list[s
 
 
 def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
-    from graphflow.cli.types import use_project
     from graphflow.domain import domain_id
     from graphflow.introspect import offers
     from graphflow.introspect.view import View
 
-    word = place.upper().removeprefix("--")
+    word = re.sub(r"^-*(\w*).*", r"\1", place.upper())
     if word not in LIVE and word not in offers.MESSAGES:
         return ()
-    use_project()
+    if word not in NAMES:
+        from graphflow.cli.types import use_project
+
+        use_project()
     if word in offers.MESSAGES:
         return offers.message(given[1], mark) if len(given) >= 2 else ()
     if word == "TYPE" and not given:

@@ -56,6 +56,7 @@ def _named(what: str, root: Path) -> type[Node]:
         return _only(f"nodes.{what}")
     except NoModule:
         known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
+        known |= {package for package, _ in EXECUTABLES}
         raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -10,6 +11,7 @@ import click
 from graphflow.cli import output
 from graphflow.errors import UsageFault
 
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _FILES = {
     "pyproject.toml": """\
 [project]
@@ -112,20 +114,38 @@ async def test_it_greets_twice_a_second(graph: Graph) -> None:
 @click.argument("name")
 def init(name: str) -> None:
     """Write a starter project: the folder NAME with a node, a graph, a message type and a passing test."""
-    from graphflow.graph.schema import schema_text
-
     folder = Path(name)
+    check_new(folder)
+    for file in written(folder):
+        output.data(f"  {file}")
+    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{folder.name}.yaml")
+
+
+def check_new(folder: Path) -> None:
+    """Check that a project may be made there.
+
+    Raises:
+        UsageFault: Its name is none, or it is there already.
+    """
     word = folder.name
-    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", word):
-        raise UsageFault(f"{word!r}: a project's name has only lower-case letters, digits and single _, as in my_lab")
+    if not _NAME.fullmatch(word):
+        near = re.sub(r"[^a-z0-9]+", "_", word.lower()).strip("_")
+        hint = f"; did you mean {near!r}?" if _NAME.fullmatch(near) else ", as in my_lab"
+        raise UsageFault(f"{word!r}: a project's name has only lower-case letters, digits and single _{hint}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageFault(f"{folder} already exists; choose another name or remove it")
+
+
+def written(folder: Path) -> Iterator[Path]:
+    """Write a project, and give each of its files."""
+    from graphflow.graph.schema import schema_text
+
+    word = folder.name
     for path, text in _FILES.items():
         file = folder / path.replace("@name", word)
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text.replace("@name", word), encoding="utf-8")
-        output.data(f"  {file}")
+        yield file
     schema = folder / "graphs" / "graph.schema.json"
     schema.write_text(schema_text(), encoding="utf-8")
-    output.data(f"  {schema}")
-    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{word}.yaml")
+    yield schema

@@ -138,10 +138,20 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     sys.exit(_main(args))
 
 
+def _invoked(args: Sequence[str]) -> object:
+    """What a command returns. Click's own `main` would take a reader that has had enough for a failure."""
+    name = "gf" if os.path.basename(sys.argv[0]) == "gf" else "graphflow"
+    try:
+        with cli.make_context(name, list(args)) as context:
+            return cli.invoke(context)
+    except click.exceptions.Exit as end:
+        return end.exit_code
+
+
 def _main(args: Sequence[str] | None) -> int:
     _open_standard_streams()
     try:
-        result = cli.main(args, standalone_mode=False)
+        result = _invoked(sys.argv[1:] if args is None else args)
     except click.UsageError as error:
         error.show()
         return exits.USAGE

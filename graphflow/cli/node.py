@@ -13,7 +13,8 @@ from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.machines.cache import ACTION_FEEDBACK, ACTION_FEEDBACK_TYPE, GraphCache
 from graphflow.names import is_hidden
-from graphflow.wire.liveliness import Kind, qos_chunk
+from graphflow.qos import Qos
+from graphflow.wire.liveliness import Kind
 
 _SECTIONS = (
     ("Subscribers", Kind.SUBSCRIPTION),
@@ -76,7 +77,7 @@ def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
         output.data(f"  {title}:")
         for e in cache.endpoints(kind, node=full):
             if include_hidden or not is_hidden(e.name):
-                qos = f"  (qos {qos_chunk(e.qos)}, depth {e.qos.depth})" if verbose else ""
+                qos = f"  ({_words(e.qos)})" if verbose else ""
                 output.data(f"    {e.name}: {e.type}{qos}")
         if kind is Kind.CLIENT:
             output.data("")
@@ -86,6 +87,10 @@ def info(name: str, include_hidden: bool, verbose: bool, as_json: bool) -> None:
             if e.name.endswith(ACTION_FEEDBACK):
                 output.data(f"    {e.name.removesuffix(ACTION_FEEDBACK)}: {e.type.removesuffix(ACTION_FEEDBACK_TYPE)}")
     output.data("")
+
+
+def _words(qos: Qos) -> str:
+    return f"{qos.reliability.name}, {qos.durability.name}, {qos.history.name} ({qos.depth})"
 
 
 def _as_dict(cache: GraphCache, name: str, hidden: bool) -> dict[str, dict[str, str]]:

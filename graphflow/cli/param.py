@@ -48,8 +48,6 @@ def list_(
     as_json: bool,
 ) -> None:
     """List the parameters of one node or of all."""
-    from graphflow.interface import TYPE_NAMES
-
     found: dict[str, dict[str, str]] = {}
     with View(domain_id()) as view:
         servers = {e.node_name for e in view.cache.endpoints(Kind.SERVICE) if e.name.endswith("/list_parameters")}
@@ -66,7 +64,7 @@ def list_(
                     raise
                 output.talk(f"{node}: {error}")
                 continue
-            found[node] = {n: TYPE_NAMES[described[n].type] if n in described else "" for n in names}
+            found[node] = {n: _type_name(described[n].type) if n in described else "" for n in names}
     if as_json:
         output.as_json(found)
         return
@@ -74,6 +72,12 @@ def list_(
         if not name:
             output.data(f"{node}:")
         output.lines(f"  {n}{f' (type: {t})' if t else ''}" for n, t in names_and_types.items())
+
+
+def _type_name(type_: int) -> str:
+    from graphflow.interface import TYPE_NAMES
+
+    return TYPE_NAMES[type_]
 
 
 @param.command()

@@ -111,11 +111,22 @@ def xml(package: str, tag: str | None) -> int:
 @click.option("--maintainer-email", help="For ROS 2's commands.")
 @click.option("--maintainer-name", help="For ROS 2's commands.")
 @click.argument("more", nargs=-1)
-@click.pass_context
-def create(ctx: click.Context, /, name: str, destination_directory: Path, **unused: object) -> None:
+def create(name: str, destination_directory: Path, **unused: object) -> None:
     """Write a starter project, as `graphflow init NAME` does; ROS 2's options are taken, and not needed."""
-    from graphflow.cli.init import init
+    from graphflow.cli.init import check_new, written
 
+    folder = destination_directory / name
+    check_new(folder)
+    output.data("going to create a new package")
+    output.data(f"package name: {name}")
+    output.data(f"destination directory: {destination_directory.resolve()}")
+    output.data(f"creating folder {_dotted(folder)}")
+    output.lines(f"creating {_dotted(file)}" for file in written(folder))
     if any(unused.values()):
-        output.talk("note: a project needs no build type and no list of dependencies; it is used as it is")
-    ctx.invoke(init, name=str(destination_directory / name))
+        output.talk("note: there is no build type and no list of dependencies; nothing is built")
+    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{name}.yaml")
+
+
+def _dotted(path: Path) -> str:
+    """A path as ROS 2 tells it: `./my_package`."""
+    return str(path) if path.is_absolute() else f"./{path}"

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from graphflow.bag.info import topics_of
 from graphflow.bag.player import MAX_RATE, MIN_RATE, Player, PlayOptions
 from graphflow.bag.reader import Bag
 from graphflow.cli import exits, output
@@ -66,7 +67,7 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
     began = time.monotonic()
     with pressed(key) if keys else contextlib.nullcontext(False) as has_keys:
         hint = " SPACE pauses, RIGHT steps, UP and DOWN change the rate, Ctrl-C ends it." if has_keys else ""
-        output.talk(f"playing {len(player.topics)} topics of {bag.path}.{hint}")
+        output.talk(f"playing {topics_of(len(player.topics))} of {bag.path}.{hint}")
         shown = asyncio.ensure_future(_show(player, bag)) if sys.stderr.isatty() else None
         try:
             await (player.run() if burst is None else player.burst(burst))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -13,7 +12,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 def plot_options(command: F) -> F:
     """Add what says where the picture goes."""
-    file = click.Path(dir_okay=False, path_type=Path)
+    file = click.Path(dir_okay=False)
     for add in (
         click.option("--csv", "as_csv", is_flag=True, help="The numbers themselves: seconds, name, value."),
         click.option("--png", type=file, help="Into a PNG file."),

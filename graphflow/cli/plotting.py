@@ -38,8 +38,8 @@ class PlotOptions:
     seconds: float = 30.0
     """What a terminal shows."""
     duration: float | None = None
-    svg: Path | None = None
-    png: Path | None = None
+    svg: str | None = None
+    png: str | None = None
     as_csv: bool = False
 
     def check(self) -> None:
@@ -173,7 +173,7 @@ def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
             except OSError as error:
                 output.error(f"{file}: {error.strerror or error}")
                 return exits.FAILED
-            output.data(str(file))
+            output.data(file)
     if not (options.as_csv or options.svg or options.png):
         output.lines(chart(every, (shutil.get_terminal_size().columns, HEIGHT)).splitlines())
     return exits.OK
@@ -186,7 +186,7 @@ def _csv(curves: Sequence[Curve]) -> Iterator[str]:
             yield f"{at:.6f},{curve.label},{value!r}"
 
 
-def _draw(curves: Sequence[Curve], title: str, file: Path, kind: str) -> None:
+def _draw(curves: Sequence[Curve], title: str, file: str, kind: str) -> None:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 5), layout="constrained")

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.bag.choice import Choice
-from graphflow.bag.info import size
+from graphflow.bag.info import size, topics_of
 from graphflow.bag.overrides import read as read_overrides
 from graphflow.bag.recorder import CACHE, Recorder
 from graphflow.bag.writer import BagWriter
@@ -125,7 +125,9 @@ async def _record(node: Node, writer: BagWriter, choice: Choice, options: Record
 
 def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -> None:
     whole = writer.contents
-    written = f"{whole.message_count:,} messages of {recorder.topics} topics in {seconds:.1f} s, {size(writer.size)}"
+    written = (
+        f"{whole.message_count:,} messages of {topics_of(recorder.topics)} in {seconds:.1f} s, {size(writer.size)}"
+    )
     _tell(node, f"Recording stopped: {written} in {writer.folder}")
     if recorder.dropped:
         output.talk(f"WARNING: {recorder.dropped:,} messages were dropped: they came faster than they could be written")
@@ -144,7 +146,7 @@ async def _show(recorder: Recorder, began: float) -> None:
         rate, last, at = (recorder.recorded - last) / (now - at), recorder.recorded, now
         lost = f", {recorder.dropped + recorder.lost:,} lost" if recorder.dropped + recorder.lost else ""
         state = "paused" if recorder.is_paused else f"{rate:,.0f} messages/s"
-        output.progress(f"{now - began:,.0f} s  {recorder.topics} topics  {state}  {size(recorder.size)}{lost}")
+        output.progress(f"{now - began:,.0f} s  {topics_of(recorder.topics)}  {state}  {size(recorder.size)}{lost}")
 
 
 def _serve(node: Node, recorder: Recorder) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
@@ -131,13 +131,19 @@ def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]
             if rule.is_optional and interface is not None:
                 names = resolver(node)
                 full = {names.full(e.name): e.name for e in interface.endpoints}
-                match = names.full(rule.match)
-                fits[rule.place] = fits.get(rule.place, False) or match in full
-                fits[rule.place] |= may_make(interface.dynamic_names, match)
+                fits[rule.place] = fits.get(rule.place, False) or _fits(rule.match, names, full, interface)
                 shared.setdefault(rule.place, (rule.match, []))[1].extend(full.values())
     for place, (match, known) in shared.items():
         if not fits[place]:
             yield Problem(place, f"no node of this group has a topic or service {match!r}{did_you_mean(match, known)}")
+
+
+def _fits(match: str, names: Resolver, full: Iterable[str], interface: Interface) -> bool:
+    """Whether a remap has a name to act on, or may have one."""
+    if any(map(names.pattern(match).fullmatch, full)):
+        return True
+    dynamic = interface.dynamic_names
+    return bool(dynamic) if "*" in match else may_make(dynamic, names.full(match))
 
 
 def _class(interface: Interface) -> str:
@@ -148,13 +154,12 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     names = resolver(node)
     full = {names.full(e.name): e.name for e in interface.endpoints}
     for rule in node.remaps:
-        match = names.full(rule.match)
-        if not rule.is_optional and match not in full and not may_make(interface.dynamic_names, match):
+        if not rule.is_optional and not _fits(rule.match, names, full, interface):
             help_ = did_you_mean(rule.match, full.values())
             yield Problem(
                 rule.place,
                 f"{_class(interface)} has no topic or service {rule.match!r}{help_}"
-                + ("" if help_ else _unread(interface, match)),
+                + ("" if help_ or "*" in rule.match else _unread(interface, names.full(rule.match))),
             )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -24,7 +25,7 @@ from graphflow.graph.substitutions import Outside, Run
 from graphflow.graph.tree import Item, source_of, tree
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
-from graphflow.names import did_you_mean, expand, split
+from graphflow.names import Resolver, did_you_mean, expand, split
 
 
 def load(
@@ -236,8 +237,8 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
                     raise InvalidName(
                         f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
                     )
-                expand(match, namespace, name)
-                expand(replacement, namespace, name)
+                Resolver(name, namespace).pattern(match)
+                expand(re.sub(r"\\\d", "x", replacement), namespace, name)
             except InvalidName as error:
                 problems.add(place, str(error))
                 continue

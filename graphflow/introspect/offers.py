@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from graphflow.errors import GraphflowError
-from graphflow.introspect.echo import flow, plain
 from graphflow.machines.cache import GraphCache
-from graphflow.msgs import registry
 
 MESSAGES = ("VALUES", "GOAL", "REQUEST")
 """Places for a message; the type was named second."""
@@ -38,6 +36,9 @@ def names_for(place: str, given: Sequence[str], cache: GraphCache) -> list[str]:
 
 def message(type_name: str, mark: str = "'") -> list[str]:
     """A message with all its fields, between quotation marks, to be filled in; none if there is no such type."""
+    from graphflow.introspect.echo import flow, plain
+    from graphflow.msgs import registry
+
     try:
         return [f"{mark}{flow(plain(registry.prototype(registry.full_name(type_name))))}{mark}"]
     except GraphflowError:

@@ -35,7 +35,7 @@ class RemoteParameters:
         full, type_ = f"{self._node}/{service}", f"rcl_interfaces/srv/{type_name}"
         self._view.service_type(full)
         message = from_plain(registry.interface_class(f"{type_}_Request"), request)
-        return self._view.call(full, type_, message, self._timeout)
+        return self._view.call(full, type_, message, self._timeout, plain=True)
 
     def names(self) -> list[str]:
         """All names, sorted."""

@@ -96,7 +96,7 @@ class View:
             time.sleep(0.05)
             self.refresh()
 
-    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:
+    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         """Call a service; returns the response message.
 
         Args:
@@ -104,6 +104,7 @@ class View:
             type_name: `package/srv/Name`, as the server announces it.
             request: A message of its request type.
             timeout: Seconds.
+            plain: Numeric arrays of the response are lists.
 
         Raises:
             CallError: As for `ServiceClient.call`.
@@ -122,7 +123,8 @@ class View:
             raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
         if reply.is_error:
             raise RemoteError.from_payload(reply.payload, name)
-        return registry.codec(service.response.name).decode(reply.payload)
+        codec = registry.plain_codec if plain else registry.codec
+        return codec(service.response.name).decode(reply.payload)
 
     def reports(self, key: str, timeout: float) -> list[bytes]:
         """What all graphflow processes answer on one of graphflow's keys."""

@@ -298,6 +298,12 @@ def codec(name: str) -> Codec:
     return Codec(message_schema(name), Types(message_schema, interface_class, checked))
 
 
+@cache
+def plain_codec(name: str) -> Codec:
+    """The codec of a message that decodes numeric arrays into lists: slower for long ones, but numpy is not loaded."""
+    return Codec(message_schema(name), Types(message_schema, interface_class, checked, plain=True))
+
+
 def has_numeric_arrays(name: str) -> bool:
     """Whether a message type, or a part of a service or action, holds arrays of numbers, for which numpy is loaded."""
     whole = whole_schema(name)
@@ -307,7 +313,7 @@ def has_numeric_arrays(name: str) -> bool:
 
 def forget() -> None:
     """Re-read every definition from here on; classes already made stay as they are. For editors and tests."""
-    for memory in (interface, _part, message_schema, hash_of, interface_class, codec):
+    for memory in (interface, _part, message_schema, hash_of, interface_class, codec, plain_codec):
         memory.cache_clear()
 
 

@@ -17,7 +17,15 @@ from graphflow.names import Remap, Resolver, did_you_mean
 
 logger = logging.getLogger("graphflow")
 
-_OPTIONS = ("-r", "--remap", "-p", "--param", "--params-file", "--log-level", "--ros-args", "--")
+_VALUED = ("-r", "--remap", "-p", "--param", "--params-file", "--log-level")
+_LEFT_OUT = ("--log-config-file", "--log-file-name", "-e", "--enclave")
+"""Options with a value that mean nothing here: logs are the supervisor's, and there are no enclaves."""
+_FLAGS = {
+    f"--{verb}-{what}-logs": verb == "enable"
+    for verb in ("enable", "disable")
+    for what in ("rosout", "stdout", "external-lib")
+}
+_OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 
 @dataclass
@@ -29,6 +37,12 @@ class RosArgs:
     """(node or None for all, parameter, value, where it was written)."""
     params_files: list[str] = field(default_factory=list)
     log_level: str = "info"
+    log_levels: dict[str, str] = field(default_factory=dict)
+    """Of single loggers, by name."""
+    has_rosout: bool = True
+    """Whether what nodes log is published on /rosout."""
+    has_stdout: bool = True
+    """Whether what nodes log is printed."""
     rest: list[str] = field(default_factory=list)
     """Words that are not for ROS."""
 
@@ -70,7 +84,12 @@ def parse_ros_args(words: Sequence[str]) -> RosArgs:
             in_ros = True
         elif word == "--" and in_ros:
             in_ros = False
-        elif word in ("-r", "--remap", "-p", "--param", "--params-file", "--log-level"):
+        elif word in _FLAGS and in_ros:
+            if "rosout" in word:
+                result.has_rosout = _FLAGS[word]
+            elif "stdout" in word:
+                result.has_stdout = _FLAGS[word]
+        elif word in _VALUED or (in_ros and word in (*_LEFT_OUT, "-params-file")):
             if not todo:
                 raise GraphflowError(f"{word} needs a value after it, such as pose:=/turtle1/pose")
             _option(result, word, todo.pop(0))
@@ -87,9 +106,15 @@ def _option(result: RosArgs, option: str, value: str) -> None:
     if option in ("-r", "--remap"):
         _remap(result, value)
     elif option == "--log-level":
-        result.log_level = value
-    elif option == "--params-file":
+        name, arrow, word = value.partition(":=")
+        if arrow:
+            result.log_levels[name] = word
+        else:
+            result.log_level = value
+    elif option in ("--params-file", "-params-file"):  # with one dash, as some slides have it
         result.params_files.append(value)
+    elif option in _LEFT_OUT:
+        logger.warning("%s means nothing to graphflow, and is left out", option)
     else:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from graphflow.deadlock import races
 from graphflow.deadlock.protocols import Unopened
-from graphflow.errors import ClosedError, DeclarationError, ParameterError
+from graphflow.errors import ClosedError, DeclarationError, ParameterError, UsageFault
 from graphflow.executor.clock import Clock
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.runner import Runner, RunnerSpec
@@ -84,6 +84,8 @@ class NodeCore:
         self.tasks: set[asyncio.Task[Any]] = set()
         """Tasks that `spawn` has started and that have not ended."""
         self.runners: list[Runner] = []
+        self.refuses_unused = False
+        """Whether remap rules that match nothing are an error."""
         self.failure: BaseException | None = None
         """The error that ended the node."""
         self.failure_taken = False
@@ -315,6 +317,7 @@ class NodeCore:
         try:
             await self.instance.on_start()
         except Exception as error:
+            self.refuses_unused = False
             self.warn_unused_remaps()  # which may be why
             self.report_error("on_start", error)
             self.failure = error
@@ -328,8 +331,15 @@ class NodeCore:
             part.open()
 
     def warn_unused_remaps(self) -> None:
-        """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later."""
-        for problem in self.unused_remaps():
+        """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later.
+
+        Raises:
+            UsageFault: There are some, and whoever wrote them waits for the answer.
+        """
+        problems = self.unused_remaps()
+        if self.refuses_unused and problems:
+            raise UsageFault("; ".join(problems))
+        for problem in problems:
             self.log.warning("%s", problem)
 
     def unused_remaps(self) -> list[str]:

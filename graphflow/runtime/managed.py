@@ -153,6 +153,7 @@ class ManagedCore(NodeCore):
 
     def warn_unused_remaps(self) -> None:
         """Wait with that until the node is configured, which may make more names."""
+        self.refuses_unused = False
         if self.state is LifecycleState.INACTIVE:
             super().warn_unused_remaps()
 

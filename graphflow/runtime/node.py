@@ -108,7 +108,9 @@ class Node(SpeaksRos):
         """The node's logger; its records go to the console and to /rosout."""
         self.parameters = self._core.parameters
         self._core.bind(
-            parameter_services=start_parameter_services, rosout=enable_rosout, logger_service=enable_logger_service
+            parameter_services=start_parameter_services,
+            rosout=enable_rosout and given.rosout,
+            logger_service=enable_logger_service,
         )
 
     @classmethod

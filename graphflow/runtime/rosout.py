@@ -50,10 +50,13 @@ def log_level(word: str) -> int:
     return words[word.lower()]
 
 
-def setup_console(level: int = logging.INFO) -> None:
+def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
     """Write graphflow's log records to stderr in ROS 2's format, and what Python warns of forgotten awaits with them.
 
     Calling it again only changes the level.
+
+    Args:
+        is_quiet: Whether only what is wrong with the program itself is written.
     """
     logger = logging.getLogger("graphflow")
     logger.setLevel(level)
@@ -62,6 +65,9 @@ def setup_console(level: int = logging.INFO) -> None:
         handler = logging.StreamHandler(sys.stderr)
         handler.setFormatter(ConsoleFormatter())
         logger.addHandler(handler)
+    for known in logger.handlers:
+        if isinstance(known.formatter, ConsoleFormatter):
+            known.setLevel(logging.CRITICAL + 1 if is_quiet else logging.NOTSET)
 
 
 class Rosout(logging.Handler, Part):

@@ -13,11 +13,12 @@ from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
 from graphflow.deadlock.user_code import place_in, users_part
-from graphflow.errors import GraphflowError
+from graphflow.errors import GraphflowError, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
 from graphflow.runtime.surroundings import Surroundings, make_within
@@ -123,13 +124,17 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
         _refuse_unused(ros, nodes)
-        setup_console(log_level(ros.log_level))
+        setup_console(log_level(ros.log_level), is_quiet=not ros.has_stdout)
+        for name, word in ros.log_levels.items():
+            node_logger(f"/{name.replace('.', '/')}").setLevel(log_level(word))
     except GraphflowError as error:
         print_error(error)
         raise SystemExit(2) from None
     made: list[Node] = []
     try:
         made += [n if isinstance(n, Node) else make(n, ros) for n in nodes]
+        for node in made:
+            core_of(node).refuses_unused = len(made) == 1  # of several, each may be meant by some
     except GraphflowError as error:
         print_error(error)
         raise SystemExit(2) from None
@@ -146,7 +151,7 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
         if not isinstance(error, GraphflowError):
             raise
         print_error(error)
-        raise SystemExit(1) from None
+        raise SystemExit(2 if isinstance(error, UsageFault) else 1) from None
 
 
 def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:
@@ -176,7 +181,7 @@ def make(cls: type[Node], ros: RosArgs) -> Node:
         GraphflowError: A parameter does not exist or fit.
     """
     interface = cls.interface()
-    given = Surroundings(remaps=ros.remaps, overrides=ros.params_for(interface))
+    given = Surroundings(remaps=ros.remaps, overrides=ros.params_for(interface), rosout=ros.has_rosout)
     node = make_within(cls, given, interface.node_name)
     core_of(node).ensure_made()
     return node

@@ -33,6 +33,7 @@ class Surroundings:
         remaps: Rules that come before the class's own.
         overrides: Parameter values, each with where it was written.
         concurrency: What a graph file says about its groups.
+        rosout: Whether what it logs is published.
     """
 
     name: str | None = None
@@ -40,6 +41,7 @@ class Surroundings:
     remaps: Sequence[Remap] = ()
     overrides: Mapping[str, tuple[Any, str]] = field(default_factory=dict)
     concurrency: Regrouping = field(default_factory=Regrouping)
+    rosout: bool = True
 
 
 NOTHING = Surroundings()
@@ -115,7 +117,7 @@ def unused_remaps(
     """
     known = [r.given for r in names.derivations.values() if r.given not in own]
     for rule in names.unused():
-        if may_make(dynamic, names.full(rule.match)):
+        if may_make(dynamic, names.full(rule.match)) if "*" not in rule.match else dynamic:
             continue
         is_param = rule.match in parameters
         hint = f"; to set the parameter write -p {rule}" if is_param else did_you_mean(rule.match, known)

@@ -48,7 +48,7 @@ def from_message(message: rcl.ParameterValue) -> Any:
         raise ParameterError(f"{message.type} is not a parameter type")
     value = getattr(message, VALUE_FIELDS[message.type])
     if message.type == 5:
-        return value.tobytes()
+        return bytes(value)
     return value.tolist() if hasattr(value, "tolist") else value
 
 

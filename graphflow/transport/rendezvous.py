@@ -8,7 +8,6 @@ already there, such as rmw_zenohd, is joined. Anything else on the port is an er
 from __future__ import annotations
 
 import os
-from pathlib import Path
 
 import zenoh
 
@@ -105,7 +104,8 @@ def _listener_uid(port: int) -> int | None:
     """The user who listens on a TCP port, as Linux knows it; None where the system does not tell."""
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         try:
-            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
+            with open(table, encoding="ascii") as file:
+                lines = file.read().splitlines()[1:]
         except OSError:
             continue
         for fields in map(str.split, lines):

@@ -41,6 +41,8 @@ class Types(NamedTuple):
     message_class: Callable[[str], type]
     checked: Callable[[Any], Any]
     """A copy of a message with every value checked and converted; raises EncodeError naming the field."""
+    plain: bool = False
+    """Whether numeric arrays are decoded into lists, for which numpy is not loaded."""
 
 
 def min_size(type_: FieldType, schema: Callable[[str], Message]) -> int:

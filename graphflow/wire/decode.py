@@ -81,12 +81,7 @@ class Decoder(Code):
         self.line("p = e")
 
     def numeric_array(self, type_: FieldType, target: str) -> None:
-        from graphflow.wire import arrays
-
         size = struct.calcsize(FORMATS[type_.base])
-        dtype = arrays.DTYPES[type_.base].newbyteorder("<" if self.order == "<" else ">")
-        d = self.constant("D", dtype)
-        self.names["array_view"] = arrays.view
         n = str(type_.size)
         if type_.array != "fixed":
             n = self.fresh("n")
@@ -97,8 +92,18 @@ class Decoder(Code):
             self.line(align if type_.array == "fixed" else f"if {n}: {align}")
         self.line(f"e = p + {n} * {size}")
         self.line("if e > size: raise ValueError('an array ends after the payload')")
-        self.line(f"{target} = array_view(buf, {d}, {n}, p)")
+        if self.types.plain:
+            self.names["unpack_from"] = struct.unpack_from
+            self.line(f"{target} = list(unpack_from(f'{self.order}{{{n}}}{FORMATS[type_.base]}', buf, p))")
+        else:
+            self.line(f"{target} = array_view(buf, {self._dtype(type_)}, {n}, p)")
         self.line("p = e")
+
+    def _dtype(self, type_: FieldType) -> str:
+        from graphflow.wire import arrays
+
+        self.names["array_view"] = arrays.view
+        return self.constant("D", arrays.DTYPES[type_.base].newbyteorder("<" if self.order == "<" else ">"))
 
     def object_array(self, type_: FieldType, target: str) -> None:
         n, items = str(type_.size), self.fresh("l")

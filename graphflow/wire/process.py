@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.system import host_name, user_id
@@ -37,7 +36,7 @@ class ProcessToken(NamedTuple):
     def command(self) -> str:
         """The command that started the process, where this system can tell."""
         try:
-            words = Path(f"/proc/{self.pid}/cmdline").read_bytes().split(b"\0") if self.host == host_name() else []
+            words = _bytes(f"/proc/{self.pid}/cmdline").split(b"\0") if self.host == host_name() else []
         except OSError:
             return ""
         return b" ".join(words).decode(errors="replace").strip()
@@ -74,6 +73,11 @@ def parse(text: str) -> ProcessToken | None:
 def _state(pid: int) -> str:
     """Linux's letter for a process's state."""
     try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        return _bytes(f"/proc/{pid}/stat").decode(errors="replace").rpartition(")")[2].split()[0]
     except (OSError, IndexError):
         return ""
+
+
+def _bytes(path: str) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()

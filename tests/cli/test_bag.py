@@ -42,7 +42,7 @@ def test_echo(machine: Machine, folder: Path) -> None:
 def test_bags_of_bags(machine: Machine, folder: Path) -> None:
     """Cut, converted, merged, recovered; each says what it made."""
     text = machine.look("bag", "filter", "bag", "--topics", "/count", "--start", "1", cwd=folder)
-    assert text.startswith("bag_filtered: 10 messages of 1 topics, ")
+    assert text.startswith("bag_filtered: 10 messages of 1 topic, ")
     machine.look("bag", "filter", "bag", "-x", "count", "-m", "chatter:=/news", "-o", "news", cwd=folder)
     assert Bag(folder / "news").contents.counts == {"/map": 1, "/news": 20}
     machine.look("bag", "convert", "bag", "--compression", "lz4", "-b", "100", "-o", "small", cwd=folder)

@@ -18,7 +18,7 @@ TWIST = "{linear: {x: 0.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 0.0}}"
 @pytest.mark.parametrize(
     ("words", "partial", "found"),
     [
-        ("", "to", ["topic"]),
+        ("", "top", ["top", "topic"]),
         ("topic", "e", ["echo"]),
         ("topic", "x", []),
         ("nothing", "", []),

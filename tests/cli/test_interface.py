@@ -37,8 +37,8 @@ def test_a_message(name: str, show: Show) -> None:
     """Nested fields are indented by a tab; the type may be written in each of ROS's ways."""
     assert show(name) == (
         exits.OK,
-        "Vector3 linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
-        "Vector3 angular\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n",
+        "Vector3  linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+        "Vector3  angular\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n",
         "",
     )
 

@@ -58,7 +58,7 @@ def test_create(machine: Machine, tmp_path: Path) -> None:
     """As it stands on the slides."""
     words = ["my_pkg", "--build-type", "ament_python", "--node-name", "first", "--destination-directory", "src"]
     text = machine.look("pkg", "create", *words, cwd=tmp_path)
-    assert "note: a project needs no build type" in text
+    assert "note: there is no build type" in text
     assert (tmp_path / "src" / "my_pkg" / "nodes").is_dir()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -22,4 +21,4 @@ def test_files_and_numbers() -> None:
 
     result = CliRunner().invoke(plot, ["--png", "a.png", "--svg", "b.svg", "--csv"])
     assert result.exit_code == 0, result.output
-    assert taken == {"png": Path("a.png"), "svg": Path("b.svg"), "as_csv": True}
+    assert taken == {"png": "a.png", "svg": "b.svg", "as_csv": True}

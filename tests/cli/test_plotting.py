@@ -53,7 +53,7 @@ def test_files_need_what_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Told before anything is done."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(UsageFault, match=r"pip install 'graphflow-zenoh\[plot\]'"):
-        PlotOptions(png=Path("a.png")).check()
+        PlotOptions(png="a.png").check()
     PlotOptions().check()
 
 

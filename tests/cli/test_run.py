@@ -174,3 +174,16 @@ def test_a_command_before_it(machine: Machine) -> None:
     assert program.end(signal.SIGINT) == 0
     words = ("run", "--prefix", "no-such-program -x", "demo_nodes_cpp", "talker")
     assert "there is no program 'no-such-program' on the PATH" in machine.run(*words, code=2)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["-r", "foo:=/news"], "error: the remap foo:=/news matches no name of this node; there is chatter"),
+        (["-r", "**/chattr:=/news"], "error: the remap **/chattr:=/news matches no name of this node"),
+        (["-r", "rate:=5.0"], "to set the parameter write -p rate:=5.0"),
+    ],
+)
+def test_a_remap_that_matches_nothing(machine: Machine, words: list[str], told: str) -> None:
+    """Is an error, with exit code 2: ROS 2 would say nothing, and nothing would come."""
+    assert told in machine.run("run", "talker", "--ros-args", *words, code=2)

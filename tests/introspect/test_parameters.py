@@ -33,7 +33,7 @@ class Robot(View):
             raise CallError(f"no node offers the service {name}")
         return ""
 
-    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:
+    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         self.calls.append(name)
         assert timeout == 1.5
         match request:

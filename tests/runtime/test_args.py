@@ -105,3 +105,28 @@ def test_what_is_wrong_is_said(words: list[str], text: str) -> None:
     with pytest.raises(GraphflowError) as caught:
         parse_ros_args(words)
     assert text in str(caught.value)
+
+
+def test_the_slides_dash() -> None:
+    """`-params-file` has one dash on some slides, and means what it says."""
+    assert parse_ros_args(["--ros-args", "-params-file", "a.yaml"]).params_files == ["a.yaml"]
+    assert parse_ros_args(["-params-file", "a.yaml"]).rest == ["-params-file", "a.yaml"]
+
+
+def test_logs() -> None:
+    """Levels of single loggers, and where logs go; what means nothing here is taken, and told."""
+    words = ["--ros-args", "--log-level", "talker:=warn", "--log-level", "debug", "--disable-rosout-logs"]
+    parsed = parse_ros_args([*words, "--disable-stdout-logs", "--enable-stdout-logs", "--disable-external-lib-logs"])
+    assert (parsed.log_level, parsed.log_levels) == ("debug", {"talker": "warn"})
+    assert (parsed.has_rosout, parsed.has_stdout) == (False, True)
+    assert parse_ros_args(["--disable-stdout-logs"]).rest == ["--disable-stdout-logs"]
+
+
+@pytest.mark.parametrize("option", ["--log-config-file", "--log-file-name", "-e", "--enclave"])
+def test_what_means_nothing_here(option: str, caplog: pytest.LogCaptureFixture) -> None:
+    """Is taken with its value, and told."""
+    parsed = parse_ros_args(["--ros-args", option, "x", "-r", "a:=b"])
+    assert [str(r) for r in parsed.remaps] == ["a:=b"]
+    assert f"{option} means nothing to graphflow" in caplog.text
+    with pytest.raises(GraphflowError, match="needs a value"):
+        parse_ros_args(["--ros-args", option])

@@ -9,6 +9,7 @@ import pytest
 
 from graphflow.errors import DecodeError
 from graphflow.msgs import registry
+from graphflow.msgs.rcl_interfaces.msg import ParameterValue
 
 from .messages import make
 
@@ -106,3 +107,18 @@ def test_a_decode_error_names_type_and_size() -> None:
         DecodeError, match=r"^std_msgs/msg/UInt8MultiArray: an array ends after the payload \(17 bytes\)$"
     ):
         registry.codec("std_msgs/msg/UInt8MultiArray").decode(bytes.fromhex("00010000 00000000 00000000 02000000 61"))
+
+
+def test_plain_arrays() -> None:
+    """As lists, for those who do without numpy; a length that is a lie is refused all the same."""
+    value = ParameterValue(
+        byte_array_value=b"ab", bool_array_value=[True, False], integer_array_value=[3, -4], double_array_value=[1.5]
+    )
+    name = "rcl_interfaces/msg/ParameterValue"
+    found = registry.plain_codec(name).decode(value.to_bytes())
+    assert (found.byte_array_value, found.bool_array_value) == ([97, 98], [True, False])
+    assert (found.integer_array_value, found.double_array_value) == ([3, -4], [1.5])
+    big = bytes.fromhex("00000000 00000000 00000000 00000002 3f800000 c0000000")
+    assert registry.plain_codec("std_msgs/msg/Float32MultiArray").decode(big).data == [1.0, -2.0]
+    with pytest.raises(DecodeError, match="ends after the payload"):
+        registry.plain_codec("std_msgs/msg/Float64MultiArray").decode(b"\0\1\0\0" + bytes(8) + b"\xff" * 4)
