@@ -148,7 +148,9 @@ complete -o default -F _graphflow graphflow gf
 #compdef graphflow gf
 _graphflow() {
     local -a found
-    found=("${(@f)$(graphflow completion words -- "${LBUFFER}" 2>/dev/null)}")
+    # zsh takes an opening quotation mark off the line, and adds both to what it is given
+    found=("${(@f)$(graphflow completion words -- "${LBUFFER%$PREFIX}$QIPREFIX$PREFIX" 2>/dev/null)}")
+    [[ -n "$QIPREFIX" ]] && found=("${(@)${(@)found#$QIPREFIX}%$QIPREFIX}")
     [[ -n "$found" ]] && compadd -Q -U -- $found || _files
 }
 (( $+functions[compdef] )) || { autoload -Uz compinit && compinit }

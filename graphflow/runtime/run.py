@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
 from graphflow.deadlock.user_code import place_in, users_part
@@ -74,7 +74,7 @@ async def serve(nodes: Sequence[Node], context: Context, stop: asyncio.Event) ->
 
 
 def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
-    """Set `stop` on SIGINT or SIGTERM; a second one ends the process at once, even when the loop is blocked.
+    """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second one ends the process at once, even when the loop is blocked.
 
     Signals that come together count as one: a signal to a process and then to its group is meant once.
 
@@ -99,7 +99,7 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
             reminder.start()
 
     # Not the loop's own handlers, which would wait for a handler that does not return.
-    former = {number: signal.signal(number, caught) for number in (signal.SIGINT, signal.SIGTERM)}
+    former = {number: signal.signal(number, caught) for number in _stop_signals()}
 
     def restore() -> None:
         reminder.cancel()
@@ -107,6 +107,14 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
             signal.signal(number, handler)
 
     return restore
+
+
+def _stop_signals() -> Iterator[signal.Signals]:
+    yield signal.SIGINT
+    yield signal.SIGTERM
+    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; under `nohup` that is ignored
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        yield hang_up
 
 
 def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:

@@ -86,3 +86,18 @@ def test_a_shell_that_is_not_known(machine: Machine, monkeypatch: pytest.MonkeyP
     monkeypatch.setitem(machine.env, "SHELL", "/bin/dash")
     told = "which shell is meant? graphflow completion install bash|zsh|fish"
     assert told in machine.look("completion", "install", code=2)
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
+@pytest.mark.parametrize(
+    ("line", "found"), [("graphflow topic ec", "echo"), ("gf topic pub /a std_msgs/msg/String '", "'{data: ''}'")]
+)
+def test_fish(machine: Machine, tmp_path: Path, line: str, found: str) -> None:
+    """The same in fish."""
+    script = tmp_path / "script.fish"
+    path = f"set -x PATH {Path(sys.executable).parent} $PATH\n"
+    script.write_text(f'{path}{SCRIPTS["fish"]}\ncomplete -C "{line}"\n')
+    told = subprocess.run(
+        ["fish", "-N", script], env=machine.env, capture_output=True, text=True, timeout=30, check=True
+    )
+    assert told.stdout.splitlines()[:1] == [found]

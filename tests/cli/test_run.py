@@ -16,7 +16,7 @@ from tests.conftest import PROGRAMS, Machine
 pytestmark = pytest.mark.real
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_node_cleanly(machine: Machine, number: int) -> None:
     """No traceback, exit code 0."""
     node = machine.start("run", "nodes.talker:Talker", "--ros-args", "-p", "rate:=20.0")
