@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from graphflow.cli import output
-from graphflow.cli.types import agree, use_project
+from graphflow.cli.types import agree, names_of_type, use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
@@ -48,15 +48,12 @@ def type_(name: str) -> None:
 @action.command()
 @click.argument("type_name", metavar="TYPE")
 @click.option("-c", "--count-actions", is_flag=True, help="Only the count.")
-def find(type_name: str, count_actions: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def find(type_name: str, count_actions: bool, as_json: bool) -> None:
     """List the actions of a type."""
-    from graphflow.msgs import registry
-
-    use_project()
-    wanted = registry.full_name(type_name)
     with View(domain_id()) as view:
-        found = [name for name, types in view.cache.actions().items() if wanted in types]
-    output.lines([str(len(found))] if count_actions else found)
+        actions = view.cache.actions()
+    output.listing(names_of_type(actions, type_name, only_count=count_actions), json=as_json)
 
 
 @action.command()

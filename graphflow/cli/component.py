@@ -116,12 +116,17 @@ def unload(container: str, numbers: tuple[int, ...], graph: str | None) -> None:
 
 @component.command()
 @click.argument("package", required=False)
-def types(package: str | None) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def types(package: str | None, as_json: bool) -> None:
     """List the plugins of ROS's packages that are here; any class of a project can be loaded as well."""
     packages = {known for known, _ in EXECUTABLES}
     if package is not None and package not in packages:
         raise UsageFault(f"there is no package {package!r} here{did_you_mean(package, packages)}")
-    for known in [package] if package else sorted(packages):
+    shown = [package] if package else sorted(packages)
+    if as_json:
+        output.as_json({known: [name for of, name in EXECUTABLES if of == known] for known in shown})
+        return
+    for known in shown:
         if package is None:
             output.data(known)
         indent = "" if package else "  "

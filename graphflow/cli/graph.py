@@ -30,6 +30,7 @@ PNG_LIMIT = 60.0
 @click.option("-a", "--all", "everything", is_flag=True, help="Also unconnected topics, and those of every node.")
 @click.option("--dot", "form", flag_value="dot", help="In the words of Graphviz.")
 @click.option("--mermaid", "form", flag_value="mermaid", help="In the words of Mermaid.")
+@click.option("--json", "form", flag_value="json", help="Print JSON.")
 @click.option("--svg", type=click.Path(dir_okay=False, path_type=Path), help="Into an SVG file.")
 @click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Into a PNG file, by Graphviz.")
 def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, png: Path | None) -> int:
@@ -48,6 +49,10 @@ def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, 
         return _png(dot(made), png)
     if svg is not None:
         return _svg(made, svg)
+    if form == "json":
+        arrows = [{"source": a.source, "target": a.target, "fits": not a.is_bad} for a in made.arrows]
+        output.as_json({"nodes": list(made.nodes), "topics": list(made.topics), "arrows": arrows})
+        return exits.OK
     if form is not None:
         output.data(dot(made) if form == "dot" else mermaid(made))
         return exits.OK

@@ -54,15 +54,20 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
 
 @interface.command("list")
 @_kinds
-def list_(only: str | None) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def list_(only: str | None, as_json: bool) -> None:
     """List all types, the project's own too."""
     from graphflow.msgs import registry
 
     use_project()
-    for kind, head in (("msg", "Messages:"), ("srv", "Services:"), ("action", "Actions:")):
-        if only in (None, kind):
-            names = [f"{p}/{kind}/{n}" for p in registry.packages() for n in registry.names_in(p, kind)]
-            output.lines([head, *(f"    {name}" for name in names)])
+    heads = {"msg": "Messages:", "srv": "Services:", "action": "Actions:"}
+    kinds = [only] if only else heads
+    found = {k: [f"{p}/{k}/{n}" for p in registry.packages() for n in registry.names_in(p, k)] for k in kinds}
+    if as_json:
+        output.as_json(found)
+        return
+    for kind, names in found.items():
+        output.lines([heads[kind], *(f"    {name}" for name in names)])
 
 
 interface.add_command(show, "info")
@@ -84,30 +89,33 @@ def proto(type_name: str, no_quotes: bool) -> None:
 @interface.command()
 @click.argument("name", metavar="[PACKAGE]", default="")
 @_kinds
-def package(name: str, only: str | None) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def package(name: str, only: str | None, as_json: bool) -> None:
     """List the types of a package; without one the packages."""
     from graphflow.msgs import registry
 
     use_project()
     if not name:
-        output.lines(registry.packages())
+        output.listing(registry.packages(), json=as_json)
         output.talk("one of these? graphflow interface package PACKAGE lists its types")
         return
     if not registry.package_folders(name):
         raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
     kinds = (only,) if only else registry.KINDS
-    output.lines(f"{name}/{kind}/{n}" for kind in kinds for n in registry.names_in(name, kind))
+    output.listing((f"{name}/{kind}/{n}" for kind in kinds for n in registry.names_in(name, kind)), json=as_json)
 
 
 @interface.command()
 @_kinds
-def packages(only: str | None) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def packages(only: str | None, as_json: bool) -> None:
     """List the packages that have types."""
     from graphflow.msgs import registry
 
     use_project()
     kinds = (only,) if only else registry.KINDS
-    output.lines(p for p in registry.packages() if any(registry.names_in(p, kind) for kind in kinds))
+    found = [p for p in registry.packages() if any(registry.names_in(p, kind) for kind in kinds)]
+    output.listing(found, json=as_json)
 
 
 @interface.command()

@@ -32,6 +32,14 @@ def lines(texts: Iterable[str]) -> None:
     sys.stdout.flush()
 
 
+def listing(names: Iterable[str], *, json: bool) -> None:
+    """Names that were asked for: one a line, or as a list for programs."""
+    if json:
+        as_json(list(names))
+    else:
+        lines(names)
+
+
 def colored(head: str, colour: int, texts: Iterable[str]) -> None:
     """Several lines, each with a head in a colour of the terminal, from 31 to 36."""
     for text in texts:

@@ -36,15 +36,17 @@ def _known() -> list[str]:
 
 
 @pkg.command("list")
-def list_() -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def list_(as_json: bool) -> None:
     """List the packages that are known here."""
-    output.lines(_known())
+    output.listing(_known(), json=as_json)
 
 
 @pkg.command()
 @click.argument("package", default="")
 @click.option("--full-path", is_flag=True, help="Where each is.")
-def executables(package: str, full_path: bool) -> int:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def executables(package: str, full_path: bool, as_json: bool) -> int:
     """List what `graphflow run PACKAGE EXECUTABLE` can start."""
     from graphflow.graph.executables import all_executables
 
@@ -52,6 +54,9 @@ def executables(package: str, full_path: bool) -> int:
     if not rows:
         output.error(f"Package '{package}' not found{did_you_mean(package, _known())}")
         return exits.FAILED
+    if as_json:
+        output.as_json([{"package": r.package, "name": r.name, "class": r.class_path} for r in rows])
+        return exits.OK
     for row in rows:
         where = row.class_path.partition(":")[0].replace(".", "/")
         output.data(f"{where}.py" if full_path else f"{row.package} {row.name}" if not package else row.name)

@@ -53,25 +53,32 @@ def type_(name: str) -> None:
 @click.argument("type_name", metavar="TYPE")
 @click.option("-c", "--count-services", is_flag=True, help="Only the count.")
 @click.option("--include-hidden-services", is_flag=True, help="Include hidden services.")
-def find(type_name: str, count_services: bool, include_hidden_services: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def find(type_name: str, count_services: bool, include_hidden_services: bool, as_json: bool) -> None:
     """List the services of a type."""
     with View(domain_id()) as view:
         services = view.cache.services(hidden=include_hidden_services)
-    output.lines(names_of_type(services, type_name, only_count=count_services))
+    output.listing(names_of_type(services, type_name, only_count=count_services), json=as_json)
 
 
 @service.command()
 @click.argument("name", metavar="SERVICE")
 @click.option("-v", "--verbose", is_flag=True, help="Also name the nodes that offer and call it.")
-def info(name: str, verbose: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def info(name: str, verbose: bool, as_json: bool) -> None:
     """Show a service's type, and how many nodes offer and call it."""
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
-        output.data(f"Type: {view.service_type(full)}")
-        for title, kind in (("Clients count", Kind.CLIENT), ("Services count", Kind.SERVICE)):
-            ends = view.cache.endpoints(kind, full)
-            output.data(f"{title}: {len(ends)}")
-            output.lines(f"    {end.node_name}" for end in ends if verbose)
+        type_ = view.service_type(full)
+        clients, servers = (view.cache.endpoints(kind, full) for kind in (Kind.CLIENT, Kind.SERVICE))
+    if as_json:
+        nodes = {"clients": [e.node_name for e in clients], "servers": [e.node_name for e in servers]}
+        output.as_json({"name": full, "type": type_, **nodes})
+        return
+    output.data(f"Type: {type_}")
+    for title, ends in (("Clients count", clients), ("Services count", servers)):
+        output.data(f"{title}: {len(ends)}")
+        output.lines(f"    {end.node_name}" for end in ends if verbose)
 
 
 @service.command()

@@ -208,11 +208,12 @@ def type_(name: str) -> int:
 @click.argument("type_name", metavar="TYPE")
 @click.option("-c", "--count-topics", is_flag=True, help="Only the count.")
 @click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics.")
-def find(type_name: str, count_topics: bool, include_hidden_topics: bool) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def find(type_name: str, count_topics: bool, include_hidden_topics: bool, as_json: bool) -> None:
     """List the topics of a type."""
     with View(domain_id()) as view:
         topics = view.cache.topics(hidden=include_hidden_topics)
-    output.lines(names_of_type(topics, type_name, only_count=count_topics))
+    output.listing(names_of_type(topics, type_name, only_count=count_topics), json=as_json)
 
 
 @topic.command()

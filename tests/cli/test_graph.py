@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -52,3 +53,12 @@ def test_png(standing: Machine, tmp_path: Path) -> None:
 def test_nothing_runs(machine: Machine) -> None:
     """Ends with 3, as for other verbs that look."""
     assert "nothing is running" in machine.look("graph", code=3)
+
+
+def test_for_programs(standing: Machine) -> None:
+    """The same as JSON."""
+    found = json.loads(standing.look("graph", "--json", "/office"))
+    assert {"/office/clerk", "/office/auditor"} <= {*found["nodes"]}
+    arrows = {(arrow["source"], arrow["target"]): arrow["fits"] for arrow in found["arrows"]}
+    assert ("/office/clerk", "/office/minutes") in arrows
+    assert arrows["/office/minutes", "/office/auditor"] is False
