@@ -55,7 +55,7 @@ def test_info_of_what_is_hidden(standing: Machine) -> None:
     assert "/office/_drawer" not in standing.look(*words)
     text = standing.look(*words, "--include-hidden", "-v")
     assert "    /office/_drawer: std_msgs/msg/String  (RELIABLE, VOLATILE, KEEP_LAST (" in text
-    assert "    /office/minutes: std_msgs/msg/String  (qos 2::,7:,:,:,,, depth 7)\n" in text
+    assert "    /office/minutes: std_msgs/msg/String  (BEST_EFFORT, VOLATILE, KEEP_LAST (7))\n" in text
 
 
 @pytest.mark.real

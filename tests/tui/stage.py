@@ -110,7 +110,7 @@ class MemoryView:
     def service_type(self, name: str) -> str:
         return self.cache.services(hidden=True)[name][0]
 
-    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0) -> Any:
+    def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         type_: Any = registry.interface_class(type_name)
         return self._on_loop(lambda: self._graph.call(type_, name, request))
 
