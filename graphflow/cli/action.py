@@ -128,6 +128,10 @@ def send_goal(
             raise UsageFault(
                 f"TYPE is missing; {full} is of type {types[0]}: graphflow action send_goal {full} {types[0]}"
             )
+        if there:
+            from graphflow.introspect.definitions import learn
+
+            learn(view, full, there[0])
     wanted = registry.full_name(type_name)
     actual = agree(wanted, there[0], full) if there else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))

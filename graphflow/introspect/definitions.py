@@ -5,15 +5,17 @@ Source: type_description_interfaces/srv/GetTypeDescription (REP-2016).
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import CallError, GraphflowError, InterfaceError, UnknownInterface, printable
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
-from graphflow.runtime.node import Node
 from graphflow.wire.described import FieldSaid, definition_of, verified
 from graphflow.wire.liveliness import Entity, Kind
+
+if TYPE_CHECKING:
+    from graphflow.runtime.node import Node
 
 SERVICE = "type_description_interfaces/srv/GetTypeDescription"
 LIMIT = 2.0
@@ -98,6 +100,10 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
     try:
         registry.full_name(type_name)
     except UnknownInterface as unknown:
+        if "/action/" in type_name:
+            package, _, base = type_name.split("/")
+            where = f"interfaces/{package}/action/{base.partition('_')[0]}.action"
+            raise UnknownInterface(f"{unknown}; nodes are not asked for actions: put its file into {where}") from None
         reasons = []
         users: dict[str, Entity] = {}
         for entity in endpoints_of(view.cache, name, kinds):

@@ -147,3 +147,10 @@ def test_a_reason_that_is_long_or_strange() -> None:
         sources_in(answer, entity())
     assert len(str(caught.value)) < 400
     assert "\x1b" not in str(caught.value)
+
+
+def test_an_action_that_nobody_installed() -> None:
+    """Is not asked for; it is told where its file belongs."""
+    no_view: Any = None
+    with pytest.raises(UnknownInterface, match=r"put its file into interfaces/lab_msgs/action/Walk\.action"):
+        learn(no_view, "/walk", "lab_msgs/action/Walk_FeedbackMessage")
