@@ -195,23 +195,29 @@ _STAND_INS = {"*": "wildcardOne", "**": "wildcardMany"}
 _WILDCARDS = {"wildcardOne": "/([^/]+)", "wildcardMany": "((?:/[^/]+)*)"}
 
 
+_REFERENCE = re.compile(r"\\(\d)")
+
+
+def check_references(replacement: str, pattern: re.Pattern[str]) -> None:
+    r"""Check that a replacement refers, by `\1` and so on, to wildcards that there are.
+
+    Raises:
+        InvalidName: It does not.
+    """
+    for number in _REFERENCE.findall(replacement):
+        if not 0 < int(number) <= pattern.groups:
+            raise InvalidName(f"{replacement} has \\{number}, for which the rule has no wildcard")
+
+
 def _filled(replacement: str, found: re.Match[str]) -> str:
     """A replacement with what the wildcards stand for.
 
     Raises:
         InvalidName: It asks for one that is not there.
     """
-
-    def part(reference: re.Match[str]) -> str:
-        number = int(reference[1])
-        if not 0 < number <= found.re.groups:
-            raise InvalidName(f"{replacement!r} has {reference[0]}, for which the rule has no wildcard")
-        return found[number].removeprefix("/")
-
-    if "\\" not in replacement:
-        return replacement
-    text = re.sub(r"\\(\d)", part, replacement)
-    return re.sub("//+", "/", text).removesuffix("/") or "/"
+    check_references(replacement, found.re)
+    text = _REFERENCE.sub(lambda reference: found[int(reference[1])].removeprefix("/"), replacement)
+    return text if text == replacement else re.sub("//+", "/", text).removesuffix("/") or "/"
 
 
 @dataclass(frozen=True, slots=True)

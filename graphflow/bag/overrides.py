@@ -37,7 +37,10 @@ def read(path: Path) -> dict[str, Qos]:
     """
     try:
         with path.open("rb") as file:
-            data = loaded(file.read(BOUND))
+            text = file.read(BOUND + 1)
+        if len(text) > BOUND:
+            raise UsageFault(f"{path}: larger than {BOUND:,} bytes")
+        data = loaded(text)
     except OSError as error:
         raise UsageFault(f"{path}: {error.strerror}") from None
     except (yaml.YAMLError, RecursionError, ValueError) as error:

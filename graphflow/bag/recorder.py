@@ -86,6 +86,7 @@ class Recorder:
         self._held: dict[str, list[tuple[bytes, int, MessageInfo]]] = {}
         """Messages of topics whose definitions have not come yet."""
         self._held_bytes = 0
+        self._has_waited = False
         self._last: dict[tuple[str, bytes], int] = {}
         self._new: list[Topic] = []
         """Topics that are not in the bag yet."""
@@ -224,8 +225,11 @@ class Recorder:
         if self.is_paused:
             self._last.clear()
             return
-        self._follow(name, info)
         now_ns = self._node.clock.time_ns()
+        if now_ns <= 0:
+            self._say_that_it_waits()
+            return
+        self._follow(name, info)
         held = self._held.get(name)
         if held is None:
             self._take(Record(self._topics[name], now_ns, _sent(info, now_ns), info.sequence, payload))
@@ -234,6 +238,12 @@ class Recorder:
             held.append((payload, now_ns, info))
         else:
             self.dropped += 1
+
+    def _say_that_it_waits(self) -> None:
+        """Tell once that nothing is recorded before simulated time has begun."""
+        if not self._has_waited:
+            self._has_waited = True
+            self._tell("Waiting for the first message on /clock; nothing is recorded before it")
 
     def _follow(self, name: str, info: MessageInfo) -> None:
         """Count what the numbers of a publisher leave out."""

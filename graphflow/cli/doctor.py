@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import metadata
 
 import click
@@ -45,34 +45,34 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     """
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
-    here = {"installation": list(installation.faults(os.environ, _version)), "runs": list(_left_over())}
+    here = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
     try:
         faults, notes, count = _graph()
     except SupervisorError as error:
         if error.exit_code != exits.NOT_RUNNING:
             raise
-        if report or report_failed:
+        if report:
             from graphflow.cli.report import installed
 
             output.lines(installed())
         if as_json:
             output.as_json(here)
-        elif not (report or report_failed):
+        elif not report:
             output.lines(text for texts in here.values() for text in texts)
-        if any(here.values()) or not (report or report_failed):
+        if any(here.values()) or not report:
             raise
         return exits.OK
     faults |= here
     failed = [name for name, texts in faults.items() if texts]
-    if report or report_failed:
+    if as_json:
+        output.as_json({**faults, **notes})
+    elif not report:
+        _print(faults, notes, count)
+    if (report or report_failed) and not as_json:
         from graphflow.cli.report import sections
 
         output.lines(sections(None if report else failed))
-    elif as_json:
-        output.as_json({**faults, **notes})
-    else:
-        _print(faults, notes, count)
-    is_well = not failed and not (include_warnings and any(notes.values()))
+    is_well = not failed and not (include_warnings and notes["hints"])
     return exits.OK if is_well else exits.FAILED
 
 
@@ -125,6 +125,12 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
     output.lines(notes["unreadable"])
     if not any(faults.values()) and not notes["late"]:
         output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
+
+
+def _environment() -> Mapping[str, str]:
+    """The environment as it was before this command's own options."""
+    found: Mapping[str, str] = click.get_current_context().find_root().obj or os.environ
+    return found
 
 
 def _version(name: str) -> str | None:

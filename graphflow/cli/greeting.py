@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections import Counter
-from contextlib import suppress
 
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
@@ -41,19 +40,30 @@ async def _greet(node: Node, topic: str, emit_period: float, print_period: float
 
     node.create_subscription(String, topic, listen, 10, ignore_local=True)
     said = 0
-    while True:
-        with suppress(TimeoutError):
-            async with asyncio.timeout(print_period):
-                while True:
-                    publisher.publish(String(data=f"{HELLO}{socket.gethostname()}"))
-                    said += 1
-                    await asyncio.sleep(emit_period)
-        output.data("MULTIMACHINE COMMUNICATION SUMMARY")
-        output.data(f"Topic: {topic}, Published Msg Count: {said}")
-        output.data("Subscribed from:" if heard else "Subscribed from: nobody")
-        output.lines(f"  {host:<30} {count} messages in {print_period:g} s" for host, count in sorted(heard.items()))
-        output.data("-" * 60)
-        if once:
-            return exits.OK
-        heard.clear()
-        said = 0
+
+    async def speak() -> None:
+        nonlocal said
+        while True:
+            publisher.publish(String(data=f"{HELLO}{socket.gethostname()}"))
+            said += 1
+            await asyncio.sleep(emit_period)
+
+    speaking = asyncio.ensure_future(speak())
+    try:
+        while True:
+            await asyncio.sleep(print_period)
+            _tell(topic, said, heard, print_period)
+            if once:
+                return exits.OK
+            heard.clear()
+            said = 0
+    finally:
+        speaking.cancel()
+
+
+def _tell(topic: str, said: int, heard: Counter[str], print_period: float) -> None:
+    output.data("MULTIMACHINE COMMUNICATION SUMMARY")
+    output.data(f"Topic: {topic}, Published Msg Count: {said}")
+    output.data("Subscribed from:" if heard else "Subscribed from: nobody")
+    output.lines(f"  {host:<30} {count} messages in {print_period:g} s" for host, count in sorted(heard.items()))
+    output.data("-" * 60)

@@ -99,13 +99,15 @@ class _Verbs(Verbs):
     help="ROS 2 distribution to match; else GRAPHFLOW_WIRE, or jazzy.",
 )
 @reach_options
-def cli(domain: int | None, wire: str | None, connect: tuple[str, ...], net: str | None) -> None:
+@click.pass_context
+def cli(ctx: click.Context, /, domain: int | None, wire: str | None, connect: tuple[str, ...], net: str | None) -> None:
     """Node graphs for robots, with ROS 2's concepts and wire protocol.
 
     \b
     Start with:   graphflow up turtlesim
     Then try:     graphflow topic list
     """  # noqa: D301 - click wants the character
+    ctx.obj = dict(os.environ)
     if domain is not None:
         os.environ["GRAPHFLOW_DOMAIN"] = str(domain)
     if wire is not None:

@@ -46,8 +46,11 @@ class PlotOptions:
         """Find out early what would fail in the end.
 
         Raises:
-            UsageFault: What draws files is not installed.
+            UsageFault: What draws files is not installed, or there is no such folder.
         """
+        for file in filter(None, (self.svg, self.png)):
+            if not Path(file).parent.is_dir():
+                raise UsageFault(f"{file}: there is no folder {Path(file).parent}")
         if self.svg or self.png:
             try:
                 import matplotlib  # noqa: F401
@@ -70,7 +73,7 @@ def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]
     """
     found: dict[str, list[str]] = {}
     for word in words:
-        name, _, fields = word.partition(".")
+        name, fields = _parted(word)
         full = expand(name, "/", "cli")
         listed = [field for field in fields.split(",") if field]
         if full not in topics and not listed:
@@ -79,6 +82,14 @@ def wanted(words: Sequence[str], topics: Collection[str]) -> dict[str, list[str]
             full = above
         found.setdefault(full, []).extend(listed)
     return found
+
+
+def _parted(word: str) -> tuple[str, str]:
+    """What stands before the first dot, and behind it; an element, `ranges[0]`, belongs to what is behind."""
+    name, dot, fields = word.partition(".")
+    if not dot and "[" in name:
+        name, _, fields = name.rpartition("/")
+    return name, fields
 
 
 def curves_of(meant: Mapping[str, list[str]], types: Mapping[str, str]) -> dict[str, list[Curve]]:
@@ -154,15 +165,15 @@ def _show(curves: Mapping[str, list[Curve]], now: float, seconds: float) -> None
     colours = () if "NO_COLOR" in os.environ else COLOURS
     columns, rows = shutil.get_terminal_size()
     picture = chart(_all(curves), (columns, rows - 1), span=(now - seconds, now), colours=colours)
-    output.screen(picture or f"no message of {', '.join(curves)} yet")
+    output.screen(picture or _nothing(curves))
 
 
 def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
     """Give out the picture of all that came."""
     every = _all(curves)
     title = next(iter(curves)) if len(curves) == 1 else ""
-    if not any(curve.values for curve in every):
-        output.error(f"no message of {', '.join(curves)} came")
+    if all(curve.is_empty for curve in every):
+        output.error(_nothing(curves))
         return exits.FAILED
     if options.as_csv:
         output.lines(_csv(every))
@@ -177,6 +188,17 @@ def _finished(curves: Mapping[str, list[Curve]], options: PlotOptions) -> int:
     if not (options.as_csv or options.svg or options.png):
         output.lines(chart(every, (shutil.get_terminal_size().columns, HEIGHT)).splitlines())
     return exits.OK
+
+
+def _nothing(curves: Mapping[str, list[Curve]]) -> str:
+    """Why there is no picture."""
+    came = {topic: len(some[0].values) for topic, some in curves.items() if some[0].values}
+    if not came:
+        return f"no message of {', '.join(curves)} has come"
+    return "; ".join(
+        f"{count} messages of {topic} came, and none had {' or '.join(curve.label for curve in curves[topic])}"
+        for topic, count in came.items()
+    )
 
 
 def _csv(curves: Sequence[Curve]) -> Iterator[str]:

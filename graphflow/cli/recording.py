@@ -21,6 +21,7 @@ from graphflow.cli.keys import pressed
 from graphflow.cli.visiting import visit
 from graphflow.errors import BagError, UsageFault
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
+from graphflow.names import check_node_name
 from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
@@ -52,6 +53,7 @@ class RecordOptions:
 
 def run(choice: Choice, options: RecordOptions) -> int:
     """Record until stopped; returns the exit code."""
+    check_node_name(options.node_name)
     qos = {} if options.qos_path is None else read_overrides(options.qos_path)
     custom = dict(_pair(word) for word in options.custom_data)
     folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))

@@ -40,7 +40,11 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     verb = _VERBS.get((what, *words[:1]))  # type: ignore[arg-type]
     command = [verb, *words[1:]] if verb else ["run", what, *words]
     if prefix or verb:
-        _become([*shlex.split(prefix or ""), sys.executable, "-m", "graphflow", *command])
+        try:
+            before = shlex.split(prefix or "")
+        except ValueError as error:
+            raise UsageFault(f"--prefix {prefix!r}: {error}") from None
+        _become([*before, sys.executable, "-m", "graphflow", *command])
     cls, rest = find_class(what, words)
     try:
         ros = parse_ros_args(rest)

@@ -34,7 +34,8 @@ def snapshot(file: Path, node: str | None) -> int:
             if e.name == f"{e.node_name}/snapshot" and e.type == SERVICE and wanted in (None, e.node_name)
         ]
         if not found:
-            raise CallError(f"{wanted or 'no node that runs'} draws nothing; start turtlesim: graphflow up turtlesim")
+            what = f"{wanted} draws nothing" if wanted else "no running node draws anything"
+            raise CallError(f"{what}; start turtlesim: graphflow up turtlesim")
         if len(found) > 1:
             names = ", ".join(e.node_name for e in found)
             raise UsageFault(f"several nodes draw: {names}; say which with --node")

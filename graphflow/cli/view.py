@@ -51,7 +51,7 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
         bridge = Bridge(node, name, is_read_only=is_read_only, pages=frozenset(pages))
         try:
             found = await bridge.open(host, port)
-            output.data(f"Serving viewers on ws://{host}:{found}{'; they only look' if is_read_only else ''}")
+            output.data(f"Serving viewers on ws://{_shown(host)}:{found}{'; they only look' if is_read_only else ''}")
             output.talk("In Foxglove or Lichtblick: Open connection, Foxglove WebSocket. Ctrl-C ends it")
             await asyncio.get_running_loop().create_future()
         finally:
@@ -59,6 +59,17 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
         return exits.OK
 
     return visit(work, node_name)
+
+
+def _shown(host: str) -> str:
+    """A host as it stands in an address that viewers can open."""
+    try:
+        address = ipaddress.ip_address(host)
+    except ValueError:
+        return host
+    if address.is_unspecified:
+        return socket.gethostname()
+    return f"[{address}]" if address.version == 6 else host
 
 
 def _is_loopback(host: str) -> bool:

@@ -49,8 +49,9 @@ async def _visit(
     context.search.watchdog.close()  # what a verb imports late may take a second; no node of the user's waits for it
     talk = _Talk(logging.WARNING)
     logging.getLogger("graphflow").addHandler(talk)
-    node = Node(name, start_parameter_services=has_services, enable_rosout=False, **parameters)
+    node: Node | None = None
     try:
+        node = Node(name, start_parameter_services=has_services, enable_rosout=False, **parameters)
         await core_of(node).start(context)
         task = asyncio.ensure_future(work(node))
         stopped = asyncio.ensure_future(stop.wait())
@@ -62,6 +63,7 @@ async def _visit(
         await asyncio.wait([task])
         return 0 if task.cancelled() else task.result()
     finally:
-        await core_of(node).stop()
+        if node is not None:
+            await core_of(node).stop()
         await context.close()
         logging.getLogger("graphflow").removeHandler(talk)

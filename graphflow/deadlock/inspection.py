@@ -1,8 +1,8 @@
 """What a process reports of its handlers and groups, and lets others change, on keys that ROS 2 does not know.
 
 @graphflow/<domain>/waits/<zid>      its waits, groups and deadlocks as JSON; answered while the loop is blocked, too
-@graphflow/<domain>/numbers/<zid>    what its nodes have counted, how late its loop is, the time on its clock, and remap
-                                     rules that matched nothing; answered likewise
+@graphflow/<domain>/numbers/<zid>    what its nodes have counted, how late its loop is, the time on its clock, and what
+                                     its nodes know to be wrong with themselves; answered likewise
 @graphflow/<domain>/look/<zid>       makes it look for a deadlock that another process found and it must report
 @graphflow/<domain>/groups/<zid>     {"node", "handler", "group"}: move a handler into another group of its node
 """
@@ -84,13 +84,13 @@ class Inspection:
             return self._last_numbers
         lag = self._lag()
         nodes = {node.full_name: node.statistics() for node in list(self._process.nodes)}
-        remaps = {node.full_name: list(node.unused_remaps()) for node in list(self._process.nodes)}
+        complaints = {node.full_name: list(node.complaints()) for node in list(self._process.nodes)}
         told = {
             "process": self._process.session.zid,
             "lag": lag,
             "time_ns": time.time_ns(),
             "nodes": nodes,
-            "remaps": {name: texts for name, texts in remaps.items() if texts},
+            "complaints": {name: texts for name, texts in complaints.items() if texts},
         }
         self._last_numbers = json.dumps(told, default=str).encode()
         return self._last_numbers

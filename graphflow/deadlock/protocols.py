@@ -67,8 +67,8 @@ class Subject(Protocol):
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Numbers since the start, by the name of each handler, endpoint and group."""
 
-    def unused_remaps(self) -> Sequence[str]:
-        """What is wrong with its remap rules that have matched nothing, a sentence for each."""
+    def complaints(self) -> Sequence[str]:
+        """What is wrong with it that it knows itself, a sentence for each."""
 
 
 class Surroundings(Protocol):

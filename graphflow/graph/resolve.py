@@ -25,7 +25,7 @@ from graphflow.graph.substitutions import Outside, Run
 from graphflow.graph.tree import Item, source_of, tree
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
-from graphflow.names import Resolver, did_you_mean, expand, split
+from graphflow.names import Resolver, check_references, did_you_mean, expand, split
 
 
 def load(
@@ -237,7 +237,7 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
                     raise InvalidName(
                         f"{match!r} cannot be remapped; a node's name is its key, its namespace goes under namespace:"
                     )
-                Resolver(name, namespace).pattern(match)
+                check_references(replacement, Resolver(name, namespace).pattern(match))
                 expand(re.sub(r"\\\d", "x", replacement), namespace, name)
             except InvalidName as error:
                 problems.add(place, str(error))

@@ -12,6 +12,8 @@ from graphflow.introspect.fields import number_path, value_at
 
 CURVES = 6
 """Curves in one picture, unless more were asked for by name."""
+LARGEST = 1e150
+"""What is larger stands for "no measurement", and cannot be drawn."""
 COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e00")
 """Colours that everybody can tell apart (Okabe and Ito 2008)."""
 
@@ -50,11 +52,16 @@ class Curve:
         del self.times[:cut]
         del self.values[:cut]
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing of it can be drawn."""
+        return not any(abs(y) <= LARGEST for y in self.values)
+
     def shown(self, since: float = -math.inf) -> tuple[list[float], list[float]]:
-        """The times and values that there are, from a moment on."""
+        """The times and values that there are, from a moment on; what is none, or beyond `LARGEST`, is a gap."""
         start = bisect_left(self.times, since)
         points = zip(self.times[start:], self.values[start:], strict=True)
-        found = [(x, y) for x, y in points if math.isfinite(y)]
+        found = [(x, y) for x, y in points if abs(y) <= LARGEST]
         return [x for x, _ in found], [y for _, y in found]
 
     @property

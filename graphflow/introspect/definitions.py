@@ -76,7 +76,8 @@ async def asked_sources(node: Node, entity: Entity) -> dict[str, str]:
         InterfaceError: Nobody gives a definition that has the hash.
     """
     reasons = []
-    for user in endpoints_of(node.context.cache, entity.name, (entity.kind,))[:ASKED]:
+    users = endpoints_of(node.context.cache, entity.name, (entity.kind,))
+    for user in [u for u in users if (u.type, u.hash) == (entity.type, entity.hash)][:ASKED]:
         client: Any = node.create_client(registry.interface_class(SERVICE), service_of(user))
         try:
             return sources_in(await client.call(request_for(user), timeout=LIMIT), user)

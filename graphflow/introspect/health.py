@@ -27,7 +27,6 @@ TOLD_BOUND = 10
 """Nodes, or texts of one node, that are told."""
 SKEW = 0.1
 """Seconds by which clocks differ, beyond the time of the answer, from which on that is told."""
-CLOCK = "/clock"
 _EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
 
 Counts = Mapping[tuple[str, str], Mapping[str, float]]
@@ -62,8 +61,7 @@ def examine(view: View, first: Look, second: Look) -> Health:
         *_losses(counts),
         *_floods(then, counts, seconds),
         *_refused(view.cache),
-        *_unused_remaps(now),
-        *_timeless(view.cache),
+        *_complaints(now),
         *_skews(view.processes(), second),
     ]
     near, far = _unheard(view.cache)
@@ -133,23 +131,13 @@ def _refused(cache: GraphCache) -> Iterator[str]:
         )
 
 
-def _unused_remaps(replies: Iterable[bytes]) -> Iterator[str]:
+def _complaints(replies: Iterable[bytes]) -> Iterator[str]:
+    """What nodes know to be wrong with themselves."""
     for data in map(_told, replies):
-        remaps = data.get("remaps")
-        for node, texts in list(remaps.items())[:TOLD_BOUND] if isinstance(remaps, dict) else ():
+        found = data.get("complaints")
+        for node, texts in list(found.items())[:TOLD_BOUND] if isinstance(found, dict) else ():
             for text in texts[:TOLD_BOUND] if isinstance(texts, list) else ():
                 yield f"{node}: {text}"
-
-
-def _timeless(cache: GraphCache) -> Iterator[str]:
-    """Nodes whose time stands still."""
-    waiting = sorted({e.node_name for e in cache.endpoints(Kind.SUBSCRIPTION, CLOCK) if not is_hidden(e.node_name)})
-    if waiting and not cache.endpoints(Kind.PUBLISHER, CLOCK):
-        verb = "goes" if len(waiting) == 1 else "go"
-        yield (
-            f"{' and '.join(waiting)} {verb} by simulated time (use_sim_time), and nobody publishes {CLOCK}: timers "
-            "stand still. Start the simulator, or play a bag with --clock, or set use_sim_time to false"
-        )
 
 
 def _skews(processes: Mapping[str, ProcessToken], look: Look) -> Iterator[str]:
@@ -157,7 +145,9 @@ def _skews(processes: Mapping[str, ProcessToken], look: Look) -> Iterator[str]:
     found: dict[str, float] = {}
     for data in map(_told, look.replies):
         token, time_ns = processes.get(str(data.get("process"))), data.get("time_ns")
-        if token is None or token.host == host_name() or not isinstance(time_ns, int):
+        if token is None or token.host == host_name() or type(time_ns) is not int:
+            continue
+        if not 0 < time_ns < 1 << 63:
             continue
         ahead = max(0, time_ns - look.ended_ns) + min(0, time_ns - look.began_ns)
         if abs(ahead) >= SKEW * 1e9:
@@ -171,7 +161,7 @@ def _skews(processes: Mapping[str, ProcessToken], look: Look) -> Iterator[str]:
 
 
 def _strangers(view: View) -> Iterator[str]:
-    """Nodes of other machines and other users."""
+    """Nodes of other machines."""
     here, tokens = host_name(), view.processes()
     for host in sorted({token.host for token in tokens.values()} - {here}):
         zids = {zid for zid, token in tokens.items() if token.host == host}

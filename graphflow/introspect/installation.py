@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from graphflow.domain import DEFAULT_ENDPOINT, DOMAIN_VARIABLES, rendezvous_endpoint
-from graphflow.wire.profile import PROFILES, wire_profile
+from graphflow.wire.profile import PROFILES, VARIABLE
 
 RMW = "rmw_zenoh_cpp"
 OLDEST_ZENOH = (1, 10)
@@ -39,8 +39,9 @@ def _sourced(env: Mapping[str, str]) -> Iterator[str]:
             f"ROS 2 is sourced here, and its nodes will not be seen: they speak {rmw or 'DDS'}; "
             f"export RMW_IMPLEMENTATION={RMW}"
         )
-    if distro in PROFILES and distro != wire_profile():
-        speaks = f"graphflow speaks as {wire_profile()}"
+    profile = env.get(VARIABLE) or PROFILES[0]
+    if distro in PROFILES and distro != profile:
+        speaks = f"graphflow speaks as {profile}"
         yield f"ROS 2 {distro} is sourced here, and {speaks}: export GRAPHFLOW_WIRE={distro}"
     if distro == "humble":
         yield "ROS 2 humble is sourced here, which has no type hashes: its nodes and graphflow's do not hear each other"

@@ -68,7 +68,7 @@ class Numbers:
                         counts[flow] = counts.get(flow, 0) + int(numbers[_COUNTED[kind]])
                         if numbers.get("dropped"):
                             self.dropped[flow] = int(numbers["dropped"])
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
             return  # a process of another version: its numbers are left out
 
     def published(self, topic: str) -> float | None:

@@ -331,11 +331,7 @@ class NodeCore:
             part.open()
 
     def warn_unused_remaps(self) -> None:
-        """Warn of remap rules that have matched nothing; a class that makes names at run time may use them later.
-
-        Raises:
-            UsageFault: There are some, and whoever wrote them waits for the answer.
-        """
+        """Warn of remap rules that have matched nothing, or raise a UsageFault where their author waits for it."""
         problems = self.unused_remaps()
         if self.refuses_unused and problems:
             raise UsageFault("; ".join(problems))
@@ -344,8 +340,11 @@ class NodeCore:
 
     def unused_remaps(self) -> list[str]:
         """What is wrong with the remap rules that have matched nothing so far, a sentence for each."""
-        dynamic = self.instance.dynamic_names
-        return list(unused_remaps(self.names, self._own_services, dynamic, self.parameters))
+        return list(unused_remaps(self.names, self._own_services, self.instance.dynamic_names, self.parameters))
+
+    def complaints(self) -> list[str]:
+        """What is wrong with the node that it knows itself, a sentence for each."""
+        return [*self.unused_remaps(), *self._clock.complaints()]
 
     def shutdown(self) -> None:
         """End the node from within: the code that runs it will stop it."""

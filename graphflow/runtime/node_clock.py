@@ -12,6 +12,11 @@ from graphflow.runtime.host import Host
 from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.times import NANOSECONDS
 
+TIMELESS = (
+    "it goes by simulated time (use_sim_time), and nothing has come on /clock: its timers stand still. Start the "
+    "simulator, or play a bag with --clock, or set use_sim_time to false"
+)
+
 
 class NodeClock:
     """The choice between the two clocks.
@@ -34,6 +39,11 @@ class NodeClock:
     def current(self) -> Clock:
         """The clock to go by. Raises ClosedError when the node does not run and follows no /clock."""
         return self._host.context.clock if self._simulated is None else self._simulated[0]
+
+    def complaints(self) -> list[str]:
+        """That simulated time does not begin, if that is so."""
+        is_waiting = self._simulated is not None and self._simulated[0].time_ns() == 0
+        return [TIMELESS] if is_waiting else []
 
     def follow(self, *, is_simulated: bool) -> None:
         """Follow /clock, or the context's clock; what waits on the other one waits out the rest here."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from graphflow.errors import DecodeError, UnknownInterface, printable
 from graphflow.msgs import registry
+from graphflow.names import check_full_name
 from graphflow.qos import Durability, History, Qos
 from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.endpoints import Endpoint
@@ -183,8 +184,9 @@ def subscribe(
 
     Raises:
         UnknownInterface: The type's name is none.
+        InvalidName: The topic's is none.
     """
-    core = _checked(node, type_name)
+    core = _checked(node, type_name, topic)
     return core.add(RawSubscription(core, type_name, topic, qos, callback, type_hash, on_event))
 
 
@@ -192,12 +194,13 @@ def advertise(
     node: Node, type_name: str, topic: str, qos: Qos, *, type_hash: str = "", on_event: OnEvent | None = None
 ) -> RawPublisher:
     """A publisher of serialized messages. Arguments and errors as for `subscribe`."""
-    core = _checked(node, type_name)
+    core = _checked(node, type_name, topic)
     return core.add(RawPublisher(core, type_name, topic, qos, type_hash, on_event))
 
 
-def _checked(node: Node, type_name: str) -> NodeCore:
-    """The node's core, if the type may be the name of one: others announce what they like."""
+def _checked(node: Node, type_name: str, topic: str) -> NodeCore:
+    """The node's core, if topic and type may be the names of some: others announce what they like."""
+    check_full_name(topic)
     if len(type_name.split("/")) != 3:
         raise UnknownInterface(f"{printable(type_name)!r} is not an interface name")
     return core_of(node)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import errno
 import logging
 import re
 from collections import defaultdict
@@ -31,6 +33,8 @@ from graphflow.wire.liveliness import Kind
 
 logger = logging.getLogger("graphflow")
 
+GRACE = 1.0
+"""Seconds that viewers have to say goodbye."""
 LOOK_EVERY = 0.2
 """Seconds between two looks at a graph that changes."""
 CLIENTS_BOUND = 32
@@ -61,7 +65,8 @@ class Bridge:
         self._services = Services(node, self._tell)
         self._publications = Publications(node)
         self._parameters = Parameters(node, self._changed)
-        self._has_clock = bool(node.context.cache.endpoints(Kind.PUBLISHER, "/clock"))
+        self._is_clocked = False
+        """Whether the clock is listened to."""
         self._server: Server | None = None
         self._following: asyncio.Task[None] | None = None
 
@@ -82,15 +87,15 @@ class Bridge:
                 subprotocols=[Subprotocol(name) for name in protocol.SUBPROTOCOLS],
                 process_request=self._admit,
                 max_size=MESSAGE_BOUND,
+                compression=None,  # it would hold up everybody else, and images do not get smaller
                 logger=logging.getLogger("graphflow.viewer.websockets"),
             )
-        except OSError as error:
-            raise TransportError(
-                f"viewers cannot be served on {host}:{port}: {error.strerror or error}; take another --port"
-            ) from None
-        if self._has_clock:
-            clock: Any = registry.interface_class("rosgraph_msgs/msg/Clock")
-            self._node.create_subscription(clock, "/clock", self._ticked, CLOCK)
+        except (OSError, UnicodeError) as error:
+            is_taken = isinstance(error, OSError) and error.errno == errno.EADDRINUSE
+            hint = "; take another --port" if is_taken else "; --host is an address of this machine"
+            why = ("the port is taken" if is_taken else _reason(error)) + hint
+            raise TransportError(f"viewers cannot be served on {host}:{port}: {why}") from None
+        self._look_for_clock()
         self._following = asyncio.ensure_future(self._follow())
         found: int = next(iter(self._server.sockets)).getsockname()[1]
         return found
@@ -101,6 +106,11 @@ class Bridge:
             self._following.cancel()
         if self._server is not None:
             self._server.close()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(GRACE):
+                    await self._server.wait_closed()
+            for client in self._clients:  # those that do not read would be waited for
+                client.abort()
             await self._server.wait_closed()
         self._topics.close()
         self._services.close()
@@ -143,7 +153,7 @@ class Bridge:
     def _greet(self, client: Client) -> None:
         may = ["parameters", "parametersSubscribe", "connectionGraph"]
         may += [] if self._is_read_only else ["clientPublish", "services"]
-        may += ["time"] if self._has_clock else []
+        may += ["time"] if self._is_clocked else []
         client.say(told("serverInfo", name=self._name, capabilities=may, supported_encodings=ENCODINGS, metadata={}))
         self._topics.greet(client)
         if not self._is_read_only:
@@ -166,13 +176,12 @@ class Bridge:
             case protocol.GetParameters():
                 client.begin(lambda: self._show_parameters(client, said.parameter_names, said.id))
             case protocol.FollowParameters():
-                names = {*said.parameter_names}
-                client.followed = client.followed | names if said.op.startswith("s") else client.followed - names
+                self._follow_parameters(client, {*said.parameter_names}, wanted=said.op.startswith("s"))
             case protocol.FollowGraph():
                 client.graph = {} if said.op.startswith("s") else None
                 self._show_graph(client, connections(self._node.context.cache))
             case _ if self._is_read_only:
-                raise UsageFault("this server is for looking only")
+                raise UsageFault("this server is for looking only; see --allow-commands of graphflow view")
             case protocol.SetParameters():
                 client.begin(lambda: self._set_parameters(client, said))
             case protocol.Advertise():
@@ -202,15 +211,39 @@ class Bridge:
         try:
             await self._parameters.set(said.parameters)
         finally:
-            await self._show_parameters(client, [value.name for value in said.parameters], said.id)
+            if said.parameters:
+                await self._show_parameters(client, [value.name for value in said.parameters], said.id)
+
+    def _follow_parameters(self, client: Client, names: set[str], *, wanted: bool) -> None:
+        """Begin or end to tell a client of changes: of some parameters, or if none is named of all.
+
+        Raises:
+            UsageFault: It follows too many.
+        """
+        if not names:
+            client.follows_all = wanted
+        if not names and not wanted:
+            client.followed.clear()
+        if wanted and len(client.followed | names) > protocol.MANY:
+            raise UsageFault(f"a viewer follows no more than {protocol.MANY} parameters; name none to follow all")
+        client.followed = client.followed | names if wanted else client.followed - names
 
     def _changed(self, parameters: list[Words]) -> None:
         for client in self._clients:
-            if wanted := [parameter for parameter in parameters if parameter["name"] in client.followed]:
+            wanted = [p for p in parameters if client.follows_all or p["name"] in client.followed]
+            if wanted:
                 client.say(told("parameterValues", parameters=wanted))
 
     def _ticked(self, message: Any) -> None:
-        self._tell(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
+        if message.clock.sec >= 0:
+            self._tell(protocol.time_frame(message.clock.sec * 10**9 + message.clock.nanosec))
+
+    def _look_for_clock(self) -> None:
+        """Follow simulated time as soon as somebody tells it; viewers that come from then on go by it."""
+        if not self._is_clocked and self._node.context.cache.endpoints(Kind.PUBLISHER, "/clock"):
+            self._is_clocked = True
+            clock: Any = registry.interface_class("rosgraph_msgs/msg/Clock")
+            self._node.create_subscription(clock, "/clock", self._ticked, CLOCK)
 
     async def _follow(self) -> None:
         is_new = asyncio.Event()
@@ -218,6 +251,7 @@ class Bridge:
         try:
             while True:
                 is_new.clear()
+                self._look_for_clock()
                 self._topics.look()
                 if not self._is_read_only:
                     self._services.look()
@@ -244,6 +278,11 @@ class Bridge:
         }
         client.graph = graph
         client.say(told("connectionGraphUpdate", **update, **left))
+
+
+def _reason(error: Exception) -> str:
+    text = str(getattr(error, "strerror", "") or error)
+    return text.rpartition(": ")[2]
 
 
 PARTS = {

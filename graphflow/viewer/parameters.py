@@ -6,6 +6,7 @@ import asyncio
 import base64
 import binascii
 import logging
+import math
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -51,10 +52,10 @@ class Parameters:
         for name in names:
             node, _, parameter = name.partition(".")
             of_node[node].append(parameter)
-        if not names:
-            services = self._node.context.cache.services()
-            of_node.update({name.removesuffix(_LIST): [] for name in services if name.endswith(_LIST)})
-        found = await asyncio.gather(*(self._of(node, some) for node, some in of_node.items() if not is_hidden(node)))
+        services = self._node.context.cache.services()
+        there = {name.removesuffix(_LIST) for name in services if name.endswith(_LIST)}
+        there = {node for node in there if not is_hidden(node) and (not names or node in of_node)}
+        found = await asyncio.gather(*(self._of(node, of_node[node]) for node in sorted(there)))
         return [parameter for some in found for parameter in some]
 
     async def set(self, wanted: Iterable[Value]) -> None:
@@ -114,8 +115,15 @@ def shown(node: str, name: str, message: Any) -> Words:
         ParameterError: Its type is none of ROS 2's.
     """
     value = from_message(message)
-    words = {"name": f"{node}.{name}", "value": base64.b64encode(value).decode() if message.type == 5 else value}
+    words = {"name": f"{node}.{name}", "value": base64.b64encode(value).decode() if message.type == 5 else _json(value)}
     return words | ({"type": _TYPES[message.type]} if message.type in _TYPES else {})
+
+
+def _json(value: Any) -> Any:
+    """A value as JSON can have it: what is infinite or no number becomes a text."""
+    if isinstance(value, list):
+        return [_json(item) for item in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _message(value: Value, type_: int) -> Any:
@@ -127,5 +135,5 @@ def _message(value: Value, type_: int) -> Any:
     try:
         given = base64.b64decode(value.value, validate=True) if type_ == 5 else as_declared(value.value, type_)
         return to_message(given, type_)
-    except (GraphflowError, TypeError, ValueError, binascii.Error) as error:
+    except (GraphflowError, TypeError, ValueError, OverflowError, binascii.Error) as error:
         raise UsageFault(f"{value.name}: {error}") from None

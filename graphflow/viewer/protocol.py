@@ -154,7 +154,9 @@ def read_bytes(data: bytes) -> Message | Call:
 
 def told(op: str, **fields: Any) -> str:
     """What a client is told in JSON; fields in the words of the protocol, and those that are None left out."""
-    return json.dumps({"op": op, **{to_camel(name): value for name, value in fields.items() if value is not None}})
+    return json.dumps(
+        {"op": op, **{to_camel(name): value for name, value in fields.items() if value is not None}}, allow_nan=False
+    )
 
 
 def message_head(subscription_id: int, time_ns: int) -> bytes:

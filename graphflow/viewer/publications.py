@@ -35,6 +35,8 @@ class Publications:
         """Make a publisher for a client."""
         if announced.encoding not in ENCODINGS:
             raise UsageFault(f"{announced.topic}: messages come as cdr or json here, not as {announced.encoding!r}")
+        if "/msg/" not in registry.full_name(announced.schema_name):
+            raise UsageFault(f"{announced.topic}: {announced.schema_name} is no type of messages")
         self.withdraw(client, announced.id)
         if len(self._publishers) >= BOUND:
             raise UsageFault(f"viewers have {BOUND} publishers already")

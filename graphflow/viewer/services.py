@@ -61,6 +61,8 @@ class Services:
         cache = self._node.context.cache
         there = {name: cache.endpoints(Kind.SERVICE, name)[0] for name in sorted(cache.offered()[0])[:BOUND]}
         gone = [s for s in self._shown.values() if s.name not in there or there[s.name].type != s.type]
+        for name in self._coming.keys() - there.keys():
+            self._coming.pop(name).cancel()
         for service in gone:
             del self._shown[service.name]
         if gone:
@@ -78,7 +80,7 @@ class Services:
                 registry.adopt(entity.type, entity.hash, await asked_sources(self._node, entity))
             service = _Shown(next(self._ids), entity.name, entity.type)
             words = service.words
-        except GraphflowError as error:
+        except Exception as error:  # whoever announced it may call its type anything
             self._left_out.add((entity.name, entity.type))
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
             return

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from graphflow.bag.definitions import asked
-from graphflow.errors import GraphflowError, UsageFault, printable
+from graphflow.errors import UsageFault, printable
 from graphflow.names import is_hidden
 from graphflow.qos import BEST_AVAILABLE
 from graphflow.runtime import raw
@@ -81,7 +81,7 @@ class Topics:
     async def _show(self, key: Key, entity: Entity) -> None:
         try:
             definition = await asked(self._node, entity)
-        except GraphflowError as error:
+        except Exception as error:  # whoever announced it may call its type anything
             self._left_out.add(key)
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
             return

@@ -60,6 +60,14 @@ def test_what_is_wrong(tmp_path: Path, text: str, told: str) -> None:
     assert told in str(caught.value)
 
 
+def test_a_file_that_is_too_large(tmp_path: Path) -> None:
+    """Is refused, not cut."""
+    file = tmp_path / "qos.yaml"
+    file.write_text("/a: {depth: 1}\n" + "#" * (1 << 20) + "\n/b: {depth: 1}\n")
+    with pytest.raises(UsageFault, match="larger than"):
+        read(file)
+
+
 def test_no_file(tmp_path: Path) -> None:
     """Says so."""
     with pytest.raises(UsageFault, match="No such file or directory"):

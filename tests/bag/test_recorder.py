@@ -22,12 +22,14 @@ from graphflow.bag.reader import Bag
 from graphflow.bag.recorder import Recorder
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError
+from graphflow.msgs.rosgraph_msgs.msg import Clock as ClockMessage
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Durability, Qos
 from graphflow.runtime import raw
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.testing import Graph
 from graphflow.wire.attachment import MessageInfo
+from graphflow.wire.liveliness import Entity, Kind
 
 ALL = Choice(all=True, exclude=frozenset({"/rosout", "/parameter_events"}))
 
@@ -424,4 +426,34 @@ async def test_other_profiles(graph: Graph, session: Session) -> None:
     await session.until(lambda: recorder.topics == 2)
     assert recorder._subscriptions["/chatter"].qos.depth == 3
     assert recorder._subscriptions["/other"].qos.depth == 1000
+    await session.end()
+
+
+async def test_simulated_time(graph: Graph, session: Session) -> None:
+    """Nothing is recorded before it has begun, which is told once."""
+    publisher = await speaker(graph)
+    session.node = Node("recorder", use_sim_time=True)
+    recorder = await session.start(Choice(topics=frozenset({"/chatter"})))
+    clock = graph.publisher(ClockMessage, "/clock")
+    await graph.settle()
+    for _ in range(2):
+        publisher.publish(String(data="early"))
+    await graph.settle()
+    clock.publish(ClockMessage(clock={"sec": 1000}))
+    await graph.settle()
+    publisher.publish(String(data="now"))
+    await session.until(lambda: recorder.recorded == 1)
+    bag = await session.end()
+    assert [(r.log_ns, String.from_bytes(r.data).data) for r in bag.records()] == [(1000 * 10**9, "now")]
+    assert session.told.count("Waiting for the first message on /clock; nothing is recorded before it") == 1
+
+
+async def test_a_name_that_is_none(graph: Graph, session: Session, caplog: pytest.LogCaptureFixture) -> None:
+    """Ends no recording, whoever has announced it."""
+    token = Entity(0, "ffff", 1, 20, Kind.PUBLISHER, "/", "odd", "//a", "std_msgs/msg/String", "RIHS01_" + "0" * 64)
+    graph.network.session(asyncio.get_running_loop()).announce(token.token)
+    await speaker(graph)
+    recorder = await session.start()
+    await session.until(lambda: recorder.topics == 1)
+    assert "cannot be recorded" in caplog.text
     await session.end()

@@ -62,3 +62,15 @@ def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
     text = machine.look("doctor", code=3)
     assert f"was killed and has left {run_file.parent}" in text
     run_file.unlink()
+
+
+def test_options_are_not_the_environment(standing: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What this command was told is not held against the shell."""
+    ros = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
+    monkeypatch.setitem(standing.env, "ZENOH_CONFIG_OVERRIDE", "x")
+    for name, value in ros.items():
+        monkeypatch.setitem(standing.env, name, value)
+    domain = standing.env["GRAPHFLOW_DOMAIN"]
+    monkeypatch.delitem(standing.env, "GRAPHFLOW_DOMAIN")
+    found = json.loads(standing.look("--domain", domain, "--wire", "kilted", "doctor", "--json", code=1))
+    assert found["installation"] == []

@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 
 from graphflow.bag.contents import Topic
-from graphflow.cli.plotting import PlotOptions, _show, curves_of, wanted
+from graphflow.cli.plotting import PlotOptions, _finished, _show, curves_of, wanted
 from graphflow.errors import UsageFault
 from graphflow.introspect.curves import Curve
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
+from graphflow.msgs.sensor_msgs.msg import LaserScan
+from graphflow.msgs.std_msgs.msg import Float64
 from tests.bag.cast import record, write
 from tests.conftest import Machine
 
@@ -31,6 +33,7 @@ TOPICS = {"/pose": ["turtlesim/msg/Pose"], "/a": [], "/a/b": []}
         (["/a/c"], {"/a": ["c"]}),
         (["/none/x"], {"/none/x": []}),
         (["/none.points[3].x"], {"/none": ["points[3].x"]}),
+        (["/pose/ranges[0]"], {"/pose": ["ranges[0]"]}),
     ],
 )
 def test_words(words: list[str], meant: dict[str, list[str]]) -> None:
@@ -87,8 +90,8 @@ def test_a_bag(machine: Machine, speeds: Path, tmp_path: Path) -> None:
         (["/sped.linear.x"], 1, "has no topic /sped; did you mean '/speed'?"),
         (["/speed.liner.x"], 2, "has no field 'liner'; did you mean 'linear'?"),
         (["/speed.linear"], 2, "and no number; say which field, as in linear.x"),
-        (["/speed.linear.x", "--start", "50"], 1, "no message of /speed came"),
-        (["/speed.linear.x", "--png", "/nowhere/a.png"], 1, "/nowhere/a.png: No such file or directory"),
+        (["/speed.linear.x", "--start", "50"], 1, "no message of /speed has come"),
+        (["/speed.linear.x", "--png", "/nowhere/a.png"], 2, "/nowhere/a.png: there is no folder /nowhere"),
     ],
 )
 def test_mistakes(machine: Machine, speeds: Path, words: list[str], code: int, message: str) -> None:
@@ -134,6 +137,20 @@ def test_a_topic(drive: Machine, tmp_path: Path) -> None:
     assert (tmp_path / "s.svg").is_file()
 
 
+def test_messages_without_the_number(capsys: pytest.CaptureFixture[str]) -> None:
+    """It is said that they came, and what they lack; and numbers that stand for none are none."""
+    lacking = Curve("ranges[900]", "sensor_msgs/msg/LaserScan")
+    lacking.add(0.0, LaserScan(ranges=[1.0, 2.0]))
+    assert _finished({"/scan": [lacking]}, PlotOptions()) == 1
+    assert "1 messages of /scan came, and none had ranges[900]" in capsys.readouterr().err
+    huge = Curve("data", "std_msgs/msg/Float64")
+    huge.add(0.0, Float64(data=1.7e308))
+    assert _finished({"/x": [huge]}, PlotOptions()) == 1
+    huge.add(1.0, Float64(data=-3.0))
+    assert _finished({"/x": [huge]}, PlotOptions()) == 0
+    assert "data -3" in capsys.readouterr().out
+
+
 def test_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """The picture is drawn over the last one, in colours unless the user wants none; what is old is dropped."""
     curve = Curve("linear.x", "geometry_msgs/msg/Twist")
@@ -151,4 +168,4 @@ def test_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.Monk
     _show({"/speed": [curve]}, 99.0, 10.0)
     assert "\x1b[38;2;" not in capsys.readouterr().out
     _show({"/speed": [curve]}, 999.0, 10.0)
-    assert "no message of /speed yet" in capsys.readouterr().out
+    assert "no message of /speed has come" in capsys.readouterr().out

@@ -115,3 +115,10 @@ def test_a_full_disk(machine: Machine, small_disk: Path) -> None:
     bag = Bag(small_disk / "bag")
     assert bag.contents.is_whole
     assert len(list(bag.records())) == bag.contents.message_count > 10
+
+
+def test_a_node_name_that_is_none(machine: Machine, tmp_path: Path) -> None:
+    """Leaves no folder behind."""
+    words = ("bag", "record", "-a", "-o", str(tmp_path / "bag"), "--node-name", "a-b")
+    assert "a-b" in machine.look(*words, code=None)
+    assert not (tmp_path / "bag").exists()

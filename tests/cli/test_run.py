@@ -187,3 +187,8 @@ def test_a_command_before_it(machine: Machine) -> None:
 def test_a_remap_that_matches_nothing(machine: Machine, words: list[str], told: str) -> None:
     """Is an error, with exit code 2: ROS 2 would say nothing, and nothing would come."""
     assert told in machine.run("run", "talker", "--ros-args", *words, code=2)
+
+
+def test_a_prefix_that_is_none(machine: Machine) -> None:
+    """Says why."""
+    assert "No closing quotation" in machine.look("run", "--prefix", "a'b", "demo_nodes_cpp", "talker", code=2)

@@ -11,7 +11,7 @@ from importlib.machinery import ModuleSpec
 import pytest
 
 from graphflow.cli import view as module
-from graphflow.cli.view import _is_loopback
+from graphflow.cli.view import _is_loopback, _shown
 from tests.conftest import Machine
 from tests.viewer.cast import viewer
 
@@ -20,6 +20,14 @@ def test_addresses() -> None:
     """Viewers beyond this machine only look."""
     assert all(map(_is_loopback, ("127.0.0.1", "127.0.0.2", "::1", "localhost")))
     assert not any(map(_is_loopback, ("0.0.0.0", "::", "192.168.1.5", "example.org")))
+
+
+def test_addresses_that_viewers_can_open() -> None:
+    """IPv6 in brackets, and for all addresses the name of this machine."""
+    assert [_shown(host) for host in ("127.0.0.1", "::1", "0.0.0.0", "localhost")] == [
+        *("127.0.0.1", "[::1]"),
+        *(socket.gethostname(), "localhost"),
+    ]
 
 
 @pytest.mark.real
@@ -42,8 +50,11 @@ def test_what_cannot_be_served(standing: Machine) -> None:
     """A port that is taken, an address that is not here."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         text = standing.run("view", "--port", str(taken.getsockname()[1]), code=1)
-    assert "take another --port" in text
-    assert "viewers cannot be served on 192.0.2.1" in standing.run("view", "--host", "192.0.2.1", code=1)
+    assert "the port is taken; take another --port" in text
+    for host in ("192.0.2.1", "no-such-host.invalid", "x" * 70):
+        text = standing.run("view", "--host", host, code=1)
+        assert "--host is an address of this machine" in text
+        assert "Traceback" not in text
 
 
 def test_without_the_extra(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:

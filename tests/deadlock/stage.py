@@ -37,7 +37,7 @@ class Actor:
     def statistics(self) -> dict[str, dict[str, Any]]:
         return {}
 
-    def unused_remaps(self) -> list[str]:
+    def complaints(self) -> list[str]:
         return []
 
 

@@ -236,6 +236,14 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
             "nodes:\n  a: {class: x:Y, remap: {__ns: /n}}\n",
             "2:27: '__ns' cannot be remapped; a node's name is its key, its namespace goes under namespace:",
         ),
+        (
+            "nodes:\n  a: {class: x:Y, remap: {'*chatter': /b}}\n",
+            "2:27: '*chatter': a wildcard stands for whole parts of a name",
+        ),
+        (
+            "nodes:\n  a: {class: x:Y, remap: {'/*': '/b/\\2'}}\n",
+            "2:27: /b/\\2 has \\2, for which the rule has no wildcard",
+        ),
         ("nodes:\n  a: {class: x:Y, process: 3}\n", "2:28: process: expected text, got 3"),
         ("nodes:\n  a: {class: x:Y, env: {B: true}}\n", "2:28: env.B: expected text or a number, got true"),
         ("nodes:\n  a: {class: x:Y, after: b}\n", "2:26: after: there is no node or step 'b'; there is /a"),

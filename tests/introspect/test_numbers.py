@@ -63,3 +63,12 @@ def test_what_is_no_answer(bad: bytes) -> None:
     for now in (1.0, 2.0):
         numbers.take([bad, reply(int(10 * now))], now)
     assert numbers.published("/pose") == 10.0
+
+
+@pytest.mark.parametrize("number", ["Infinity", "-Infinity", "NaN", "1e999", "1" + "0" * 400])
+def test_numbers_that_are_none(number: str) -> None:
+    """Cost nobody anything."""
+    numbers = Numbers()
+    for key in ('"lag": X, "nodes": {"/a": {}}', '"lag": 0, "nodes": {"/a": {"publisher /b": {"published": X}}}'):
+        numbers.take([f"{{{key.replace('X', number)}}}".encode()], 1.0)
+        numbers.take([f"{{{key.replace('X', number)}}}".encode()], 2.0)

@@ -43,3 +43,14 @@ def test_before_the_node_runs() -> None:
 
     with pytest.raises(ClosedError, match="/n is not running"):
         _ = NodeClock(core, str, core.add).current
+
+
+async def test_time_that_does_not_begin(graph: Graph) -> None:
+    """Is something to complain about, until it begins."""
+    node = Node("n", use_sim_time=True)
+    await graph.start(node)
+    [text] = core_of(node).complaints()
+    assert "nothing has come on /clock: its timers stand still" in text
+    graph.publisher(Clock, "/clock", CLOCK).publish(Clock(clock=Time(to_ns(7.0))))
+    await graph.settle()
+    assert core_of(node).complaints() == []

@@ -34,6 +34,7 @@ class Robot(Node):
     map = Publisher(String, "map", qos=Qos(depth=1, durability=Durability.TRANSIENT_LOCAL))
     gain = Param(1.0, ge=0.0, le=5.0)
     title = Param("robot")
+    limit = Param(2.0)
 
     def __init__(self, name: str = "robot") -> None:
         super().__init__(name)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 from websockets.exceptions import InvalidStatus
 
@@ -14,6 +16,7 @@ from graphflow.testing import Graph
 from graphflow.viewer import bridge as bridge_module
 from graphflow.viewer import client
 from graphflow.viewer.bridge import Bridge
+from graphflow.viewer.protocol import told
 from tests.viewer.cast import Robot, served, viewer
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -54,7 +57,7 @@ async def test_only_looking(graph: Graph) -> None:
         await seen.send("advertise", channels=[channel])
         await seen.publish(1, Twist().to_bytes())
         await seen.send("setParameters", parameters=[{"name": "/robot.gain", "value": 2}], id="set")
-        await seen.until(lambda: "this server is for looking only" in seen.statuses)
+        await seen.until(lambda: any("this server is for looking only" in text for text in seen.statuses))
         await seen.subscribe(1, "/speed")
         await seen.until(lambda: robot.speed.get_subscription_count() == 1)
         assert (robot.gain, robot.heard, seen.services) == (1.0, [], {})
@@ -162,3 +165,49 @@ async def test_too_much_at_once(graph: Graph, monkeypatch: pytest.MonkeyPatch) -
         for number in range(4):
             await seen.send("getParameters", parameterNames=[], id=str(number))
         await seen.until(lambda: "2 requests are under way already" in seen.statuses)
+
+
+HELLO = "\r\n".join(
+    [
+        *("GET / HTTP/1.1", "Host: x", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13"),
+        *("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Protocol: foxglove.sdk.v1", "", ""),
+    ]
+).encode()
+
+
+async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are sent away when too much waits for them, and hold up no end."""
+    monkeypatch.setattr(client, "WORDS_BOUND", 100_000)
+    monkeypatch.setattr(bridge_module, "GRACE", 0.1)
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as good:
+        reader, writer = await asyncio.open_connection("127.0.0.1", lab.port, limit=1024)
+        writer.write(HELLO)
+        assert b" 101 " in await reader.readuntil(b"\r\n\r\n")
+        await good.until(lambda: len(lab.bridge._clients) == 2)
+        for _ in range(20_000):
+            lab.bridge._tell(told("status", level=0, message="x" * 1000))
+            if len(lab.bridge._clients) == 1:
+                break
+            await asyncio.sleep(0)
+        await good.until(lambda: len(lab.bridge._clients) <= 1)
+        stuck, other = await asyncio.open_connection("127.0.0.1", lab.port, limit=1024)
+        other.write(HELLO)
+        assert b" 101 " in await stuck.readuntil(b"\r\n\r\n")
+    writer.close()
+    other.close()
+
+
+async def test_a_clock_that_comes_later(graph: Graph) -> None:
+    """Is that of viewers who come after it; times before 1970 are none."""
+    node = Simulator()
+    async with served(graph) as lab:
+        await graph.start(node)
+        async with viewer(lab.port) as early:
+            await early.until(lambda: "/clock" in early.channels)
+        async with viewer(lab.port) as seen:
+            assert "time" in seen.info["capabilities"]
+            for sec in (-5, 7):
+                node.clock_.publish(Clock(clock={"sec": sec}))
+                await graph.settle()
+            await seen.until(lambda: seen.times == [7_000_000_000])

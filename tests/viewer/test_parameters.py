@@ -31,3 +31,37 @@ async def test_parameters(graph: Graph) -> None:
         await graph.settle()
         robot.title = "hero"
         await seen.until(lambda: seen.parameters["/robot.title"] == "hero")
+
+
+async def test_following_all(graph: Graph) -> None:
+    """No name is all names, and in the end none; too many are refused."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        await seen.send("subscribeParameterUpdates", parameterNames=[])
+        await seen.send("getParameters", parameterNames=["/robot.gain"], id="x")
+        await seen.until(lambda: "/robot.gain" in seen.parameters)
+        robot.title = "hero"
+        await seen.until(lambda: seen.parameters.get("/robot.title") == "hero")
+        await seen.send("unsubscribeParameterUpdates", parameterNames=[])
+        await seen.send("subscribeParameterUpdates", parameterNames=[f"/robot.a{n}" for n in range(5000)])
+        await seen.send("subscribeParameterUpdates", parameterNames=["/robot.b"])
+        await seen.until(lambda: seen.statuses)
+        assert "follows no more than" in seen.statuses[0]
+        robot.title = "zero"
+        await graph.settle()
+        await seen.send("getParameters", parameterNames=["/robot.gain"], id="y")
+        await seen.until(lambda: seen.parameters["/robot.gain"] == 1.0)
+        assert seen.parameters["/robot.title"] == "hero"
+
+
+async def test_numbers_that_json_has_not(graph: Graph) -> None:
+    """Become texts; the others are not lost with them."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        robot.limit = float("inf")
+        await seen.send("getParameters", parameterNames=[], id="all")
+        await seen.until(lambda: "/robot.limit" in seen.parameters)
+        assert (seen.parameters["/robot.limit"], seen.parameters["/robot.gain"]) == ("inf", 1.0)
+        await seen.say('{"op": "setParameters", "parameters": [{"name": "/robot.gain", "value": 1' + "0" * 400 + "}]}")
+        await seen.until(lambda: seen.statuses)
+        assert robot.gain == 1.0

@@ -23,9 +23,10 @@ async def test_publishing(graph: Graph) -> None:
             {"id": 3, "topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twits"},
             {"id": 4, "topic": "/no//name", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"},
             {"id": 5, "topic": "/cmd_vel", "encoding": "protobuf", "schemaName": "geometry_msgs/msg/Twist"},
+            {"id": 6, "topic": "/cmd_vel", "encoding": "json", "schemaName": "std_srvs/srv/SetBool"},
         ]
         await seen.send("advertise", channels=channels)
-        await seen.until(lambda: len(seen.statuses) == 3)
+        await seen.until(lambda: len(seen.statuses) == 4)
         assert "did you mean 'Twist'?" in " ".join(seen.statuses)
         await graph.settle()
         await seen.publish(1, Twist(linear=Vector3(x=1.0)).to_bytes())
@@ -43,7 +44,7 @@ async def test_publishing(graph: Graph) -> None:
         )
         for channel, data in wrong:
             await seen.publish(channel, data)
-        await seen.until(lambda: len(seen.statuses) >= 8)
+        await seen.until(lambda: len(seen.statuses) >= 9)
         assert "liner" in " ".join(seen.statuses)
         assert len(robot.heard) == 2
         await seen.send("unadvertise", channelIds=[1, 2])

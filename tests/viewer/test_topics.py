@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
+from graphflow import Node
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
+from graphflow.wire.liveliness import Entity, Kind
 from tests.viewer.cast import Robot, served, viewer
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -40,3 +45,25 @@ async def test_a_latched_topic(graph: Graph) -> None:
                 await first.until(lambda seen=first: seen.messages)  # type: ignore[misc]
                 await second.subscribe(1, "/map")
                 await second.until(lambda seen=second: seen.messages)  # type: ignore[misc]
+
+
+async def test_topics_that_cannot_be_shown(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Those of types nobody defines, and of names that are none, are told once; the others are shown."""
+    robot = Robot()
+    odd = Node("odd")
+    await graph.start(odd)
+    core = core_of(odd)
+    for name, type_ in (("/speed", "my_pkg/msg/Foo"), ("//a", "std_msgs/msg/String")):
+        core.context.cache.apply(
+            Entity(0, "ffff", 1, len(name) + 10, Kind.NODE, "/", f"n{len(name)}").token, alive=True
+        )
+        graph.network.session(asyncio.get_running_loop()).announce(
+            Entity(0, "ffff", 1, len(name) + 20, Kind.PUBLISHER, "/", "odd", name, type_, "RIHS01_" + "0" * 64).token
+        )
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        await seen.until(lambda: "/speed" in seen.channels)
+        assert seen.channels["/speed"]["schemaName"] == "geometry_msgs/msg/Twist"
+        before = caplog.text.count("is not shown")
+        await graph.start(Node("later"))
+        await graph.settle()
+        assert caplog.text.count("is not shown") == before
