@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from pathlib import Path
 
 import click
 
@@ -15,9 +14,9 @@ from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
 
 _FILES = {
-    "bash": Path(".local/share/bash-completion/completions/graphflow"),
-    "zsh": Path(".zfunc/_graphflow"),
-    "fish": Path(".config/fish/completions/graphflow.fish"),
+    "bash": ".local/share/bash-completion/completions/graphflow",
+    "zsh": ".zfunc/_graphflow",
+    "fish": ".config/fish/completions/graphflow.fish",
 }
 """Where each shell looks, below the home."""
 
@@ -31,6 +30,8 @@ def completion() -> None:
 @click.argument("shell", type=click.Choice(list(SCRIPTS)), required=False)
 def install(shell: str | None) -> int:
     """Write the file that a shell reads; which shell is taken from SHELL unless one is named."""
+    from pathlib import Path
+
     name = shell or Path(os.environ.get("SHELL", "")).name
     if name not in SCRIPTS:
         raise UsageFault(f"which shell is meant? graphflow completion install {'|'.join(SCRIPTS)}")

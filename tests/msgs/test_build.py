@@ -21,7 +21,7 @@ def test_a_class_is_where_it_is_imported_from() -> None:
     assert (cls.__module__, cls.__name__) == ("graphflow.msgs.geometry_msgs.msg", "Point")
     assert cls.__doc__ == "geometry_msgs/msg/Point: float64 x, float64 y, float64 z."
     assert issubclass(cls, base.Message)
-    assert cls.SCHEMA is registry.message_schema("geometry_msgs/msg/Point")
+    assert registry.message_schema("geometry_msgs/msg/Point") == cls.SCHEMA
 
 
 def test_a_service_holds_its_messages() -> None:
