@@ -1,10 +1,13 @@
-"""`graphflow action list`, `info`, `type`, `find` and `send_goal`."""
+"""`graphflow action list`, `info`, `type`, `find`, `echo` and `send_goal`."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import click
 
 from graphflow.cli import output
+from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.types import agree, names_of_type, use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
@@ -82,6 +85,22 @@ def info(name: str, show_types: bool, count: bool, as_json: bool) -> None:
         output.data(f"Action {word}: {len(entries)}")
         if not count:
             output.lines(f"    {node} [{type_}]" if show_types else f"    {node}" for node, type_ in entries)
+
+
+@action.command()
+@click.argument("name", metavar="ACTION")
+@echo_options
+def echo(name: str, **options: Any) -> int:
+    """Show the feedback of an action's goals as it comes. Ctrl-C stops it."""
+    from graphflow.cli import echoing
+    from graphflow.introspect.definitions import learn
+
+    full = expand(name, "/", "cli")
+    use_project()
+    with View(domain_id()) as view:
+        [type_name, *_] = _types(view, full)
+        learn(view, full, type_name)
+    return echoing.run(f"{full}{ACTION_FEEDBACK}", f"{type_name}{ACTION_FEEDBACK_TYPE}", taken(options))
 
 
 def _types(view: View, name: str) -> list[str]:

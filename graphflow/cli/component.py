@@ -60,6 +60,7 @@ def list_(container: str | None, containers_only: bool, as_json: bool, graph: st
 @click.option("-r", "--remap-rule", "remaps", multiple=True, metavar="FROM:=TO", help="Remap a name.")
 @click.option("-p", "--parameter", "params", multiple=True, metavar="NAME:=VALUE", help="Set a parameter.")
 @click.option("-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="For ROS's sake; not used.")
+@click.option("-q", "--quiet", is_flag=True, help="Print only the number and the name of the node.")
 @_graph
 def load(
     container: str,
@@ -71,6 +72,7 @@ def load(
     remaps: tuple[str, ...],
     params: tuple[str, ...],
     extra: tuple[str, ...],
+    quiet: bool,
     graph: str | None,
 ) -> None:
     """Load a node into a running process: a class, or what ROS calls a plugin of a package.
@@ -99,7 +101,31 @@ def load(
     answer = _ask(run.socket, do="load", container=container, node=node.to_json())
     if extra:
         output.talk(f"{', '.join(extra)}: not needed: messages within a process are always handed over")
-    output.data(f"Loaded component {answer['number']} into '{container}' container node as '{answer['node']}'")
+    number, name = answer["number"], answer["node"]
+    told = f"Loaded component {number} into '{container}' container node as '{name}'"
+    output.data(f"{number}  {name}" if quiet else told)
+
+
+@component.command(short_help="Run a node of a package in a process of its own.")
+@click.argument("package")
+@click.argument("plugin")
+@click.option("-n", "--node-name", help="Name of the node; else the class's.")
+@click.option("--node-namespace", help="Namespace of the node.")
+@click.option("--log-level", type=click.Choice(LOG_LEVELS, case_sensitive=False), help="Least level that is logged.")
+@click.option("-r", "--remap-rule", "remaps", multiple=True, metavar="FROM:=TO", help="Remap a name.")
+@click.option("-p", "--parameter", "params", multiple=True, metavar="NAME:=VALUE", help="Set a parameter.")
+@click.option("-e", "--extra-argument", "extra", multiple=True, metavar="NAME:=VALUE", help="For ROS's sake; not used.")
+@click.option("-c", "--container-node-name", help="For ROS's sake; there is no container.")
+def standalone(package: str, plugin: str, **options: Any) -> None:
+    """Run a node of a package in a process of its own, as `graphflow run PACKAGE PLUGIN` does. Ctrl-C ends it."""
+    from graphflow.cli.run import run
+
+    names = {"__node": options["node_name"], "__ns": options["node_namespace"]}
+    rules = [f"{key}:={value}" for key, value in names.items() if value] + list(options["remaps"])
+    words = [word for rule in rules for word in ("-r", rule)] + [w for p in options["params"] for w in ("-p", p)]
+    words += ["--log-level", options["log_level"]] if options["log_level"] else []
+    executable = plugin.rpartition("::")[2].lower()
+    click.get_current_context().invoke(run, prefix=None, what=package, words=(executable, "--ros-args", *words))
 
 
 @component.command()

@@ -110,6 +110,7 @@ def xml(package: str, tag: str | None) -> int:
 @click.option("--node-name", help="For ROS 2's commands: the project has a first node.")
 @click.option("--build-type", help="For ROS 2's commands: nothing is built.")
 @click.option("--dependencies", multiple=True, help="For ROS 2's commands: what is installed can be imported.")
+@click.option("--library-name", help="For ROS 2's commands: nothing is built.")
 @click.option("--package-format", help="For ROS 2's commands.")
 @click.option("--description", help="For ROS 2's commands.")
 @click.option("--license", "license_", help="For ROS 2's commands.")

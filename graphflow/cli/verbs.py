@@ -7,7 +7,6 @@ import click
 from graphflow.names import did_you_mean
 
 NOT_YET = {
-    "component standalone": "`graphflow run PACKAGE PLUGIN`",
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",

@@ -87,3 +87,15 @@ def test_a_goal_to_nobody(standing: Machine) -> None:
     text = standing.look("action", *words, code=4)
     assert "there is no action /fibonaci yet; did you mean '/fibonacci'?\nWaiting for an action server" in text
     assert "error: no node offers the action /fibonaci" in text
+
+
+def test_echo(standing: Machine) -> None:
+    """The feedback of every goal, with the goal's id."""
+    program = standing.start("action", "echo", "fibonacci", "--json", "--once")
+    full = "/fibonacci/_action/feedback"
+    standing.until(lambda: "_graphflow" in standing.look("topic", "info", "-v", full), "it listens")
+    standing.run("action", "send_goal", "/fibonacci", TYPE, "{order: 3}")
+    assert program.wait() == 0
+    found = json.loads(program.text)
+    assert found["feedback"]["sequence"][:3] == [0, 1, 1]
+    assert len(found["goal_id"]["uuid"]) == 16

@@ -60,7 +60,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
         (("unload", "/alone", "1"), 1, "to end it: graphflow stop /alone"),
         (("list", "/alon"), 2, "did you mean '/alone'?"),
         (("types", "compositon"), 2, "did you mean 'composition'?"),
-        (("standalone", "a", "b"), 2, "meanwhile: graphflow run PACKAGE PLUGIN"),
+        (("standalone", "compositon", "b"), 2, "did you mean 'composition'?"),
     ],
 )
 def test_mistakes(components: Machine, words: tuple[str, ...], code: int, told: str) -> None:
@@ -112,3 +112,13 @@ def test_roses_services_where_the_graph_allows_them(machine: Machine) -> None:
     assert "/room/ear" not in machine.look("ps")
     lists = ("service", "call", "/talker/_container/list_nodes", "composition_interfaces/srv/ListNodes")
     assert "full_node_names=['/talker'], unique_ids=array([1])" in machine.look(*lists)
+
+
+@slow
+def test_a_process_of_its_own(machine: Machine) -> None:
+    """With ROS 2's options, and its name of the plugin."""
+    words = ["component", "standalone", "composition", "composition::Talker", "-n", "t1", "-r", "chatter:=/news"]
+    program = machine.start(*words, "-p", "rate:=20.0", "-c", "box")
+    program.wait_for("[t1]: Publishing: 'Hello World: 2'")
+    assert "/news" in machine.look("topic", "list")
+    assert program.end() == 0
