@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import os
 import random
 import select
@@ -196,6 +197,16 @@ class Machine:
             program.process.wait(LIMIT)
             if program.process.stdout is not None:
                 program.process.stdout.close()
+
+
+@pytest.fixture(autouse=True)
+def no_log_handler_stays() -> Iterator[None]:
+    """What a test has made of graphflow's log is gone with it: its stream would be closed for the next one."""
+    logger = logging.getLogger("graphflow")
+    handlers, level = list(logger.handlers), logger.level
+    yield
+    logger.handlers[:] = handlers
+    logger.setLevel(level)
 
 
 @pytest.fixture

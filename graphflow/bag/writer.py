@@ -10,6 +10,7 @@ import contextlib
 import errno
 import logging
 import os
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -197,12 +198,17 @@ class BagWriter:
         except OSError as error:
             raise BagError(f"{folder}: {error.strerror}") from None
         self._flushed_ns = self._synced_ns = self._now_ns()
-        self._reserve = folder / ".reserve"
         with _told(folder):
-            self._reserve.write_bytes(bytes(RESERVE))
-        self._part = self._next()
-        with _told(folder):
-            self._write_metadata()
+            self._reserve = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115 - it ends with the process
+            self._reserve.write(bytes(RESERVE))
+            self._reserve.flush()
+        try:
+            self._part = self._next()
+            with _told(folder):
+                self._write_metadata()
+        except BagError:
+            self._reserve.close()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -270,7 +276,7 @@ class BagWriter:
             BagError: The end cannot be written; what is in the bag can be read.
         """
         with _told(self.folder):
-            self._reserve.unlink(missing_ok=True)
+            self._reserve.close()
             if not self._is_finished:
                 self._finish()
             self._write_metadata()
@@ -290,9 +296,9 @@ class BagWriter:
 
     def _make_room(self) -> bool:
         """Give back what was kept free on the disk; False if that has been done."""
-        if not self._reserve.exists():
+        if self._reserve.closed:
             return False
-        self._reserve.unlink()
+        self._reserve.close()
         return True
 
     def _finish(self) -> None:

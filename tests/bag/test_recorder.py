@@ -59,7 +59,7 @@ class Session:
         return Bag(self.folder)
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        deadline = time.monotonic() + 5.0
+        deadline = time.monotonic() + 20.0
         while not condition():
             assert time.monotonic() < deadline
             await asyncio.sleep(0.005)
@@ -339,6 +339,7 @@ async def test_an_error_of_the_writer(graph: Graph, session: Session, monkeypatc
     publisher.publish(String())
     with pytest.raises(BagError, match="broken"):
         await asyncio.wait_for(session.task, 5.0)
+    session.recorder._writer._reserve.close()
     session.recorder._writer._part.abandon()
 
 
