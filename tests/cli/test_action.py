@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -89,6 +90,7 @@ def test_a_goal_to_nobody(standing: Machine) -> None:
     assert "error: no node offers the action /fibonaci" in text
 
 
+@slow
 def test_echo(standing: Machine) -> None:
     """The feedback of every goal, with the goal's id."""
     program = standing.start("action", "echo", "fibonacci", "--json", "--once")

@@ -94,6 +94,7 @@ def test_a_process_that_is_stopped_takes_no_order(machine: Machine) -> None:
         assert next(client.receive(20.0)) == {"event": "loaded", "number": 2, "node": "/ear"}
 
 
+@slow
 def test_roses_services_where_the_graph_allows_them(machine: Machine) -> None:
     """ROS 2's own tools load nodes, and `ps` knows of them; other graphs offer no such service."""
     machine.run("up", "-d", "tests/programs/supervisor/controlled.yaml")

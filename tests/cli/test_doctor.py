@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -50,6 +51,7 @@ def test_nothing_runs(machine: Machine) -> None:
     assert "no such command 'now'" in machine.look("doctor", "now", code=2)
 
 
+@slow
 def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
     """Is told, with the folder that it has left."""
     (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}}\n")

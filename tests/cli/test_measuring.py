@@ -58,6 +58,7 @@ def watch(machine: Machine, *words: str, until: str) -> str:
     return text
 
 
+@slow
 def test_a_type_that_is_only_there(things: Machine) -> None:
     """Its definition comes from the node; it is looked at, measured and published like any other."""
     text = things.run("topic", "echo", "/things", "--once", cwd=Path("/"))

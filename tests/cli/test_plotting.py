@@ -17,6 +17,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.sensor_msgs.msg import LaserScan
 from graphflow.msgs.std_msgs.msg import Float64
 from tests.bag.cast import record, write
+from tests.cases import slow
 from tests.conftest import Machine
 
 TOPICS = {"/pose": ["turtlesim/msg/Pose"], "/a": [], "/a/b": []}
@@ -124,6 +125,7 @@ def drive(machine: Machine, tmp_path: Path) -> Iterator[Machine]:
     machine.run("down", cwd=tmp_path)
 
 
+@slow
 @pytest.mark.real
 def test_a_topic(drive: Machine, tmp_path: Path) -> None:
     """For some time, or until Ctrl-C; what is not there is told with the nearest."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_report(standing: Machine) -> None:
     """In ROS 2's sections; only those of checks that failed, if so wanted."""
     text = standing.look("doctor", "--report", code=1)

@@ -6,12 +6,16 @@ import signal
 
 import pytest
 
+from tests.cases import some
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
-@pytest.mark.parametrize("words", [("router",), ("run", "rmw_zenoh_cpp", "rmw_zenohd")])
+WORDS = [("router",), ("run", "rmw_zenoh_cpp", "rmw_zenohd")]
+
+
+@pytest.mark.parametrize("words", some(WORDS, WORDS[1]))
 def test_it_is_the_rendezvous(machine: Machine, words: tuple[str, ...]) -> None:
     """In the words of ROS 2, too; a second one waits."""
     first = machine.start(*words)

@@ -12,6 +12,7 @@ import pytest
 
 from graphflow.cli import view as module
 from graphflow.cli.view import _is_loopback, _shown
+from tests.cases import slow
 from tests.conftest import Machine
 from tests.viewer.cast import viewer
 
@@ -45,6 +46,7 @@ def test_a_graph_that_runs(standing: Machine) -> None:
     assert program.end(signal.SIGINT) == 0, program.text
 
 
+@slow
 @pytest.mark.real
 def test_what_cannot_be_served(standing: Machine) -> None:
     """A port that is taken, an address that is not here."""

@@ -17,6 +17,7 @@ from graphflow.viewer import bridge as bridge_module
 from graphflow.viewer import client
 from graphflow.viewer.bridge import Bridge
 from graphflow.viewer.protocol import told
+from tests.cases import slow
 from tests.viewer.cast import Robot, served, viewer
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -175,6 +176,7 @@ HELLO = "\r\n".join(
 ).encode()
 
 
+@slow
 async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Are sent away when too much waits for them, and hold up no end."""
     monkeypatch.setattr(client, "WORDS_BOUND", 100_000)
