@@ -81,7 +81,7 @@ def _graph() -> tuple[Findings, Findings, int]:
     with View(domain_id()) as view:
         first = _look(view)
         read = concurrency.read(view.reports(answer_key(view.domain, WAITS), ANSWER_LIMIT))
-        time.sleep(max(0.0, first.began_ns / 1e9 + BETWEEN_LOOKS - time.time()))
+        time.sleep(max(0.0, first.at + BETWEEN_LOOKS - time.monotonic()))
         health = examine(view, first, _look(view))
         ours = view.processes()
         others = [
@@ -112,8 +112,8 @@ def _graph() -> tuple[Findings, Findings, int]:
 
 
 def _look(view: View) -> Look:
-    began_ns = time.time_ns()
-    return Look(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), began_ns, time.time_ns())
+    at, began_ns = time.monotonic(), time.time_ns()
+    return Look(view.reports(answer_key(view.domain, NUMBERS), ANSWER_LIMIT), began_ns, time.time_ns(), at)
 
 
 def _print(faults: Findings, notes: Findings, count: int) -> None:

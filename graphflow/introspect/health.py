@@ -49,11 +49,13 @@ class Look(NamedTuple):
     """When they were asked, nanoseconds since 1970 by the clock of this machine."""
     ended_ns: int
     """When all had answered."""
+    at: float
+    """When they were asked, in seconds by a clock that only goes forward."""
 
 
 def examine(view: View, first: Look, second: Look) -> Health:
     """What is wrong, by two looks at what the processes have counted."""
-    before, now, seconds = first.replies, second.replies, (second.began_ns - first.began_ns) / 1e9
+    before, now, seconds = first.replies, second.replies, second.at - first.at
     then, counts = read(before), read(now)
     faults = [
         *_twins(view),

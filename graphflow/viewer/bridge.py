@@ -8,8 +8,9 @@ import errno
 import logging
 import re
 from collections import defaultdict
+from collections.abc import Callable, Iterable
 from http import HTTPStatus
-from typing import Any
+from typing import Any, TypeVar
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
@@ -30,6 +31,8 @@ from graphflow.viewer.publications import ENCODINGS, Publications
 from graphflow.viewer.services import Services
 from graphflow.viewer.topics import Topics
 from graphflow.wire.liveliness import Kind
+
+T = TypeVar("T")
 
 logger = logging.getLogger("graphflow")
 
@@ -168,8 +171,7 @@ class Bridge:
         said = protocol.read_text(message) if isinstance(message, str) else protocol.read_bytes(message)
         match said:
             case protocol.Subscribe():
-                for wanted in said.subscriptions:
-                    self._topics.subscribe(client, wanted)
+                _each(client, said.subscriptions, self._topics.subscribe)
             case protocol.Unsubscribe():
                 for number in said.subscription_ids:
                     self._topics.unsubscribe(client, number)
@@ -185,11 +187,7 @@ class Bridge:
             case protocol.SetParameters():
                 client.begin(lambda: self._set_parameters(client, said))
             case protocol.Advertise():
-                for announced in said.channels:
-                    try:
-                        self._publications.announce(client, announced)
-                    except GraphflowError as error:  # the others are not to blame
-                        client.warn(str(error))
+                _each(client, said.channels, self._publications.announce)
             case protocol.Unadvertise():
                 for number in said.channel_ids:
                     self._publications.withdraw(client, number)
@@ -278,6 +276,15 @@ class Bridge:
         }
         client.graph = graph
         client.say(told("connectionGraphUpdate", **update, **left))
+
+
+def _each(client: Client, wanted: Iterable[T], work: Callable[[Client, T], None]) -> None:
+    """Do something for each thing that a client wants; what cannot be is told it, and costs the others nothing."""
+    for one in wanted:
+        try:
+            work(client, one)
+        except GraphflowError as error:
+            client.warn(str(error))
 
 
 def _reason(error: Exception) -> str:

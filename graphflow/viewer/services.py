@@ -62,7 +62,7 @@ class Services:
         there = {name: cache.endpoints(Kind.SERVICE, name)[0] for name in sorted(cache.offered()[0])[:BOUND]}
         gone = [s for s in self._shown.values() if s.name not in there or there[s.name].type != s.type]
         for name in self._coming.keys() - there.keys():
-            self._coming.pop(name).cancel()
+            self._coming[name].cancel()
         for service in gone:
             del self._shown[service.name]
         if gone:

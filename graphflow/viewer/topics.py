@@ -66,7 +66,7 @@ class Topics:
             if not is_hidden(entity.name):
                 there.setdefault((entity.name, entity.type), entity)
         for key in self._coming.keys() - there.keys():
-            self._coming.pop(key).cancel()
+            self._coming[key].cancel()
         if gone := self._shown.keys() - there.keys():
             self._hide(gone)
         self._left_out &= there.keys()

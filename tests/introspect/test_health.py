@@ -44,7 +44,7 @@ def look(**nodes: dict[str, dict[str, float]]) -> list[bytes]:
 
 
 def found(seen: Any, before: list[bytes], now: list[bytes]) -> health.Health:
-    return examine(seen, Look(before, 0, 0), Look(now, 2 * 10**9, 2 * 10**9))
+    return examine(seen, Look(before, 0, 0, 5.0), Look(now, 2 * 10**9, 2 * 10**9, 7.0))
 
 
 PUB, SUB, CLIENT, SERVICE = Kind.PUBLISHER, Kind.SUBSCRIPTION, Kind.CLIENT, Kind.SERVICE

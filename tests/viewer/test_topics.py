@@ -22,7 +22,9 @@ async def test_messages(graph: Graph) -> None:
     robot = Robot()
     async with served(graph, robot) as lab, viewer(lab.port) as seen, viewer(lab.port) as other:
         twist = Twist(linear=Vector3(x=0.5))
-        await seen.subscribe(7, "/speed")
+        await seen.until(lambda: "/speed" in seen.channels)
+        wanted = [{"id": 6, "channelId": 4_000_000}, {"id": 7, "channelId": seen.channels["/speed"]["id"]}]
+        await seen.send("subscribe", subscriptions=wanted)  # one that has gone costs the other nothing
         await seen.until(lambda: robot.speed.get_subscription_count() == 1)
         robot.speed.publish(twist)
         await seen.until(lambda: seen.messages)
