@@ -76,3 +76,13 @@ def test_options_are_not_the_environment(standing: Machine, monkeypatch: pytest.
     monkeypatch.delitem(standing.env, "GRAPHFLOW_DOMAIN")
     found = json.loads(standing.look("--domain", domain, "--wire", "kilted", "doctor", "--json", code=1))
     assert found["installation"] == []
+
+
+@slow
+def test_hints_as_faults(machine: Machine) -> None:
+    """If they are wanted to be."""
+    node = machine.start("run", "listener")
+    machine.until(lambda: "/listener" in machine.look("node", "list", code=None), "it runs")
+    assert "listens to /chatter, which nobody publishes" in machine.look("doctor")
+    machine.look("doctor", "-iw", code=1)
+    assert node.end() == 0

@@ -48,3 +48,13 @@ def test_the_package_is_a_command() -> None:
         [sys.executable, "-m", "graphflow", "--version"], capture_output=True, text=True, check=False, timeout=60
     )
     assert graphflow.__version__ in done.stdout
+
+
+def test_what_the_user_wants_done_at_the_end() -> None:
+    """Is done where a node has been; else the process ends at once."""
+    code = "import atexit, sys, graphflow.cli.main as m; atexit.register(print, 'bye'); m.main = lambda: sys.exit(3)"
+    end = "import graphflow.cli.entry as e; e.main()"
+    with_node = run(f"import graphflow.runtime.node; {code}; {end}")
+    assert (with_node.returncode, with_node.stdout) == (3, "bye\n")
+    without = run(f"{code}; {end}")
+    assert (without.returncode, without.stdout) == (3, "")

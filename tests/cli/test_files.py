@@ -150,3 +150,13 @@ def test_names_explained(machine: Machine) -> None:
 def test_the_schema(machine: Machine) -> None:
     """It is one document."""
     assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"
+
+
+def test_a_wildcard_that_matches_nothing(machine: Machine, tmp_path: Path) -> None:
+    """Is a mistake like any remap that matches nothing; one that matches is none."""
+    file = tmp_path / "g.yaml"
+    text = "nodes: {/a: {class: nodes.listener:Listener, remap: {'/WHERE/*': '/b/\\1'}}}\n"
+    file.write_text(text.replace("WHERE", "elsewhere"))
+    assert "has no topic or service '/elsewhere/*'" in machine.look("check", str(file), code=2)
+    file.write_text(text.replace("/WHERE", ""))
+    machine.look("check", str(file))

@@ -192,3 +192,17 @@ def test_a_remap_that_matches_nothing(machine: Machine, words: list[str], told: 
 def test_a_prefix_that_is_none(machine: Machine) -> None:
     """Says why."""
     assert "No closing quotation" in machine.look("run", "--prefix", "a'b", "demo_nodes_cpp", "talker", code=2)
+
+
+@slow
+def test_where_logs_go(machine: Machine) -> None:
+    """Neither to the terminal nor to /rosout, if that is so wanted."""
+    node = machine.start("run", "talker", "--ros-args", "-p", "rate:=20.0", "--disable-stdout-logs")
+    machine.run("topic", "echo", "/chatter", "std_msgs/msg/String", "--once")
+    assert "/rosout" in machine.look("node", "info", "/talker")
+    assert node.end() == 0
+    assert "Hello World" not in node.text
+    node = machine.start("run", "talker", "--ros-args", "-p", "rate:=20.0", "--disable-rosout-logs")
+    node.wait_for("Hello World: 2")
+    assert "/rosout" not in machine.look("node", "info", "/talker")
+    assert node.end() == 0

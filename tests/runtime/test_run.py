@@ -14,7 +14,7 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.company import Company
-from graphflow.runtime.run import make, run, running, serve
+from graphflow.runtime.run import _stop_signals, make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 from tests.cases import slow
@@ -324,3 +324,14 @@ def test_run_says_what_is_wrong_with_its_words(
 
     assert caught.value.code == code
     assert text in capsys.readouterr().err
+
+
+def test_a_hangup_that_is_ignored() -> None:
+    """As under `nohup`, stays ignored."""
+    former = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert signal.SIGHUP not in list(_stop_signals())
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+        assert signal.SIGHUP in list(_stop_signals())
+    finally:
+        signal.signal(signal.SIGHUP, former)

@@ -200,7 +200,7 @@ async def test_viewers_that_read_nothing(graph: Graph, monkeypatch: pytest.Monke
     other.close()
 
 
-async def test_a_clock_that_comes_later(graph: Graph) -> None:
+async def test_a_clock_that_comes_later(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """Is that of viewers who come after it; times before 1970 are none."""
     node = Simulator()
     async with served(graph) as lab:
@@ -213,3 +213,4 @@ async def test_a_clock_that_comes_later(graph: Graph) -> None:
                 node.clock_.publish(Clock(clock={"sec": sec}))
                 await graph.settle()
             await seen.until(lambda: seen.times == [7_000_000_000])
+    assert not [record for record in caplog.records if record.levelname == "ERROR"]

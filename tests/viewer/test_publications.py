@@ -8,6 +8,7 @@ import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.testing import Graph
+from graphflow.viewer import publications
 from tests.viewer.cast import Robot, served, viewer
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -44,7 +45,7 @@ async def test_publishing(graph: Graph) -> None:
         )
         for channel, data in wrong:
             await seen.publish(channel, data)
-        await seen.until(lambda: len(seen.statuses) >= 9)
+        await seen.until(lambda: len(seen.statuses) == 10)
         assert "liner" in " ".join(seen.statuses)
         assert len(robot.heard) == 2
         await seen.send("unadvertise", channelIds=[1, 2])
@@ -60,3 +61,14 @@ async def test_publishers_of_a_viewer_that_has_gone(graph: Graph) -> None:
             await seen.send("advertise", channels=[channel])
             await seen.until(lambda: len(lab.bridge._publications))
         await seen.until(lambda: not len(lab.bridge._publications))
+
+
+async def test_too_many_publishers(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are refused."""
+    monkeypatch.setattr(publications, "BOUND", 2)
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        channel = {"topic": "/cmd_vel", "encoding": "cdr", "schemaName": "geometry_msgs/msg/Twist"}
+        await seen.send("advertise", channels=[{"id": number, **channel} for number in range(3)])
+        await seen.until(lambda: seen.statuses)
+        assert seen.statuses == ["viewers have 2 publishers already"]
+        assert len(lab.bridge._publications) == 2

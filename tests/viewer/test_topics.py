@@ -11,6 +11,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
+from graphflow.viewer import topics
 from graphflow.wire.liveliness import Entity, Kind
 from tests.viewer.cast import Robot, served, viewer
 
@@ -69,3 +70,34 @@ async def test_topics_that_cannot_be_shown(graph: Graph, caplog: pytest.LogCaptu
         await graph.start(Node("later"))
         await graph.settle()
         assert caplog.text.count("is not shown") == before
+        assert (
+            "/speed is not shown: there is no interface package 'my_pkg'; /odd: this node uses no type" in caplog.text
+        )
+
+
+async def test_a_viewer_that_goes(graph: Graph) -> None:
+    """Listens no more."""
+    robot = Robot()
+    async with served(graph, robot) as lab:
+        async with viewer(lab.port) as seen:
+            await seen.subscribe(1, "/speed")
+            await seen.until(lambda: robot.speed.get_subscription_count() == 1)
+        await seen.until(lambda: robot.speed.get_subscription_count() == 0)
+
+
+async def test_bounds(graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """So many topics are shown, and looked at; a number is used once."""
+    robot = Robot()
+    async with served(graph, robot) as lab, viewer(lab.port) as seen:
+        await seen.until(lambda: {"/speed", "/map"} <= {*seen.channels})
+        monkeypatch.setattr(topics, "BOUND", 1)
+        await seen.subscribe(1, "/speed")
+        await seen.subscribe(1, "/map")
+        await seen.subscribe(2, "/map")
+        await seen.until(lambda: len(seen.statuses) == 2)
+        assert seen.statuses == ["the subscription 1 is there already", "a viewer looks at no more than 1 topics"]
+        other = Node("other")
+        await graph.start(other)
+        other.create_publisher(Twist, "/more")
+        await seen.until(lambda: "only 1 topics are shown" in caplog.text)
+        assert "/more" not in seen.channels
