@@ -26,6 +26,8 @@ _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
 """Kilted moved turtlesim's interfaces to a package of their own: different names on the wire, the same text."""
 
 _roots: list[Path] = []
+_packages: dict[str, Path] = {}
+"""Folders of single packages."""
 _given: dict[str, str] = {}
 """Definitions from elsewhere, by name."""
 
@@ -34,6 +36,11 @@ def add_root(folder: Path) -> None:
     """Also search `folder`, a project's `interfaces/`, for packages."""
     if folder not in _roots:
         _roots.append(folder)
+
+
+def add_package(name: str, folder: Path) -> None:
+    """Make the definitions in a folder known as those of a package."""
+    _packages.setdefault(name, folder)
 
 
 def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
@@ -100,12 +107,15 @@ def package_folders(package: str) -> list[Path]:
     if not name.isidentifier():
         return []
     folders = [root / name for root in roots()]
+    if name in _packages:
+        folders.append(_packages[name])
     return [f for f in folders if any((f / kind).is_dir() for kind in KINDS)]
 
 
 def packages() -> list[str]:
     """The names of all packages that can be found."""
     found = {f.name for root in roots() for f in root.iterdir() if f.is_dir() and package_folders(f.name)}
+    found |= _packages.keys()
     found |= {alias for alias, name in _SAME_DEFINITIONS.items() if name in found}
     return sorted(found)
 
@@ -301,7 +311,7 @@ def codec(name: str) -> Codec:
 @cache
 def plain_codec(name: str) -> Codec:
     """The codec of a message that decodes numeric arrays into lists: slower for long ones, but numpy is not loaded."""
-    return Codec(message_schema(name), Types(message_schema, interface_class, checked, plain=True))
+    return Codec(message_schema(name), Types(message_schema, interface_class, checked, "list"))
 
 
 def has_numeric_arrays(name: str) -> bool:

@@ -45,6 +45,8 @@ class RosArgs:
     """Whether what nodes log is printed."""
     rest: list[str] = field(default_factory=list)
     """Words that are not for ROS."""
+    unknown: list[str] = field(default_factory=list)
+    """Words after `--ros-args` that are no argument of ROS's, where those are not refused."""
 
     def params_for(self, interface: Interface) -> dict[str, tuple[Any, str]]:
         """Values for a node of a class, by parameter, each with where it was written.
@@ -69,8 +71,11 @@ class RosArgs:
         return found | {p: (v, source) for node, p, v, source in self.params if node in names}
 
 
-def parse_ros_args(words: Sequence[str]) -> RosArgs:
+def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> RosArgs:
     """Read a node's arguments. A bare `from:=to`, which ROS 2 would silently ignore, is taken as a remap.
+
+    Args:
+        refuses_unknown: Whether a word that is no argument of ROS's is an error.
 
     Raises:
         GraphflowError: A rule or an option is wrong.
@@ -95,6 +100,8 @@ def parse_ros_args(words: Sequence[str]) -> RosArgs:
             _option(result, word, todo.pop(0))
         elif ":=" in word and not word.startswith("-"):
             _remap(result, word)
+        elif in_ros and not refuses_unknown:
+            result.unknown.append(word)
         elif in_ros:
             raise GraphflowError(f"{word!r} is not a ROS argument{did_you_mean(word, _OPTIONS)}")
         else:

@@ -24,6 +24,7 @@ from graphflow.runtime.direct import Switchboard
 from graphflow.runtime.handover import Handover
 from graphflow.runtime.reasons import Reasons
 from graphflow.transport.base import Closable, Session
+from graphflow.transport.loop import in_thread
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile
@@ -259,7 +260,7 @@ class Context:
         self._inspection.close()
         self.reasons.close()
         if self._link is not None:
-            await asyncio.to_thread(self._link.close)
+            await in_thread(self._link.close)
         if self._takeover is not None:
             await self._takeover.close()
         await self.session.close()

@@ -216,8 +216,8 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             if answer is None:
                 future.set_exception(ServerLost(f"the server of {self.name} went away before it answered"))
             elif answer.is_error:
-                future.set_exception(_error_of(answer.payload, self.name))
-            elif _sequence_of(answer) == sequence:
+                future.set_exception(error_of(answer.payload, self.name))
+            elif sequence_of(answer) == sequence:
                 future.set_result(answer)
 
         def expired() -> None:
@@ -259,7 +259,7 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
         assert runner is not None
 
         def queue(answer: Answer | None) -> None:
-            if answer is not None and answer.is_error and isinstance(_error_of(answer.payload, ""), DeadlockError):
+            if answer is not None and answer.is_error and isinstance(error_of(answer.payload, ""), DeadlockError):
                 answered(answer)  # it would wait for its own caller
             elif answer is not None:
                 self._replies.append(_Reply(call, lambda: answered(answer)))
@@ -335,7 +335,7 @@ def _nothing() -> None:
     """Nothing: there is nothing to give up yet."""
 
 
-def _error_of(payload: bytes, service: str) -> CallError:
+def error_of(payload: bytes, service: str) -> CallError:
     """What an error reply means to the caller."""
     error = RemoteError.from_payload(payload, service)
     if error.type == STOPPING.type:
@@ -344,7 +344,8 @@ def _error_of(payload: bytes, service: str) -> CallError:
     return named[error.type](error.message) if error.type in named else error
 
 
-def _sequence_of(answer: Answer) -> int | None:
+def sequence_of(answer: Answer) -> int | None:
+    """The number of the call that an answer is for; None if it does not say."""
     try:
         return attachment.unpack((answer.attachment or b"")[: attachment.SIZE]).sequence
     except DecodeError:

@@ -41,6 +41,11 @@ class ServiceEvents:
         self._qos = DEFAULT
         self._publisher: TopicPublisher[Any] | None = None
 
+    @property
+    def is_on(self) -> bool:
+        """Whether events are published."""
+        return self._level != "off"
+
     def configure(self, level: Introspection, qos: Qos, *, is_open: bool) -> None:
         """Publish this much from now on.
 

@@ -109,7 +109,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._read = context.session.read
         bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
         if self._callback is None:
-            self._inbox = Inbox(context.session.bell, bound, self._arrived)
+            self._inbox = self._new_inbox(bound)
         else:
             self._inbox = Inbox(context.session.bell, bound, _nothing)
             tell = (self._invoke, self._finished, self.host.full_name)
@@ -123,6 +123,10 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))
         if not self._ignore_local:
             context.handover.join(key, self)
+
+    def _new_inbox(self, bound: int) -> Inbox:
+        """Where messages wait for those who iterate."""
+        return Inbox(self.host.context.session.bell, bound, self._arrived)
 
     def hand(self, handed: Handed) -> None:
         """Take a message of a publisher of this process."""
@@ -254,7 +258,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         try:
             return self._codec.decode(payload), fields
         except DecodeError as error:
-            self._count_malformed(error)
+            self.count_malformed(error)
             return None
 
     def _is_fresh(self, sequence: int, source_ns: int, gid: bytes) -> bool:
@@ -307,7 +311,8 @@ class TopicSubscription(Endpoint, Generic[M]):
         assert self._inbox is not None
         self._inbox.dropped += 1
 
-    def _count_malformed(self, error: DecodeError) -> None:
+    def count_malformed(self, error: DecodeError) -> None:
+        """A payload was not a message of the type."""
         self.malformed += 1
         if self.malformed == 1 or self.malformed % 1000 == 0:
             self.host.log.warning("%s: dropped a malformed message (%d so far): %s", self.name, self.malformed, error)

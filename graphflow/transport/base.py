@@ -153,6 +153,18 @@ class Session(Protocol):
     async def close(self) -> None: ...
 
 
+class Rings(Protocol):
+    """What wakes those who empty inboxes: the loop, by a `Bell`, or threads of somebody else's."""
+
+    rung: deque[Inbox]
+    """Inboxes that wait to be emptied."""
+    pending: bool
+    """Whether somebody has been woken for them."""
+
+    def ring(self) -> None:
+        """Wake them. Callable from any thread."""
+
+
 class Bell:
     """Wakes the loop, once per burst.
 
@@ -217,14 +229,14 @@ class Inbox:
     """A bounded queue that a foreign thread fills and the loop empties; when full, the oldest item is dropped.
 
     Args:
-        bell: Wakes the loop.
+        bell: Wakes the loop, or whoever else empties it.
         depth: Items kept; None for no bound.
-        ready: Called on the loop when there is something that is not being handled yet.
+        ready: Called by whom the bell wakes when there is something that is not being handled yet.
     """
 
     __slots__ = ("_bell", "dropped", "items", "ready", "ringing")
 
-    def __init__(self, bell: Bell, depth: int | None, ready: Callable[[], None]) -> None:
+    def __init__(self, bell: Rings, depth: int | None, ready: Callable[[], None]) -> None:
         self.items: deque[Any] = deque(maxlen=depth)
         self.ready = ready
         self.dropped = 0

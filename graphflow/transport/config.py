@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 
 import zenoh
@@ -107,6 +107,7 @@ def close_session(session: zenoh.Session) -> None:
 
 
 _to_close: list[zenoh.Session] = []
+_before_closing: list[Callable[[], None]] = []
 _closer: threading.Thread | None = None
 
 
@@ -116,15 +117,27 @@ def close_at_exit(session: zenoh.Session) -> None:
     Zenoh's callback threads keep the interpreter from ending, and `atexit` comes only after it has waited for them.
     So a thread of our own waits for the main thread, which is done the moment the interpreter begins to end.
     """
+    _wait_for_main()
+    _to_close.append(session)
+
+
+def before_closing_at_exit(what: Callable[[], None]) -> None:
+    """Call `what` when the main thread has ended, before sessions that are still open are closed. It must not raise."""
+    _wait_for_main()
+    _before_closing.append(what)
+
+
+def _wait_for_main() -> None:
     global _closer
     if _closer is None:
         _closer = threading.Thread(target=_close_after_main, name="graphflow-exit")
         _closer.start()
-    _to_close.append(session)
 
 
 def _close_after_main() -> None:
     threading.main_thread().join()
+    while _before_closing:
+        _before_closing.pop()()
     while _to_close:
         session = _to_close.pop()
         if not session.is_closed():

@@ -8,6 +8,7 @@ import random
 
 from graphflow.domain import rendezvous_endpoint
 from graphflow.transport.base import Closable
+from graphflow.transport.loop import in_thread
 from graphflow.transport.rendezvous import Router, host, occupied
 from graphflow.transport.zenoh import ZenohSession
 
@@ -105,5 +106,5 @@ class Takeover:
         if self._attempt is not None:
             self._router = await self._attempt
         if self._router is not None:
-            await asyncio.to_thread(self._router.close)
+            await in_thread(self._router.close)
             self._router = None

@@ -32,6 +32,7 @@ from graphflow.transport.config import (
     config,
     open_session,
 )
+from graphflow.transport.loop import in_thread
 
 OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
@@ -370,7 +371,7 @@ class ZenohSession:
         return str(arrival.key_expr)
 
     async def close(self) -> None:
-        await asyncio.to_thread(close_session, self.raw)
+        await in_thread(lambda: close_session(self.raw))
         self.bell.close()
 
 

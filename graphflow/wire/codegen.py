@@ -34,6 +34,12 @@ LITTLE = 0x0100
 """The header bytes 00 01 00 00 read as a little-endian uint32: plain CDR, little-endian."""
 
 
+Style = Literal["numpy", "list", "rosidl"]
+"""How messages hold their fields: numeric arrays as numpy's; or as lists, for which numpy is not loaded; or all as in
+the classes that rosidl generates for Python, where `x` is kept in `_x`, a byte is a `bytes` of length one, and
+sequences of numbers are `array.array`."""
+
+
 class Types(NamedTuple):
     """What the compiler needs to know about types other than the one at hand."""
 
@@ -41,8 +47,13 @@ class Types(NamedTuple):
     message_class: Callable[[str], type]
     checked: Callable[[Any], Any]
     """A copy of a message with every value checked and converted; raises EncodeError naming the field."""
-    plain: bool = False
-    """Whether numeric arrays are decoded into lists, for which numpy is not loaded."""
+    style: Style = "numpy"
+    """How the classes hold their fields."""
+
+    @property
+    def prefix(self) -> str:
+        """What comes before a field's name in that of the attribute."""
+        return "_" if self.style == "rosidl" else ""
 
 
 def min_size(type_: FieldType, schema: Callable[[str], Message]) -> int:
@@ -102,6 +113,10 @@ class Code:
 
     def line(self, text: str) -> None:
         self.lines.append("    " * self.depth + text)
+
+    def format_of(self, base: str) -> str:
+        """The struct format of a number."""
+        return "c" if base == "byte" and self.types.style == "rosidl" else FORMATS[base]
 
     def number(self, format_: str, expression: str) -> None:
         self.run.append(Item(format_, expression))

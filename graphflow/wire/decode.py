@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import struct
+import sys
+from array import array
 from collections.abc import Callable
 from typing import Any
 
@@ -46,7 +48,7 @@ class Decoder(Code):
         if not message.fields:
             self.number("x", "")
         for field in message.fields:
-            self.field(field, f"{local}.{field.name}")
+            self.field(field, f"{local}.{self.types.prefix}{field.name}")
 
     def field(self, field: Field, target: str) -> None:
         type_ = field.type
@@ -59,7 +61,7 @@ class Decoder(Code):
 
     def single(self, type_: FieldType, target: str) -> None:
         if type_.base in FORMATS:
-            self.number(FORMATS[type_.base], target)
+            self.number(self.format_of(type_.base), target)
         elif type_.base in ("string", "wstring"):
             self.string(type_, target)
         else:
@@ -92,12 +94,22 @@ class Decoder(Code):
             self.line(align if type_.array == "fixed" else f"if {n}: {align}")
         self.line(f"e = p + {n} * {size}")
         self.line("if e > size: raise ValueError('an array ends after the payload')")
-        if self.types.plain:
-            self.names["unpack_from"] = struct.unpack_from
-            self.line(f"{target} = list(unpack_from(f'{self.order}{{{n}}}{FORMATS[type_.base]}', buf, p))")
-        else:
-            self.line(f"{target} = array_view(buf, {self._dtype(type_)}, {n}, p)")
+        match self.types.style:
+            case "list":
+                self.unpacked(type_, target, n)
+            case "rosidl" if type_.base in ("bool", "byte"):
+                self.unpacked(type_, target, n)
+            case "rosidl" if type_.array != "fixed":
+                self.names["read_array"] = _read_array
+                self.line(f"{target} = read_array({FORMATS[type_.base]!r}, buf[p:e], {self.order == '>'})")
+            case style:
+                copy = ".copy()" if style == "rosidl" else ""
+                self.line(f"{target} = array_view(buf, {self._dtype(type_)}, {n}, p){copy}")
         self.line("p = e")
+
+    def unpacked(self, type_: FieldType, target: str, count: str) -> None:
+        self.names["unpack_from"] = struct.unpack_from
+        self.line(f"{target} = list(unpack_from(f'{self.order}{{{count}}}{self.format_of(type_.base)}', buf, p))")
 
     def _dtype(self, type_: FieldType) -> str:
         from graphflow.wire import arrays
@@ -125,6 +137,14 @@ class Decoder(Code):
         self.line(f"{items}.append({item})")
         self.depth -= 1
         self.line(f"{target} = {items}")
+
+
+def _read_array(code: str, payload: bytes, is_foreign: bool) -> array[Any]:
+    """Numbers as `array.array`, with the bytes of each swapped if they are in the order that this machine's are not."""
+    numbers = array(code, payload)
+    if is_foreign is (sys.byteorder == "little"):
+        numbers.byteswap()
+    return numbers
 
 
 def _narrow(utf32: bytes, order: Order) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 from graphflow.errors import EncodeError
@@ -40,7 +41,7 @@ class Encoder(Code):
         if not message.fields:
             self.number("x", "")
         for field in message.fields:
-            self.field(field, f"{expression}.{field.name}")
+            self.field(field, f"{expression}.{self.types.prefix}{field.name}")
 
     def field(self, field: Field, expression: str) -> None:
         type_ = field.type
@@ -57,7 +58,7 @@ class Encoder(Code):
                 # struct would take any object as true: what is not True or False is not a key, and so not a bool.
                 self.names["BOOL"] = {True: True, False: False}
                 expression = f"BOOL[{expression}]"
-            self.number(FORMATS[type_.base], expression)
+            self.number(self.format_of(type_.base), expression)
         elif type_.base == "string":
             self.string(type_, expression)
         elif type_.base == "wstring":
@@ -92,6 +93,9 @@ class Encoder(Code):
         self.line(f"p += 2 * len({text})")
 
     def numeric_array(self, type_: FieldType, expression: str) -> None:
+        if self.types.style == "rosidl" and (type_.base in ("bool", "byte") or type_.array != "fixed"):
+            self.rosidl_array(type_, expression)
+            return
         from graphflow.wire import arrays
 
         dtype = self.constant("D", arrays.DTYPES[type_.base])
@@ -115,6 +119,30 @@ class Encoder(Code):
         self.align(size)
         self.line(f"parts.append({a}.data)")
         self.line(f"p += {a}.nbytes")
+        self.depth -= 1
+
+    def rosidl_array(self, type_: FieldType, expression: str) -> None:
+        """What rosidl's classes hold in place of numpy's arrays: lists of bools or bytes, and `array.array`."""
+        a, format_ = self.fresh("a"), FORMATS[type_.base]
+        self.line(f"{a} = {expression}")
+        check_count(self, type_, f"len({a})")
+        if type_.base == "bool":
+            self.names["flags"] = _flags
+            self.line(f"{a} = flags({a})")
+        elif type_.base == "byte":
+            self.line(f"{a} = b''.join({a})")
+        else:
+            self.names["array"] = array
+            self.line(f"if {a}.__class__ is not array or {a}.typecode != {format_!r}: {a} = array({format_!r}, {a})")
+        if type_.array != "fixed":
+            self.number("I", f"len({a})")
+        self.go_dynamic()
+        self.line(f"if {a}:")
+        self.depth += 1
+        size = struct.calcsize(format_)
+        self.align(size)
+        self.line(f"parts.append({a})")
+        self.line(f"p += len({a}){f' * {size}' if size > 1 else ''}")
         self.depth -= 1
 
     def align(self, size: int) -> None:
@@ -150,6 +178,15 @@ def check_count(code: Code, type_: FieldType, count: str) -> None:
         code.line(f"if {count} != {type_.size}: raise ValueError('wrong length')")
     elif type_.array == "bounded":
         code.line(f"if {count} > {type_.size}: raise ValueError('too long')")
+
+
+def _flags(values: Iterable[object]) -> bytes:
+    """Truth values as bytes."""
+    return bytes(1 if value is True else 0 if value is False else _refuse(value) for value in values)
+
+
+def _refuse(value: object) -> int:
+    raise ValueError(f"{value!r} is neither true nor false")
 
 
 def _widen(utf16: bytes) -> bytes:
