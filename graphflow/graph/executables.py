@@ -13,6 +13,8 @@ from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
+from graphflow.graph.workspace import find_workspace
+
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
     ("turtlesim", "turtle_teleop_key"): "nodes.turtle_teleop:TurtleTeleop",
@@ -69,10 +71,11 @@ class Listed(NamedTuple):
     package: str
     name: str
     class_path: str
+    """The module, from the folder of the project, and the class, or the function that is called."""
 
 
 def all_executables(root: Path) -> list[Listed]:
-    """All that `find` would find: nodes that come with graphflow, and those of the project.
+    """All that `find` would find, nodes that come with graphflow and those of the project, and what a workspace has.
 
     Args:
         root: The folder of the project.
@@ -82,6 +85,11 @@ def all_executables(root: Path) -> list[Listed]:
         names = {f.stem for f in (root / "nodes").glob("*.py")} | _scripts(package, root).keys()
         found = {name: find(package, name, root) for name in names}
         rows += [Listed(package, name, one.class_path) for name, one in found.items() if one is not None]
+    known = {row[:2] for row in rows}
+    for own in find_workspace(root).packages.values():
+        for name in own.executables:
+            if (own.name, name) not in known:
+                rows.append(Listed(own.name, name, own.path_of(name, root)))
     return sorted(set(rows))
 
 

@@ -27,6 +27,7 @@ from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.tree import Item, located
+from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
 
 _ANY = {"if", "unless"}
@@ -316,10 +317,13 @@ class _Translation:
         self._add_node(body, key, item._replace(value=entries, key=own.place if own is not None else item.key))
 
     def _program_of_ros(self, item: Item, package: str, name: str, given: dict[str, Item]) -> dict[str, Item]:
-        """A node that only ROS has, as the program that runs it."""
+        """A program of the workspace, or one that only ROS has, as the command that runs it."""
         place = item.entries["exec"].place
-        self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
-        words = ["ros2", "run", package, name]
+        own_package = find_workspace(self._root).packages.get(package)
+        is_here = own_package is not None and own_package.has(name)
+        if not is_here:
+            self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
+        words = ["graphflow" if is_here else "ros2", "run", package, name]
         words += words_of(item.entries.get("args"))
         own = [(key, given[key]) for key in ("namespace", "remap", "params") if key in given]
         around = [*self._shared, *own]  # a group gives a program nothing: it is passed what it would have got

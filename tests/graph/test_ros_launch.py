@@ -268,6 +268,18 @@ def test_a_node_that_only_ros_has() -> None:
     assert made["nodes"]["p"] == {"command": words.split(), "namespace": "n", "restart": {"policy": "always"}}
 
 
+def test_a_program_of_the_workspace(tmp_path: Path) -> None:
+    """It is run as it lies there; nobody needs ROS for it."""
+    folder = tmp_path / "src" / "lamp"
+    (folder / "scripts").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>lamp</name></package>")
+    (folder / "scripts" / "shine.py").write_text("import rclpy\n")
+    made, complaints, notes = native("launch: [{node: {pkg: lamp, exec: shine.py, name: big}}]", tmp_path)
+    assert (complaints, notes) == ([], [])
+    words = "graphflow run lamp shine.py --ros-args -r __node:=big"
+    assert made["nodes"]["big"]["command"] == words.split()
+
+
 def test_what_a_program_of_ros_gets_from_its_groups() -> None:
     """Nothing of a group reaches a foreign program by itself: it is passed on as words, the node's own last."""
     made, complaints, _ = native(

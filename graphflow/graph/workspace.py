@@ -1,0 +1,263 @@
+"""ROS 2 workspaces, read without building them: the packages below a folder, and what each has to be run.
+
+What a package installs is read from its `setup.py`, `setup.cfg` or `CMakeLists.txt`, without running any of them.
+"""
+
+from __future__ import annotations
+
+import ast
+import configparser
+import os
+import re
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+DEPTH = 5
+"""Folders below a workspace in which packages are looked for."""
+FOLDERS_BOUND = 5000
+"""Folders that are looked into: the shell may stand in any folder, be it `/`."""
+PACKAGES_BOUND = 1000
+_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
+"""Folders that colcon makes, and others in which no package lies."""
+_MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+"""Files that say that nothing below is a package."""
+_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+_SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
+_INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
+KINDS = ("msg", "srv", "action")
+
+
+class EntryPoint(NamedTuple):
+    """A function of a module that is an executable."""
+
+    module: str
+    function: str
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package of a workspace."""
+
+    name: str
+    folder: Path
+
+    @property
+    def has_interfaces(self) -> bool:
+        """Whether messages, services or actions are defined in it."""
+        return any(next((self.folder / kind).glob(f"*.{kind}"), None) is not None for kind in KINDS)
+
+    @cached_property
+    def entry_points(self) -> Mapping[str, EntryPoint]:
+        """Its executables that are functions, by name."""
+        return {**_of_setup_py(self.folder / "setup.py"), **_of_setup_cfg(self.folder / "setup.cfg")}
+
+    @cached_property
+    def programs(self) -> Mapping[str, Path]:
+        """Its executables that are files, by name: those that CMake installs, and those in `scripts/`."""
+        found = {file.name: file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file()}
+        return found | dict(_of_cmake(self.folder))
+
+    @property
+    def executables(self) -> list[str]:
+        """The names of all."""
+        return sorted({*self.entry_points, *self.programs})
+
+    @property
+    def faults(self) -> list[str]:
+        """What is wrong with its executables."""
+        return [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+
+    def fault_of(self, entry_point: str) -> str | None:
+        """What is wrong with one that is a function: its module is not there."""
+        entry = self.entry_points[entry_point]
+        file, place = self.file_of(entry), self.folder / "setup.py"
+        said = f"{place}: {entry_point} is {entry.module}:{entry.function}, and there is no {file}"
+        return None if file.is_file() else said
+
+    def file_of(self, entry: EntryPoint) -> Path:
+        """Where the module of an executable has to be."""
+        return self.folder.joinpath(*entry.module.split(".")).with_suffix(".py")
+
+    def path_of(self, executable: str, root: Path) -> str:
+        """The module and the function of an executable, as `src.lamp.lamp.node:main`; without one for a file."""
+        entry = self.entry_points.get(executable)
+        file = self.programs[executable] if entry is None else self.file_of(entry)
+        inside = file.relative_to(root) if file.is_relative_to(root) else file
+        module = ".".join(inside.with_suffix("").parts)
+        return module if entry is None else f"{module}:{entry.function}"
+
+    def has(self, executable: str) -> bool:
+        """Whether there is an executable of that name, with or without `.py`."""
+        names = {executable, f"{executable}.py", executable.removesuffix(".py")}
+        return not names.isdisjoint(self.executables)
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """The packages below a folder, by name."""
+
+    root: Path
+    packages: Mapping[str, Package] = field(default_factory=dict)
+
+    @property
+    def import_roots(self) -> list[Path]:
+        """The folders of packages from which Python imports."""
+        return [p.folder for p in self.packages.values() if next((p.folder / p.name).glob("*.py"), None) is not None]
+
+    @property
+    def interfaces(self) -> dict[str, Path]:
+        """The folders of packages that define messages, services or actions."""
+        return {p.name: p.folder for p in self.packages.values() if p.has_interfaces}
+
+
+def find_workspace(start: Path) -> Workspace:
+    """The workspace that a folder belongs to: the nearest above it with packages in its `src`, or that is in one.
+
+    Returns:
+        One without packages where there is none.
+    """
+    start = start.resolve()
+    folders = [start, *start.parents] if start.is_dir() else list(start.parents)
+    for folder in folders:
+        if (folder / "src").is_dir() and next(_walk(folder / "src"), None) is not None:
+            return read_workspace(folder, folder / "src")
+    highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
+    if highest is not None:  # beside it, there may be others
+        return read_workspace(highest.parent, highest.parent)
+    return read_workspace(start, start) if start.is_dir() else Workspace(start)
+
+
+def read_workspace(root: Path, source: Path) -> Workspace:
+    """The packages below `source`; of two with the same name, the one that is met first."""
+    packages: dict[str, Package] = {}
+    for package in _walk(source):
+        packages.setdefault(package.name, package)
+        if len(packages) >= PACKAGES_BOUND:
+            break
+    return Workspace(root, packages)
+
+
+def _walk(source: Path) -> Iterator[Package]:
+    """The packages in the nearest folders first; there may be any number of folders that are none."""
+    waiting = deque([(source, 0)])
+    for _ in range(FOLDERS_BOUND):
+        if not waiting:
+            return
+        folder, depth = waiting.popleft()
+        inside, files = _listing(folder)
+        if not files.isdisjoint(_MARKS):
+            continue
+        name = _NAME.search(_text(folder / "package.xml")) if "package.xml" in files else None
+        if name is not None:  # packages lie side by side
+            yield Package(name[1], folder)
+        elif depth < DEPTH:
+            waiting.extend((folder / f, depth + 1) for f in inside if not f.startswith(".") and f not in _LEFT_OUT)
+
+
+def _listing(folder: Path) -> tuple[list[str], set[str]]:
+    """The names of a folder's folders, sorted, and of its files."""
+    try:
+        _, folders, files = next(os.walk(folder), ("", [], []))
+    except OSError:
+        return [], set()
+    return sorted(f for f in folders if not (folder / f).is_symlink()), set(files)
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def _of_setup_cfg(file: Path) -> dict[str, EntryPoint]:
+    parser = configparser.ConfigParser()
+    try:
+        parser.read_string(_text(file))
+        lines = parser.get("options.entry_points", "console_scripts", fallback="").splitlines()
+    except configparser.Error:
+        return {}
+    return dict(script for line in lines if (script := _script(line)) is not None)
+
+
+def _script(text: str) -> tuple[str, EntryPoint] | None:
+    found = _SCRIPT.fullmatch(text)
+    return None if found is None else (found[1], EntryPoint(found[2], found[3]))
+
+
+def _of_setup_py(file: Path) -> dict[str, EntryPoint]:
+    """The texts of the form `name = module:function` in `entry_points`; names of the file's own are put in."""
+    try:
+        tree = ast.parse(_text(file))
+    except (SyntaxError, ValueError):
+        return {}
+    known: dict[str, str] = {}
+    for statement in tree.body:
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                text = _constant(value, known)
+                if text is not None:
+                    known[name] = text
+    found = {}
+    for node in ast.walk(tree):
+        text = _constant(node, known)
+        script = None if text is None else _script(text)
+        if script is not None:
+            found[script[0]] = script[1]
+    return found
+
+
+def _constant(node: ast.AST, known: Mapping[str, str]) -> str | None:
+    """The text that an expression is; None where that is not plain to see."""
+    match node:
+        case ast.Constant(value=str(text)):
+            return text
+        case ast.Name(id=name):
+            return known.get(name)
+        case ast.JoinedStr(values=values):
+            parts = [_constant(value, known) for value in values]
+            return None if any(part is None for part in parts) else "".join(part or "" for part in parts)
+        case ast.FormattedValue(value=value):
+            return _constant(value, known)
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            one, other = _constant(left, known), _constant(right, known)
+            return None if one is None or other is None else one + other
+    return None
+
+
+def _of_cmake(folder: Path) -> Iterator[tuple[str, Path]]:
+    """The programs that `CMakeLists.txt` installs below `lib/`."""
+    text = re.sub(r"#.*", "", _text(folder / "CMakeLists.txt"))
+    for installed in _INSTALL.findall(text):
+        words = installed.replace('"', " ").split()
+        upper = [word.upper() for word in words]
+        if "DESTINATION" not in upper:
+            continue
+        files = words[: upper.index("DESTINATION")]
+        destination = words[upper.index("DESTINATION") + 1] if upper[-1] != "DESTINATION" else ""
+        if not destination.startswith("lib"):
+            continue
+        renamed = words[upper.index("RENAME") + 1] if "RENAME" in upper[:-1] else ""
+        for word in files:
+            file = folder / word.replace("${CMAKE_CURRENT_SOURCE_DIR}/", "")
+            if file.is_file():
+                yield renamed or file.name, file
+
+
+def uses_rclpy(file: Path) -> bool:
+    """Whether a Python file imports rclpy, itself or in a function of it."""
+    try:
+        tree = ast.parse(_text(file))
+    except (SyntaxError, ValueError):
+        return False
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names) if any(alias.name.partition(".")[0] == "rclpy" for alias in names):
+                return True
+            case ast.ImportFrom(module=str(module), level=0) if module.partition(".")[0] == "rclpy":
+                return True
+    return False

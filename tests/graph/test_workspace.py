@@ -1,0 +1,120 @@
+"""Workspaces that nobody has built."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph.workspace import EntryPoint, find_workspace, uses_rclpy
+
+
+def package(folder: Path, name: str, **files: str) -> Path:
+    """A package with files; `__` in their names stands for a slash, and `_dot_` for a dot."""
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    for path, text in files.items():
+        file = folder / path.replace("__", "/").replace("_dot_", ".")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return folder
+
+
+SETUP = """
+from setuptools import setup
+package_name = 'my_robot'
+run_this = open('/never').read()
+setup(
+    name=package_name,
+    entry_points={'console_scripts': [
+        'talker = my_robot.talker:main',
+        f'listener = {package_name}.listener:main',
+        'third = ' + package_name + '.third:Node.main',
+        'not one',
+    ]},
+)
+"""
+CMAKE = """
+install(PROGRAMS
+  scripts/drive.py   # install(PROGRAMS scripts/never.py DESTINATION lib/x)
+  "${CMAKE_CURRENT_SOURCE_DIR}/tools/look"
+  DESTINATION lib/${PROJECT_NAME})
+install(PROGRAMS tools/other.py DESTINATION lib/${PROJECT_NAME} RENAME renamed)
+install(PROGRAMS tools/shared.py DESTINATION share/${PROJECT_NAME})
+install(FILES tools/missing.py DESTINATION lib/x)
+"""
+
+
+def test_executables_are_read_from_setup_py_and_setup_cfg(tmp_path: Path) -> None:
+    """Without running anything."""
+    cfg = "[options.entry_points]\nconsole_scripts =\n    extra = my_robot.extra:main\n"
+    package(
+        tmp_path / "ws/src/my_robot", "my_robot", setup_dot_py=SETUP, setup_dot_cfg=cfg, my_robot____init___dot_py=""
+    )
+    workspace = find_workspace(tmp_path / "ws")
+    found = workspace.packages["my_robot"]
+    assert found.entry_points == {
+        "talker": EntryPoint("my_robot.talker", "main"),
+        "listener": EntryPoint("my_robot.listener", "main"),
+        "third": EntryPoint("my_robot.third", "Node.main"),
+        "extra": EntryPoint("my_robot.extra", "main"),
+    }
+    assert found.executables == ["extra", "listener", "talker", "third"]
+
+
+def test_programs_are_those_that_cmake_installs_and_scripts(tmp_path: Path) -> None:
+    """Below `lib`, under their names there."""
+    files = dict.fromkeys(("scripts__drive_dot_py", "scripts__more", "tools__look", "tools__other_dot_py"), "")
+    package(tmp_path / "ws/src/arm", "arm", CMakeLists_dot_txt=CMAKE, tools__shared_dot_py="", **files)
+    assert find_workspace(tmp_path / "ws").packages["arm"].executables == ["drive.py", "look", "more", "renamed"]
+
+
+def test_an_executable_has_a_place_in_the_project(tmp_path: Path) -> None:
+    """As `graphflow pkg executables` tells it; programs are known with or without their ending."""
+    folder = package(tmp_path / "src" / "p", "my_robot", setup_dot_py=SETUP, scripts__drive_dot_py="")
+    found = find_workspace(folder).packages["my_robot"]
+    assert found.path_of("talker", tmp_path) == "src.p.my_robot.talker:main"
+    assert found.path_of("drive.py", tmp_path) == "src.p.scripts.drive"
+    assert [found.has(name) for name in ("talker", "drive", "drive.py", "dive")] == [True, True, True, False]
+
+
+@pytest.mark.parametrize("inside", ["", "src", "src/group/arm", "src/group/arm/arm/node.py", "build"])
+def test_a_workspace_is_found_from_anywhere_in_it(tmp_path: Path, inside: str) -> None:
+    """What colcon has made is no part of it, and neither is what is marked so."""
+    package(tmp_path / "ws/src/group/arm", "arm", arm____init___dot_py="", arm__node_dot_py="")
+    package(tmp_path / "ws/src/arm_interfaces", "arm_interfaces", msg__Grip_dot_msg="bool closed\n")
+    package(tmp_path / "ws/build/old", "old")
+    package(tmp_path / "ws/src/ignored/one", "one")
+    (tmp_path / "ws/src/ignored/COLCON_IGNORE").touch()
+    workspace = find_workspace(tmp_path / "ws" / inside)
+    assert workspace.root == tmp_path / "ws"
+    assert set(workspace.packages) == {"arm", "arm_interfaces"}
+    assert workspace.interfaces == {"arm_interfaces": tmp_path / "ws/src/arm_interfaces"}
+
+
+def test_packages_side_by_side_are_a_workspace_too(tmp_path: Path) -> None:
+    """As in a repository; where nothing is, there is none."""
+    for name in ("one", "two"):
+        package(tmp_path / "repo" / name, name)
+    assert set(find_workspace(tmp_path / "repo" / "one").packages) == {"one", "two"}
+    assert set(find_workspace(tmp_path / "repo").packages) == {"one", "two"}
+    (tmp_path / "empty").mkdir()
+    assert not find_workspace(tmp_path / "empty").packages
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [
+        ("import rclpy", True),
+        ("import os, rclpy.node as n", True),
+        ("def f():\n    from rclpy.node import Node", True),
+        ("from graphflow import Node", False),
+        ("from .rclpy import x", False),
+        ("'import rclpy'", False),
+        ("import (", False),
+    ],
+)
+def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, verdict: bool) -> None:
+    """By their imports."""
+    (tmp_path / "a.py").write_text(text)
+    assert uses_rclpy(tmp_path / "a.py") is verdict
