@@ -160,6 +160,7 @@ class Machine:
             patch.dict(os.environ, self.env, clear=True),
             patch.object(sys, "argv", ["graphflow", *words]),
             patch.object(registry, "_roots", list(registry._roots)),
+            patch.object(registry, "_packages", dict(registry._packages)),
             chdir(cwd),
             redirect_stdout(text),
             redirect_stderr(text),

@@ -18,6 +18,7 @@ from graphflow.introspect.health import Look, examine
 from graphflow.introspect.view import View
 from graphflow.machines.matching import complaints
 from graphflow.names import is_hidden
+from graphflow.rclpy import enabling
 from graphflow.wire.process import NUMBERS, WAITS, answer_key
 
 ANSWER_LIMIT = 1.0
@@ -46,6 +47,7 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
     here = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
+    rclpy = list(_whose_rclpy())
     try:
         faults, notes, count = _graph()
     except SupervisorError as error:
@@ -56,13 +58,14 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
 
             output.lines(installed())
         if as_json:
-            output.as_json(here)
+            output.as_json({**here, "rclpy": rclpy})
         elif not report:
-            output.lines(text for texts in here.values() for text in texts)
+            output.lines(text for texts in [*here.values(), rclpy] for text in texts)
         if any(here.values()) or not report:
             raise
         return exits.OK
     faults |= here
+    notes["rclpy"] = rclpy
     failed = [name for name, texts in faults.items() if texts]
     if as_json:
         output.as_json({**faults, **notes})
@@ -119,7 +122,7 @@ def _look(view: View) -> Look:
 def _print(faults: Findings, notes: Findings, count: int) -> None:
     output.lines(f"{text}\n" for name in ("deadlocks", "stalls") for text in faults[name])
     output.lines(t for name, texts in faults.items() if name not in ("deadlocks", "stalls") for t in texts)
-    output.lines([*notes["late"], *notes["hints"]])
+    output.lines([*notes["late"], *notes["hints"], *notes["rclpy"]])
     if notes["silent"]:
         output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(notes['silent'])}")
     output.lines(notes["unreadable"])
@@ -138,6 +141,13 @@ def _version(name: str) -> str | None:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
         return None
+
+
+def _whose_rclpy() -> Iterator[str]:
+    """Which rclpy is imported, where there are two."""
+    other = enabling.elsewhere()
+    if other is not None:
+        yield f"import rclpy is that of the ROS 2 in this shell, {other}; graphflow's comes where none is sourced"
 
 
 def _left_over() -> Iterator[str]:

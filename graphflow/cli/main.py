@@ -38,6 +38,8 @@ _VERBS = {
     "schema": ("files", "Print the JSON Schema of graph files."),
     "launch": ("launch", "Start a launch file as `up` does, or convert it."),
     "run": ("run", "Run one node."),
+    "rclpy": ("rclpy", "Let plain `python` import rclpy, or not."),
+    "ws": ("ws", "Show the packages of a ROS 2 workspace; nothing has to be built."),
     "demo": ("demo", "Walk through an example, step by step."),
     "graph": ("graph", "Draw the nodes and topics that run."),
     "snapshot": ("snapshot", "Write what turtlesim has drawn into FILE, an SVG picture."),

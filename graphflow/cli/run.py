@@ -6,6 +6,7 @@ import os
 import shlex
 import sys
 from inspect import getfile
+from pathlib import Path
 from typing import NoReturn
 
 import click
@@ -26,6 +27,9 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     A file (nodes/talker.py) or module (nodes.talker) will do where it has one node class, and the name of a node that
     comes with graphflow (turtlesim). Words that are not for ROS are the program's own: they are in sys.argv.
 
+    What is written for rclpy runs as it stands: a file, or a package of a ROS 2 workspace and an executable of it, as
+    its setup.py, setup.cfg or CMakeLists.txt has it. Nothing is built before.
+
     \b
     -r from:=to     remap a name; __node:=NAME and __ns:=/NAMESPACE rename the node
     -p name:=value  set a parameter
@@ -34,6 +38,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
     from graphflow.domain import domain_id
     from graphflow.introspect.view import refuse_taken_names
     from graphflow.names import Resolver
+    from graphflow.rclpy.programs import find_program
     from graphflow.runtime.args import parse_ros_args
     from graphflow.runtime.run import run as run_node
 
@@ -45,6 +50,9 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         except ValueError as error:
             raise UsageFault(f"--prefix {prefix!r}: {error}") from None
         _become([*before, sys.executable, "-m", "graphflow", *command])
+    program = find_program(what, words, Path.cwd())
+    if program is not None:
+        _become([sys.executable, "-m", "graphflow.rclpy", *command[1:]])
     cls, rest = find_class(what, words)
     try:
         ros = parse_ros_args(rest)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.rclpy import enabling
 from tests.cases import slow
 from tests.conftest import Machine
 
@@ -34,6 +35,7 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
         "unresponsive",
         "blocked",
         "silent",
+        "rclpy",
         "health",
         "installation",
         "runs",
@@ -64,6 +66,14 @@ def test_a_graph_that_was_killed(machine: Machine, tmp_path: Path) -> None:
     text = machine.look("doctor", code=3)
     assert f"was killed and has left {run_file.parent}" in text
     run_file.unlink()
+
+
+def test_which_rclpy_wins_is_said(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where there are two; it is no fault."""
+    assert "rclpy" not in machine.look("doctor", code=3)
+    monkeypatch.setattr(enabling, "elsewhere", lambda: "/opt/ros/rclpy/__init__.py")
+    assert "import rclpy is that of the ROS 2 in this shell, /opt/ros/rclpy" in machine.look("doctor", code=3)
+    assert json.loads(machine.look("doctor", "--json", code=3).partition("\nerror")[0])["rclpy"]
 
 
 def test_options_are_not_the_environment(standing: Machine, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,7 @@ from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 
 VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
-VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run")
+VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run", "rclpy", "ws")
 VERBS += (
     "demo",
     "graph",

@@ -67,7 +67,7 @@ KINDS = {
     "action": {"file"},
     "console": {"up"},
     "sh": set[str](),
-    "text": set[str](),
+    "text": {"file"},
 }
 FENCE = re.compile(r"^(?P<fence>```+|~~~+)(?P<info>[^\n]*)\n(?P<text>.*?)^(?P=fence)[ ]*$", re.MULTILINE | re.DOTALL)
 LIVES_ON = re.compile(r"(graphflow|gf) (up|run) (?!.*(-d|-s|--show-args|--detach|--help)\b)")
@@ -297,7 +297,7 @@ LONG = {
     "interfaces",
     "console",
 }
-LONG |= {"topics", "services", "bags"}
+LONG |= {"topics", "services", "bags", "rclpy"}
 """Pages whose commands take seconds: they run with `--cases full`, as in CI."""
 
 

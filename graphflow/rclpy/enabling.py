@@ -1,0 +1,67 @@
+"""Makes `import rclpy` work where somebody has asked for it: in this process, or in a virtual environment for good.
+
+A ROS 2 that is sourced comes before: then nothing of graphflow's stands in for it.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+import sys
+
+SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "site")
+"""The folder of what is imported under ROS's names."""
+FILE = "graphflow-rclpy.pth"
+"""What `enable` writes where Python looks for installed packages; Python runs the line each time that it starts."""
+LINES = f"""{SITE}
+import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.enabling").rclpy.enabling.here()
+"""
+
+
+def elsewhere() -> str | None:
+    """The file of an rclpy that is not graphflow's; None if Python would find none."""
+    paths = [entry for entry in sys.path if os.path.abspath(entry or ".") != SITE]
+    found = importlib.machinery.PathFinder.find_spec("rclpy", paths)
+    return found.origin if found is not None and found.origin is not None else None
+
+
+def here() -> bool:
+    """Let this process import rclpy, and messages under ROS's names; whether it is graphflow's that it imports."""
+    if elsewhere() is not None:
+        sys.path[:] = [entry for entry in sys.path if entry != SITE]
+        return False
+    if SITE not in sys.path:
+        sys.path.append(SITE)
+    from graphflow.rclpy.finder import install
+
+    install()
+    return True
+
+
+def file() -> str:
+    """The file that `enable` writes."""
+    import sysconfig
+
+    return os.path.join(sysconfig.get_path("purelib"), FILE)
+
+
+def is_enabled() -> bool:
+    """Whether Python itself imports rclpy."""
+    return os.path.isfile(file())
+
+
+def enable() -> str:
+    """Let this Python import rclpy from now on; returns the file that does it. Raises OSError if that fails."""
+    path = file()
+    with open(path, "w", encoding="utf-8") as opened:
+        opened.write(LINES)
+    return path
+
+
+def disable() -> bool:
+    """Take that back; whether there was anything to take back. Raises OSError if that is not possible."""
+    try:
+        os.remove(file())
+    except FileNotFoundError:
+        return False
+    return True

@@ -1,0 +1,122 @@
+"""Lets `import` see message packages under ROS's names: `from geometry_msgs.msg import Twist`.
+
+A package of ROS's own, or of the user's, that Python finds anyway is left to Python: a sourced ROS wins.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+
+BUNDLED = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "msgs")
+KINDS = ("msg", "srv", "action")
+KNOWN: dict[str, str] = {}
+"""Folders of message packages that are not bundled, by name."""
+
+
+class MessagePackages:
+    """Finder and loader in one: it must cost next to nothing, since every import of the process asks it."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        package, _, rest = fullname.partition(".")
+        if not rest:
+            return self._spec(fullname) if is_package(package) and not _is_elsewhere(fullname, path) else None
+        kind, _, inner = rest.partition(".")
+        if kind not in KINDS or not _is_ours(package):
+            return None
+        if inner and not inner.startswith("_"):
+            return None
+        return self._spec(fullname)
+
+    def _spec(self, fullname: str) -> importlib.machinery.ModuleSpec:
+        spec = importlib.machinery.ModuleSpec(fullname, self, is_package=True)  # type: ignore[arg-type]  # a loader by its methods
+        if fullname in KNOWN:  # with whatever modules lie beside the definitions
+            spec.submodule_search_locations = [KNOWN[fullname]]
+        return spec
+
+    def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
+        return None
+
+    def exec_module(self, module: ModuleType) -> None:
+        from pathlib import Path
+
+        from graphflow.errors import UnknownInterface
+        from graphflow.msgs import registry
+        from graphflow.rclpy import messages
+
+        package, *rest = module.__name__.split(".")
+        module.__dict__["__graphflow__"] = True
+        if not rest:
+            module.__doc__ = f"The interfaces of the package {package}."
+            return
+        kind = rest[0]
+        folder = KNOWN.get(package) or _folder(package)
+        if folder is not None:
+            registry.add_package(package, Path(folder))
+
+        def make(name: str) -> type:
+            if name.startswith("__"):
+                raise AttributeError(name)
+            try:
+                cls = messages.interface_class(f"{package}/{kind}/{name}")
+            except UnknownInterface as error:
+                raise AttributeError(str(error)) from None
+            setattr(module, name, cls)
+            return cls
+
+        names = registry.names_in(package, kind)
+        if len(rest) > 1:  # rosidl's modules of one class: geometry_msgs.msg._twist
+            names = [name for name in names if f"_{snake(name)}" == rest[1]]
+            if not names:
+                raise ModuleNotFoundError(f"No module named {module.__name__!r}", name=module.__name__)
+        module.__doc__ = f"The {kind} interfaces of the package {package}."
+        module.__dict__["__all__"] = names
+        module.__getattr__ = make  # type: ignore[method-assign]
+        module.__dir__ = lambda: names  # type: ignore[method-assign]
+
+
+def snake(name: str) -> str:
+    """`LaserScan` as rosidl names its module: `laser_scan`."""
+    import re
+
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def is_package(name: str) -> bool:
+    """Whether there are definitions of a message package of that name."""
+    folder = os.path.join(BUNDLED, name)
+    return name in KNOWN or name == "turtlesim_msgs" or any(os.path.isdir(os.path.join(folder, k)) for k in KINDS)
+
+
+def _is_elsewhere(fullname: str, path: Sequence[str] | None) -> bool:
+    """Whether Python finds a package of that name with code in it."""
+    found = importlib.machinery.PathFinder.find_spec(fullname, path)
+    return found is not None and found.origin is not None
+
+
+def _is_ours(package: str) -> bool:
+    """Whether modules below a package are made from definitions: those of ours, or those that lie in its folder."""
+    parent = sys.modules.get(package)
+    return parent is not None and (hasattr(parent, "__graphflow__") or _folder(package) is not None)
+
+
+def _folder(package: str) -> str | None:
+    """The folder of a package that has been imported, if there are definitions in it."""
+    for entry in getattr(sys.modules.get(package), "__path__", ()):
+        for kind in KINDS:
+            folder = os.path.join(entry, kind)
+            if os.path.isdir(folder) and any(name.endswith(f".{kind}") for name in os.listdir(folder)):
+                return str(entry)
+    return None
+
+
+def install() -> None:
+    """Let `import` see them, from now on."""
+    if not any(isinstance(finder, MessagePackages) for finder in sys.meta_path):
+        sys.meta_path.insert(0, MessagePackages())

@@ -1,0 +1,80 @@
+"""What others ask of the parameters of one of rclpy's nodes, without changing them: it is answered on the loop.
+
+So the parameters of a node can be read that does not spin, or is stuck in a callback. What sets them is the executor's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from graphflow.msgs import registry
+from graphflow.qos import PARAMETERS
+from graphflow.runtime.core import NodeCore
+from graphflow.runtime.values import to_message
+
+
+class Known(Protocol):
+    """The parameters of a node, as those who read them see them."""
+
+    @property
+    def values(self) -> Mapping[str, Any]:
+        """By name; each has a `value` and a `type_`."""
+
+    @property
+    def descriptors(self) -> Mapping[str, Any]: ...
+
+    def listed(self, prefixes: Any, depth: int) -> Any:
+        """As rcl_interfaces/msg/ListParametersResult."""
+
+
+def _class(name: str) -> Any:
+    return registry.interface_class(f"rcl_interfaces/{name}")
+
+
+class ParameterAnswers:
+    """The answers of one node."""
+
+    def __init__(self, parameters: Known) -> None:
+        self._parameters = parameters
+
+    def serve(self, core: NodeCore) -> None:
+        """Offer the services that read. On the loop."""
+        for name, type_name, answer in (
+            ("get_parameters", "GetParameters", self.get),
+            ("get_parameter_types", "GetParameterTypes", self.get_types),
+            ("list_parameters", "ListParameters", self.list),
+            ("describe_parameters", "DescribeParameters", self.describe),
+        ):
+            core.serve(name, f"rcl_interfaces/srv/{type_name}", answer, PARAMETERS)
+
+    def get(self, request: Any) -> Any:
+        values = self._parameters.values
+        found = [values.get(name) for name in request.names]
+        messages = [to_message(None, 0) if p is None else to_message(p.value, p.type_.value) for p in found]
+        return _class("srv/GetParameters").Response(values=messages)
+
+    def get_types(self, request: Any) -> Any:
+        values = self._parameters.values
+        types = [values[name].type_.value if name in values else 0 for name in request.names]
+        return _class("srv/GetParameterTypes").Response(types=types)
+
+    def list(self, request: Any) -> Any:
+        result = self._parameters.listed(list(request.prefixes), int(request.depth))
+        listed = {"names": list(result.names), "prefixes": list(result.prefixes)}
+        return _class("srv/ListParameters").Response(result=listed)
+
+    def describe(self, request: Any) -> Any:
+        known, kind = self._parameters.descriptors, _class("msg/ParameterDescriptor")
+        described = [_descriptor(kind, known[n]) if n in known else kind(name=n) for n in request.names]
+        return _class("srv/DescribeParameters").Response(descriptors=described)
+
+
+def _descriptor(kind: Any, given: Any) -> Any:
+    """A descriptor of rclpy's as one of graphflow's."""
+    plain = ("name", "type", "description", "additional_constraints", "read_only", "dynamic_typing")
+    ranges = {
+        name: [{part: getattr(r, part) for part in ("from_value", "to_value", "step")} for r in getattr(given, name)]
+        for name in ("floating_point_range", "integer_range")
+    }
+    return kind(**{name: getattr(given, name) for name in plain}, **ranges)

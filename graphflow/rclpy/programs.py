@@ -1,0 +1,126 @@
+"""Programs written for rclpy, found where they lie and run as they stand: nothing is built or installed before."""
+
+from __future__ import annotations
+
+import os
+import runpy
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+from graphflow.errors import UsageFault
+from graphflow.graph.workspace import EntryPoint, Package, Workspace, find_workspace, uses_rclpy
+from graphflow.names import did_you_mean
+from graphflow.rclpy import enabling, finder
+
+
+class Program(NamedTuple):
+    """Something to be run."""
+
+    file: Path
+    """The file, or that of the function's module."""
+    entry: EntryPoint | None
+    """The function of a module that is to be called; None for a file that is run itself."""
+    workspace: Workspace
+    words: list[str]
+    """Its arguments."""
+
+
+def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
+    """The program that is meant by a file, or by a package of the workspace and an executable of it.
+
+    Args:
+        here: The folder whose workspace counts.
+
+    Returns:
+        None if that is no program of rclpy's.
+
+    Raises:
+        UsageFault: The package has no such executable, or none is named; the text says which it has.
+    """
+    file = here / what
+    if what.endswith(".py") and file.is_file():
+        return Program(file, None, find_workspace(file), list(words)) if uses_rclpy(file) else None
+    workspace = find_workspace(here)
+    package = workspace.packages.get(what)
+    if package is None:
+        return None
+    if not words:
+        if not package.executables or (workspace.root / "nodes" / f"{what}.py").is_file():  # a node of that name
+            return None
+        raise UsageFault(f"name an executable of the package {what!r}: {', '.join(package.executables)}")
+    found = _executable(package, words[0])
+    if found is None:
+        if words[0].startswith("-") or not package.executables:
+            return None
+        near = did_you_mean(words[0], package.executables)
+        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}")
+    file, entry = found
+    is_ours = entry is not None and not uses_rclpy(file) and "graphflow" in file.read_text("utf-8", "replace")
+    return None if is_ours else Program(file, entry, workspace, list(words[1:]))
+
+
+def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:
+    """The file, and the function, that an executable is; its name with or without `.py`."""
+    for known in (name, f"{name}.py", name.removesuffix(".py")):
+        entry = package.entry_points.get(known)
+        if entry is not None:
+            fault = package.fault_of(known)
+            if fault is not None:
+                raise UsageFault(fault)
+            return package.file_of(entry), entry
+        if known in package.programs:
+            return package.programs[known], None
+    return None
+
+
+def make_importable(workspace: Workspace) -> bool:
+    """Let this process import rclpy and all that the packages of a workspace have; whether rclpy is graphflow's."""
+    is_ours = enabling.here()
+    if is_ours:
+        finder.KNOWN.update({name: str(folder) for name, folder in workspace.interfaces.items()})
+    sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
+    return is_ours
+
+
+def run(program: Program) -> None:
+    """Run a program in this process, as its main module.
+
+    Raises:
+        SystemExit: As the program has it.
+        UsageFault: It has not the function that it is said to be.
+    """
+    make_importable(program.workspace)
+    sys.argv = [str(program.file), *program.words]
+    if program.entry is None:
+        if program.file.suffix != ".py" and not _is_python(program.file):
+            os.execv(program.file, sys.argv)
+        sys.path.insert(0, str(program.file.parent))
+        runpy.run_path(str(program.file), run_name="__main__")
+        return
+    called: object = import_module(program.entry.module)
+    for part in program.entry.function.split("."):
+        called = getattr(called, part, None)
+    if not callable(called):
+        raise UsageFault(f"{program.file} has no function {program.entry.function!r}, which its setup.py names")
+    sys.exit(called())
+
+
+def _is_python(file: Path) -> bool:
+    """Whether a file without an ending is a Python script."""
+    with file.open("rb") as opened:
+        return b"python" in opened.readline(100)
+
+
+def main(words: Sequence[str]) -> None:
+    """Run what the words mean: a file, or a package and an executable, and its arguments."""
+    try:
+        program = find_program(words[0], words[1:], Path.cwd())
+        if program is None:
+            raise UsageFault(f"{' '.join(words[:2])} is no program that uses rclpy")
+        run(program)
+    except UsageFault as error:
+        sys.stderr.write(f"error: {error}\n")
+        sys.exit(2)

@@ -1,0 +1,77 @@
+"""Packages and their folders: those of the workspace that the program is in, and what is installed.
+
+Nothing is built, so the `share` folder of a workspace's package is the package itself.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from graphflow.graph.executables import package_prefix, package_share
+from graphflow.graph.workspace import Workspace, find_workspace
+from graphflow.names import did_you_mean
+
+
+class PackageNotFoundError(KeyError):
+    """There is no package of that name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def _workspace() -> Workspace:
+    """The one that the program is in; failing that, the one that the shell is in."""
+    program = Path(sys.argv[0] if sys.argv else "")
+    found = find_workspace(program) if program.is_file() else None
+    return found if found is not None and found.packages else find_workspace(Path.cwd())
+
+
+def _missing(package_name: str, known: Workspace) -> PackageNotFoundError:
+    near = did_you_mean(package_name, list(known.packages))
+    return PackageNotFoundError(f"package '{package_name}' not found, searching: ['{known.root}']{near}")
+
+
+def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
+    """The folder of a package's launch files, parameters and other data.
+
+    Raises:
+        ValueError: That is no name of a package.
+        PackageNotFoundError: There is none of that name.
+    """
+    return Path(get_package_share_directory(package_name))
+
+
+def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
+    """The same as a text. Raises ValueError, PackageNotFoundError."""
+    _check(package_name)
+    workspace = _workspace()
+    own = workspace.packages.get(package_name)
+    folder = own.folder if own is not None else package_share(package_name, workspace.root, os.environ)
+    if folder is None:
+        raise _missing(package_name, workspace)
+    return str(folder)
+
+
+def get_package_prefix(package_name: str) -> str:
+    """The folder below which a package is installed. Raises ValueError, PackageNotFoundError."""
+    _check(package_name)
+    workspace = _workspace()
+    own = workspace.packages.get(package_name)
+    folder = own.folder if own is not None else package_prefix(package_name, workspace.root, os.environ)
+    if folder is None:
+        raise _missing(package_name, workspace)
+    return str(folder)
+
+
+def get_packages_with_prefixes() -> dict[str, str]:
+    """The packages of the workspace, and where each is."""
+    return {name: str(package.folder) for name, package in _workspace().packages.items()}
+
+
+def _check(package_name: str) -> None:
+    if not package_name:
+        raise ValueError("package name must not be empty")
+    if not all(c.isalnum() or c in "_-" for c in package_name):
+        raise ValueError(f"'{package_name}' is not a valid package name")

@@ -1,0 +1,199 @@
+"""rclpy, without ROS: its API over graphflow's, on the wire of rmw_zenoh.
+
+rclpy.init()
+node = MyNode()
+rclpy.spin(node)
+rclpy.shutdown()
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+from rclpy.signals import (
+    SignalHandlerOptions,
+    install_signal_handlers,
+    uninstall_signal_handlers,
+    watch,
+)
+from rclpy.task import Future
+from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
+from rclpy.utilities import shutdown as _shutdown
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
+
+__all__ = [
+    "Context",
+    "Future",
+    "Parameter",
+    "SignalHandlerOptions",
+    "create_node",
+    "get_default_context",
+    "get_global_executor",
+    "get_rmw_implementation_identifier",
+    "init",
+    "ok",
+    "shutdown",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "try_shutdown",
+]
+
+_global_executor: Executor | None = None
+
+
+class InitContextManager:
+    """What `init` returns: a block that shuts down what was begun when it is left."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try_shutdown(context=None if self.context is get_default_context() else self.context)
+        if self.context is get_default_context():
+            uninstall_signal_handlers()
+
+
+def init(
+    *,
+    args: Sequence[str] | None = None,
+    context: Context | None = None,
+    domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
+) -> InitContextManager:
+    """Begin: read the command line, and handle signals.
+
+    Args:
+        args: The command line; None for this program's.
+        context: What begins; None for the default one.
+        domain_id: None for what the environment says.
+        signal_handler_options: The signals that end it; by default all, for the default context.
+
+    Raises:
+        RuntimeError: It has begun before, or an argument is wrong.
+    """
+    chosen = get_default_context() if context is None else context
+    if signal_handler_options is None:
+        signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
+    install_signal_handlers(signal_handler_options)
+    try:
+        chosen.init(args, domain_id=domain_id)
+    except BaseException:
+        if context is None:
+            uninstall_signal_handlers()
+        raise
+    watch(chosen)
+    return InitContextManager(chosen)
+
+
+def get_global_executor() -> Executor:
+    """The executor of whoever names none."""
+    global _global_executor
+    if _global_executor is None or _global_executor.context is not get_default_context():
+        from rclpy.executors import SingleThreadedExecutor
+
+        executor = _global_executor = SingleThreadedExecutor()
+        get_default_context().on_shutdown(executor.wake)
+    return _global_executor
+
+
+def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """End: leave the network.
+
+    Args:
+        context: What ends; None for the default one.
+        uninstall_handlers: Whether signals do again what they did before; by default for the default context.
+
+    Raises:
+        RuntimeError: It has ended before, or not begun.
+    """
+    global _global_executor
+    if context is None and _global_executor is not None:
+        _global_executor.shutdown()
+        _global_executor = None
+    _shutdown(context=context)
+    if uninstall_handlers or (uninstall_handlers is None and context is None):
+        uninstall_signal_handlers()
+
+
+def create_node(
+    node_name: str,
+    *,
+    context: Context | None = None,
+    cli_args: list[str] | None = None,
+    namespace: str | None = None,
+    use_global_arguments: bool = True,
+    enable_rosout: bool = True,
+    start_parameter_services: bool = True,
+    parameter_overrides: list[Parameter[Any]] | None = None,
+    allow_undeclared_parameters: bool = False,
+    automatically_declare_parameters_from_overrides: bool = False,
+    enable_logger_service: bool = False,
+) -> Node:
+    """A node; arguments and errors as for `rclpy.node.Node`."""
+    from rclpy.node import Node
+
+    return Node(
+        node_name,
+        context=context,
+        cli_args=cli_args,
+        namespace=namespace,
+        use_global_arguments=use_global_arguments,
+        enable_rosout=enable_rosout,
+        start_parameter_services=start_parameter_services,
+        parameter_overrides=parameter_overrides,
+        allow_undeclared_parameters=allow_undeclared_parameters,
+        automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+        enable_logger_service=enable_logger_service,
+    )
+
+
+def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
+    """Run one callback of a node, waiting at most `timeout_sec` seconds for one that is ready."""
+    executor = get_global_executor() if executor is None else executor
+    is_added = False
+    try:
+        is_added = executor.add_node(node)
+        executor.spin_once(timeout_sec=timeout_sec)
+    finally:
+        if is_added:
+            executor.remove_node(node)
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Run the callbacks of a node until the context is shut down."""
+    executor = get_global_executor() if executor is None else executor
+    is_added = False
+    try:
+        is_added = executor.add_node(node)
+        while executor.context.ok():
+            executor.spin_once()
+    finally:
+        if is_added:
+            executor.remove_node(node)
+
+
+def spin_until_future_complete(
+    node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
+) -> None:
+    """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
+    executor = get_global_executor() if executor is None else executor
+    is_added = False
+    try:
+        is_added = executor.add_node(node)
+        executor.spin_until_future_complete(future, timeout_sec)
+    finally:
+        if is_added:
+            executor.remove_node(node)

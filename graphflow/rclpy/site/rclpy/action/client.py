@@ -1,0 +1,326 @@
+"""Clients of actions."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import ServerLost
+from graphflow.machines.goal import GoalStatus
+from graphflow.msgs import registry
+from graphflow.rclpy import held, messages
+from graphflow.rclpy.wake import Wake
+from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
+from rclpy.task import Future
+from rclpy.type_support import check_for_type_support
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+
+__all__ = ["ActionClient", "ClientGoalHandle"]
+
+
+class ClientGoalHandle:
+    """A goal that was sent, and answered."""
+
+    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+        self._action_client, self._goal_id, self._goal_response = action_client, goal_id, goal_response
+        self._status = int(GoalStatus.UNKNOWN)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ClientGoalHandle) and self._goal_id == other._goal_id
+
+    def __hash__(self) -> int:
+        return hash(bytes(self._goal_id.uuid))
+
+    def __repr__(self) -> str:
+        return (
+            f"ClientGoalHandle <id={bytes(self._goal_id.uuid).hex()}, accepted={self.accepted}, status={self.status}>"
+        )
+
+    @property
+    def goal_id(self) -> Any:
+        """Its id, a unique_identifier_msgs/msg/UUID."""
+        return self._goal_id
+
+    @property
+    def stamp(self) -> Any:
+        """When it was taken on."""
+        return self._goal_response.stamp
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it was taken on."""
+        return bool(self._goal_response.accepted)
+
+    @property
+    def status(self) -> int:
+        """A status of action_msgs/msg/GoalStatus."""
+        return self._status
+
+    def cancel_goal(self) -> Any:
+        """Ask for its cancellation, and block until that is answered: some other thread must be spinning."""
+        return self._action_client.block_on(self.cancel_goal_async())
+
+    def cancel_goal_async(self) -> Future[Any]:
+        """Ask for its cancellation; the future has the answer, a CancelGoal.Response."""
+        return self._action_client.cancel(self)
+
+    def get_result(self) -> Any:
+        """Block until it has ended, and return the result: some other thread must be spinning."""
+        return self._action_client.block_on(self.get_result_async())
+
+    def get_result_async(self) -> Future[Any]:
+        """The future has `status` and `result` when it has ended."""
+        return self._action_client.result_of(self)
+
+
+class ActionClient(Waitable):
+    """A client of an action."""
+
+    def __init__(
+        self,
+        node: Any,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - never changed
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        super().__init__(node.default_callback_group if callback_group is None else callback_group)
+        check_for_type_support(action_type)
+        self._node, self._action_type, self._action_name = node, action_type, action_name
+        self._lock = threading.RLock()
+        self._waiting: dict[tuple[Any, int], tuple[Future[Any], Callable[[Any], Any]]] = {}
+        """Calls that were sent: their futures, and what makes a result of the response."""
+        self._goal_handles: dict[bytes, ClientGoalHandle] = {}
+        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        self._changed: dict[Wake, None] = {}
+        self._is_destroyed = False
+        name = node.resolve_service_name(action_name)
+        carriers = action_type.Impl
+        mark = partial(node.bell.mark, self)
+
+        def client(carrier: Any, part: str, qos: QoSProfile) -> Any:
+            type_ = registry.interface_class(messages.type_name(carrier))
+            full = f"{name}/_action/{part}"
+            return held.add(
+                node.held,
+                lambda core: ThreadedClient(core, type_, full, to_graphflow(qos), node.bell, mark, self._look),
+            )
+
+        def subscription(carrier: Any, part: str, qos: QoSProfile) -> Any:
+            full = f"{name}/_action/{part}"
+            return held.add(
+                node.held,
+                lambda core: ThreadedSubscription(
+                    core, carrier, full, to_graphflow(qos), node.bell, mark, lambda event: self._look()
+                ),
+            )
+
+        self._goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._results = client(carriers.GetResultService, "get_result", result_service_qos_profile)
+        self._feedback = subscription(carriers.FeedbackMessage, "feedback", feedback_sub_qos_profile)
+        self._status = subscription(carriers.GoalStatusMessage, "status", status_sub_qos_profile)
+        node.add_waitable(self)
+
+    def _look(self) -> None:
+        """Something of the server's came or went."""
+        for wake in list(self._changed):
+            wake.set()
+
+    # what executors ask
+
+    def is_ready(self, wait_set: Any) -> bool:
+        if self._is_destroyed:
+            return False
+        clients = (self._goals, self._cancels, self._results)
+        return any(c.inbox.items for c in clients) or self._feedback.waiting > 0 or self._status.waiting > 0
+
+    def take_data(self) -> list[Callable[[], Any]]:
+        work: list[Callable[[], Any]] = []
+        status = self._status.take()
+        if status is not None:
+            work.append(partial(self._heard_status, status.payload))
+        feedback = self._feedback.take()
+        if feedback is not None:
+            work.append(partial(self._heard_feedback, feedback.payload))
+        for client in (self._goals, self._cancels, self._results):
+            answered = client.take()
+            if answered is not None:
+                work.append(partial(self._settle, client, answered))
+        return work
+
+    async def execute(self, taken_data: list[Callable[[], Any]]) -> None:
+        for work in taken_data:
+            result = work()
+            if result is not None:
+                await result
+
+    def get_num_entities(self) -> NumberOfEntities:
+        return NumberOfEntities(num_subs=2, num_clients=3)
+
+    def add_to_wait_set(self, wait_set: Any) -> None:
+        """There are no wait sets."""
+
+    def _settle(self, client: Any, answered: Any) -> None:
+        with self._lock:
+            found = self._waiting.pop((client, answered.sequence), None)
+        if found is None or found[0].cancelled():
+            return
+        future, made = found
+        if answered.error is None:
+            future.set_result(made(answered.payload))
+        elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
+            future.set_exception(answered.error)
+
+    def _heard_feedback(self, payload: bytes) -> None:
+        message = messages.decode(self._action_type.Impl.FeedbackMessage, payload)
+        callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))
+        if callback is not None:
+            callback(message)
+
+    def _heard_status(self, payload: bytes) -> None:
+        message = messages.decode(self._action_type.Impl.GoalStatusMessage, payload)
+        for row in message.status_list:
+            key = bytes(row.goal_info.goal_id.uuid)
+            handle = self._goal_handles.get(key)
+            if handle is not None:
+                handle._status = row.status
+                if GoalStatus(row.status).is_terminal:
+                    del self._goal_handles[key]
+
+    # goals
+
+    def _send(self, client: Any, request: Any, made: Callable[[bytes], Any]) -> Future[Any]:
+        future: Future[Any] = Future()
+        with self._lock:
+            sequence = client.send(messages.encode(request))
+            self._waiting[client, sequence] = (future, made)
+        return future
+
+    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+        """Send a goal, and block until it has ended: some other thread must be spinning.
+
+        Args:
+            kwargs: As for `send_goal_async`.
+
+        Returns:
+            `status` and `result`; None if it was rejected.
+
+        Raises:
+            TypeError: That is no goal of the action's.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+        handle = self.block_on(self.send_goal_async(goal, **kwargs))
+        return handle.get_result() if handle is not None and handle.accepted else None
+
+    def block_on(self, future: Future[Any]) -> Any:
+        """Block until a future is done, or the context was shut down."""
+        life, wake = self._node.context.life, Wake()
+        future._when_done(wake.set)
+        life.on_end(wake)
+        try:
+            wake.wait()
+        finally:
+            life.forget(wake)
+        return future.result()
+
+    def send_goal_async(
+        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
+    ) -> Future[Any]:
+        """Send a goal; the future has a `ClientGoalHandle` when it is answered.
+
+        Args:
+            feedback_callback: Called with each message of feedback on it.
+            goal_uuid: Its id; None for a new one.
+
+        Raises:
+            TypeError: That is no goal of the action's.
+        """
+        from unique_identifier_msgs.msg import UUID
+
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+        carrier = self._action_type.Impl.SendGoalService
+        goal_id = UUID(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
+        key = bytes(goal_id.uuid)
+        if feedback_callback is not None:
+            self._feedback_callbacks[key] = feedback_callback
+
+        def made(payload: bytes) -> ClientGoalHandle:
+            response = messages.decode(carrier.Response, payload)
+            handle = ClientGoalHandle(self, goal_id, response)
+            if handle.accepted:
+                self._goal_handles[key] = handle
+            else:
+                self._feedback_callbacks.pop(key, None)
+            return handle
+
+        return self._send(self._goals, carrier.Request(goal_id=goal_id, goal=goal), made)
+
+    def cancel(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+        """Ask for the cancellation of a goal. Raises TypeError for no goal."""
+        from action_msgs.srv import CancelGoal
+
+        if not isinstance(goal_handle, ClientGoalHandle):
+            raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+        request = CancelGoal.Request()
+        request.goal_info.goal_id = goal_handle.goal_id
+        return self._send(self._cancels, request, lambda payload: messages.decode(CancelGoal.Response, payload))
+
+    def result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+        """Ask for the result of a goal. Raises TypeError for no goal."""
+        if not isinstance(goal_handle, ClientGoalHandle):
+            raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+        carrier, key = self._action_type.Impl.GetResultService, bytes(goal_handle.goal_id.uuid)
+
+        def made(payload: bytes) -> Any:
+            self._feedback_callbacks.pop(key, None)
+            self._goal_handles.pop(key, None)
+            response = messages.decode(carrier.Response, payload)
+            goal_handle._status = response.status
+            return response
+
+        return self._send(self._results, carrier.Request(goal_id=goal_handle.goal_id), made)
+
+    # servers
+
+    def server_is_ready(self) -> bool:
+        """Whether there is a server, with all its parts."""
+        clients = (self._goals, self._cancels, self._results)
+        return all(c.has_server for c in clients) and bool(self._feedback.matched) and bool(self._status.matched)
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Block until there is a server, at most `timeout_sec` seconds; whether there is one."""
+        life, wake = self._node.context.life, Wake()
+        self._changed[wake] = None
+        life.on_end(wake)
+        limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+        try:
+            return wake.wait_until(lambda: self.server_is_ready() or not life.is_ok, limit) and self.server_is_ready()
+        finally:
+            life.forget(wake)
+            self._changed.pop(wake, None)
+
+    def destroy(self) -> None:
+        """Withdraw it. Goals go on."""
+        if self._is_destroyed:
+            return
+        self._is_destroyed = True
+        if self in self._node.waitables:
+            self._node.remove_waitable(self)
+        if self._node.context.ok():
+            for endpoint in (self._goals, self._cancels, self._results, self._feedback, self._status):
+                held.remove(endpoint)

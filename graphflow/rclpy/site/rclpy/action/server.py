@@ -1,0 +1,424 @@
+"""Servers of actions.
+
+An action is three services and two topics. One waitable looks after them, in the server's callback group; the bodies of
+goals run as tasks of the executor, outside groups.
+"""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable
+from enum import Enum
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from graphflow.machines.goal import CancelCode, GoalStatus
+from graphflow.msgs import registry
+from graphflow.rclpy import held, messages
+from graphflow.rclpy.life import LOOP
+from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
+from rclpy._rclpy_pybind11 import GoalEvent, RCLError
+from rclpy.executors import await_or_execute
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
+from rclpy.task import Future
+from rclpy.time import Time
+from rclpy.type_support import check_for_type_support
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+
+__all__ = ["ActionServer", "CancelResponse", "GoalEvent", "GoalResponse", "RCLError", "ServerGoalHandle"]
+
+
+class GoalResponse(Enum):
+    """Whether a goal is taken on."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """Whether a goal is cancelled."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+_STEPS = {
+    (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
+    (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
+    (GoalStatus.EXECUTING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.EXECUTING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
+    (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
+    (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
+}
+"""What follows when something happens to a goal. Source: the ROS 2 design article "Actions"."""
+
+
+class ServerGoalHandle:
+    """A goal, as the server's callbacks get it."""
+
+    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+        self._action_server, self._goal_request = action_server, goal_request
+        self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
+        self._status = GoalStatus.ACCEPTED
+        self._lock = threading.Lock()
+        self._result: Future[Any] = Future()
+
+    @property
+    def request(self) -> Any:
+        """The goal."""
+        return self._goal_request
+
+    @property
+    def goal_id(self) -> Any:
+        """Its id, a unique_identifier_msgs/msg/UUID."""
+        return self._goal_id
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it has not ended."""
+        return not self._status.is_terminal
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether it is to end early: call `canceled` then, and return."""
+        return self._status is GoalStatus.CANCELING
+
+    @property
+    def status(self) -> int:
+        """A status of action_msgs/msg/GoalStatus."""
+        return int(self._status)
+
+    def _update_state(self, event: GoalEvent) -> None:
+        with self._lock:
+            following = _STEPS.get((self._status, event))
+            if following is None:
+                raise RCLError(
+                    f"goal_handle attempted invalid transition from state {self._status.name} with event {event.name}"
+                )
+            self._status = following
+        self._action_server.publish_status()
+        if following.is_terminal:
+            self._action_server.notify_goal_done()
+
+    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+        """Have it executed, by another callback than the server's if one is given."""
+        if not self.is_cancel_requested:
+            self._update_state(GoalEvent.EXECUTE)
+        self._action_server.notify_execute(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Tell the client how it is going. Raises TypeError if that is no feedback of the action's."""
+        self._action_server.publish_feedback(self, feedback)
+
+    def succeed(self) -> None:
+        """It has reached its end. Raises RCLError if it had ended before."""
+        self._update_state(GoalEvent.SUCCEED)
+
+    def abort(self) -> None:
+        """It has failed. Raises RCLError if it had ended before."""
+        self._update_state(GoalEvent.ABORT)
+
+    def canceled(self) -> None:
+        """It has been cancelled. Raises RCLError if nobody has asked for that, or it had ended before."""
+        self._update_state(GoalEvent.CANCELED)
+
+    def destroy(self) -> None:
+        """Forget it."""
+        self._action_server.forget(self)
+
+
+def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+    """Execute it."""
+    goal_handle.execute()
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:
+    """Take on every goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_cancel_callback(cancel_request: Any) -> CancelResponse:
+    """Cancel no goal."""
+    return CancelResponse.REJECT
+
+
+class ActionServer(Waitable):
+    """A server of an action.
+
+    Args:
+        execute_callback: Called with each goal's handle; it returns the result, after `succeed`, `abort` or `canceled`.
+        goal_callback: Called with each goal's message; says whether it is taken on.
+        handle_accepted_callback: Called with the handle of each goal that is taken on; executes it, now or later.
+        cancel_callback: Called with the handle of a goal that somebody wants cancelled; says whether it is.
+        result_timeout: Seconds for which results are kept.
+
+    Raises:
+        TypeError: `execute_callback` cannot be called.
+    """
+
+    def __init__(
+        self,
+        node: Any,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], Any] = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], Any] = default_handle_accepted_callback,
+        cancel_callback: Callable[[Any], Any] = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - never changed
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        result_timeout: float = 900,
+    ) -> None:
+        super().__init__(node.default_callback_group if callback_group is None else callback_group)
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_cancel_callback(cancel_callback)
+        self.register_execute_callback(execute_callback)
+        check_for_type_support(action_type)
+        self._node, self._action_type, self._result_timeout = node, action_type, result_timeout
+        self._lock = threading.RLock()
+        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._logger = node.get_logger().get_child("action_server")
+        name = node.resolve_service_name(action_name)
+        carriers = action_type.Impl
+        mark = partial(node.bell.mark, self)
+
+        def service(carrier: Any, part: str, qos: QoSProfile) -> Any:
+            type_ = registry.interface_class(messages.type_name(carrier))
+            return held.add(
+                node.held,
+                lambda core: ThreadedService(core, type_, f"{name}/_action/{part}", to_graphflow(qos), node.bell, mark),
+            )
+
+        def publisher(carrier: Any, part: str, qos: QoSProfile) -> Any:
+            return held.add(
+                node.held, lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos))
+            )
+
+        self._feedback = publisher(carriers.FeedbackMessage, "feedback", feedback_pub_qos_profile)
+        self._status = publisher(carriers.GoalStatusMessage, "status", status_pub_qos_profile)
+        self._cancels = service(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._results = service(carriers.GetResultService, "get_result", result_service_qos_profile)
+        self._goals = service(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._is_destroyed = False
+        node.add_waitable(self)
+
+    @property
+    def action_type(self) -> Any:
+        return self._action_type
+
+    # what executors ask
+
+    def is_ready(self, wait_set: Any) -> bool:
+        return not self._is_destroyed and any(s.inbox.items for s in (self._goals, self._cancels, self._results))
+
+    def take_data(self) -> list[tuple[Callable[[Asked], Any], Asked]]:
+        services = ((self._goals, self._goal), (self._cancels, self._cancel), (self._results, self._result))
+        taken = [(do, service.take()) for service, do in services]
+        return [(do, asked) for do, asked in taken if asked is not None]
+
+    async def execute(self, taken_data: list[tuple[Callable[[Asked], Any], Asked]]) -> None:
+        for do, asked in taken_data:
+            await do(asked)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        return NumberOfEntities(num_timers=1, num_services=3)
+
+    def add_to_wait_set(self, wait_set: Any) -> None:
+        """There are no wait sets."""
+
+    # goals
+
+    async def _goal(self, asked: Asked) -> None:
+        carrier = self._action_type.Impl.SendGoalService
+        request = messages.decode(carrier.Request, asked.payload)
+        key = bytes(request.goal_id.uuid)
+        is_known = key in self._goal_handles
+        answer: Any = None
+        if is_known:
+            self._logger.error(f"Failed to accept new goal with ID {key.hex()}: it is under way")
+        else:
+            try:
+                answer = await await_or_execute(self._goal_callback, request.goal)
+            except Exception as error:
+                self._logger.error(f"Error raised in goal callback: {error}")
+                traceback.print_exc()
+                self._goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
+                raise
+            if not isinstance(answer, GoalResponse):
+                self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
+        accepted = answer is GoalResponse.ACCEPT
+        stamp = self._node.get_clock().now().to_msg()
+        handle = None
+        if accepted:
+            from action_msgs.msg import GoalInfo
+
+            handle = ServerGoalHandle(self, GoalInfo(goal_id=request.goal_id, stamp=stamp), request.goal)
+            with self._lock:
+                self._goal_handles[key] = handle
+            self.publish_status()
+        self._goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
+        if handle is not None:
+            await await_or_execute(self._handle_accepted_callback, handle)
+
+    def notify_execute(
+        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Have a goal executed by the node's executor."""
+        callback = execute_callback or self._execute_callback
+        executor = self._node.executor
+        if executor is None:
+            raise RuntimeError("a goal cannot be executed while no executor has the node: spin it")
+        executor.create_task(self._execute_goal, callback, goal_handle)
+
+    async def _execute_goal(
+        self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
+    ) -> None:
+        self._logger.debug(f"Executing goal with ID {bytes(goal_handle.goal_id.uuid).hex()}")
+        try:
+            result = await await_or_execute(execute_callback, goal_handle)
+        except Exception as error:
+            result = self._action_type.Result()
+            self._logger.error(f"Error raised in execute callback: {error}")
+            traceback.print_exc()
+        if goal_handle.is_active:
+            shown = bytes(goal_handle.goal_id.uuid).hex()
+            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {shown}")
+            goal_handle.abort()
+        self._logger.debug(f"Goal with ID {bytes(goal_handle.goal_id.uuid).hex()} finished")
+        carrier = self._action_type.Impl.GetResultService
+        response = carrier.Response(status=goal_handle.status, result=result)
+        goal_handle._result.set_result(response)
+        if self._result_timeout >= 0:
+            LOOP.soon(self._expire_later, goal_handle)
+
+    def _expire_later(self, goal_handle: ServerGoalHandle) -> None:
+        LOOP.start().call_later(self._result_timeout, self.forget, goal_handle)
+
+    def forget(self, goal_handle: ServerGoalHandle) -> None:
+        """Keep a goal, and its result, no longer."""
+        with self._lock:
+            self._goal_handles.pop(bytes(goal_handle.goal_id.uuid), None)
+
+    async def _cancel(self, asked: Asked) -> None:
+        from action_msgs.msg import GoalInfo
+        from action_msgs.srv import CancelGoal
+
+        request = messages.decode(CancelGoal.Request, asked.payload)
+        code, wanted = self._to_cancel(request.goal_info)
+        response = CancelGoal.Response(return_code=int(code))
+        for goal in wanted:
+            answer = await await_or_execute(self._cancel_callback, goal)
+            if answer is CancelResponse.ACCEPT:
+                try:
+                    goal._update_state(GoalEvent.CANCEL_GOAL)
+                except RCLError as error:  # it has ended meanwhile
+                    self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
+                    continue
+                response.goals_canceling.append(GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))
+        if wanted and not response.goals_canceling:
+            response.return_code = int(CancelCode.REJECTED)
+        self._cancels.answer(asked, messages.encode(response))
+
+    def _to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
+        """The goals that a request means: one by its id, those up to a time, or all. Source: CancelGoal.srv."""
+        key, until_ns = bytes(info.goal_id.uuid), Time.from_msg(info.stamp).nanoseconds
+        with self._lock:
+            goals = dict(self._goal_handles)
+        is_any = not any(key)
+        if not is_any and not until_ns:
+            goal = goals.get(key)
+            if goal is None:
+                return CancelCode.UNKNOWN_GOAL_ID, []
+            return (CancelCode.NONE, [goal]) if goal.is_active else (CancelCode.GOAL_TERMINATED, [])
+        found = [
+            goal
+            for name, goal in goals.items()
+            if goal.is_active
+            and ((is_any and not until_ns) or name == key or Time.from_msg(goal.stamp).nanoseconds <= until_ns)
+        ]
+        return CancelCode.NONE, found
+
+    async def _result(self, asked: Asked) -> None:
+        carrier = self._action_type.Impl.GetResultService
+        request = messages.decode(carrier.Request, asked.payload)
+        goal = self._goal_handles.get(bytes(request.goal_id.uuid))
+        if goal is None:
+            self._logger.debug("Sending result response for unknown goal ID")
+            self._results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
+            return
+        goal._result._when_done(partial(self._answer_result, asked, goal))
+
+    def _answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
+        if not self._is_destroyed:
+            self._results.answer(asked, messages.encode(goal._result.result()))
+
+    def notify_goal_done(self) -> None:
+        """A goal has ended: results are kept from then on for their time."""
+
+    # topics
+
+    def publish_status(self) -> None:
+        """Publish the states of all goals that are known."""
+        from action_msgs.msg import GoalInfo
+        from action_msgs.msg import GoalStatus as StatusMessage
+
+        with self._lock:
+            goals = list(self._goal_handles.values())
+        rows = [
+            StatusMessage(goal_info=GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
+            for goal in goals
+        ]
+        if not self._is_destroyed:
+            message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
+            self._status.put(messages.encode(message))
+
+    def publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
+        """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
+        if not isinstance(feedback, self._action_type.Feedback):
+            raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}")
+        message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
+        if not self._is_destroyed:
+            self._feedback.put(messages.encode(message))
+
+    # callbacks
+
+    def register_handle_accepted_callback(
+        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
+
+    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_cancel_callback(self, cancel_callback: Callable[[Any], Any] | None) -> None:
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+        if not callable(execute_callback):
+            raise TypeError(f"Failed to register goal execution callback: not callable: {execute_callback!r}")
+        self._execute_callback = execute_callback
+
+    def destroy(self) -> None:
+        """Withdraw it. Goals that run go on, and their results are lost."""
+        if self._is_destroyed:
+            return
+        self._is_destroyed = True
+        with self._lock:
+            self._goal_handles.clear()
+        if self in self._node.waitables:
+            self._node.remove_waitable(self)
+        if self._node.context.ok():
+            for endpoint in (self._goals, self._results, self._cancels, self._feedback, self._status):
+                held.remove(endpoint)

@@ -1,0 +1,177 @@
+"""Clients of services."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from graphflow.errors import ServerLost
+from graphflow.rclpy import messages
+from graphflow.rclpy.wake import Wake
+from graphflow.runtime.service_events import ServiceEvent
+from rclpy.handle import Handle
+from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.task import Future
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+    from graphflow.runtime.threaded import Answered, ThreadedClient
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.clock import Clock
+    from rclpy.context import Context
+    from rclpy.qos import QoSProfile
+
+
+class Client:
+    """A client of a service. Make it by `Node.create_client`."""
+
+    turn = 3
+
+    def __init__(
+        self,
+        context: Context,
+        client_impl: ThreadedClient,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+        *,
+        life: Life,
+        handle: Handle,
+        changed: dict[Wake, None],
+    ) -> None:
+        self.context, self.srv_type, self.srv_name, self.qos_profile = context, srv_type, srv_name, qos_profile
+        self.callback_group = callback_group
+        self._endpoint, self._life, self._handle = client_impl, life, handle
+        self._pending: dict[int, Future[Any]] = {}
+        self._lock = threading.Lock()
+        self._changed = changed
+        """Those who wait for a server."""
+
+    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+        """Send a request, and block until the response is there: some other thread must be spinning.
+
+        Args:
+            timeout_sec: Seconds to wait; None for any time.
+
+        Returns:
+            The response; None if it did not come in time.
+
+        Raises:
+            TypeError: That is no request of the service's.
+            CallError: A server of graphflow's has answered with an error.
+        """
+        future = self.call_async(request)
+        wake = Wake()
+        future._when_done(wake.set)
+        self._life.on_end(wake)
+        try:
+            wake.wait_until(
+                lambda: future.done() or not self._life.is_ok,
+                None if timeout_sec is None or timeout_sec < 0 else timeout_sec,
+            )
+        finally:
+            self._life.forget(wake)
+        if not future.done():
+            self.remove_pending_request(future)
+            return None
+        return future.result()
+
+    def call_async(self, request: Any) -> Future[Any]:
+        """Send a request; the future has the response once a thread that spins has taken it.
+
+        A request without a server is never answered: `wait_for_service` before. Errors as for `call`.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
+        with self._handle, self._lock:
+            future: Future[Any] = Future()
+            payload = messages.encode(request)
+            sequence = self._endpoint.send(payload)
+            self._pending[sequence] = future
+        self._endpoint.tell(ServiceEvent.REQUEST_SENT, sequence, payload)
+        future._when_done(partial(self._pending.pop, sequence, None))
+        return future
+
+    def get_pending_request(self, sequence_number: int) -> Future[Any]:
+        """The future of a call by its number. Raises KeyError if it does not wait."""
+        return self._pending[sequence_number]
+
+    def remove_pending_request(self, future: Future[Any]) -> None:
+        """Wait for a response no longer."""
+        with self._lock:
+            for sequence, waiting in list(self._pending.items()):
+                if waiting is future:
+                    del self._pending[sequence]
+
+    def service_is_ready(self) -> bool:
+        """Whether there is a server."""
+        with self._handle:
+            return self._endpoint.has_server
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Block until there is a server, at most `timeout_sec` seconds; whether there is one."""
+        wake = Wake()
+        self._changed[wake] = None
+        self._life.on_end(wake)
+        limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+        try:
+            wake.wait_until(lambda: not self._life.is_ok or self.service_is_ready(), limit)
+        finally:
+            self._life.forget(wake)
+            self._changed.pop(wake, None)
+        return self.service_is_ready()
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
+        configure_introspection(self._life, self._endpoint, service_event_qos_profile, introspection_state)
+
+    def has_work(self) -> bool:
+        return bool(self._endpoint.inbox.items)
+
+    def take_work(self) -> Callable[[], Any] | None:
+        answered = self._endpoint.take()
+        return None if answered is None else partial(self._settle, answered)
+
+    def _settle(self, answered: Answered) -> None:
+        with self._lock:
+            future = self._pending.get(answered.sequence)
+        if future is None:
+            return
+        if answered.error is None:
+            response = messages.decode(self.srv_type.Response, answered.payload)
+            self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)
+            future.set_result(response)
+        elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
+            future.set_exception(answered.error)
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self._handle:
+            return self._endpoint.name
+
+    def destroy(self) -> None:
+        """Withdraw it. `Node.destroy_client` is what to call."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+
+def configure_introspection(life: Life, endpoint: Any, qos: QoSProfile, state: ServiceIntrospectionState) -> None:
+    """Have a client or server publish its calls."""
+    from rclpy.qos import to_graphflow
+
+    life.on_loop(partial(endpoint.configure_introspection, state.name.lower(), to_graphflow(qos)))

@@ -1,0 +1,4 @@
+"""Numbers that rclpy names."""
+
+S_TO_NS = 1000 * 1000 * 1000
+"""Nanoseconds in a second."""

@@ -1,0 +1,152 @@
+"""Contexts: what `rclpy.init` begins and `rclpy.shutdown` ends."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from inspect import ismethod
+from types import TracebackType
+from typing import Any, Self
+from weakref import WeakMethod, ref
+
+from graphflow.errors import GraphflowError
+from graphflow.rclpy.life import Life
+from graphflow.runtime.rosout import log_level, setup_console
+from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
+from rclpy.handle import Handle
+from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.rcutils_logger import RcutilsLogger
+
+_ALREADY = "failed to shutdown: rcl_shutdown already called on the given context"
+
+
+class Context(AbstractContextManager["Context"]):
+    """What nodes of one program share: their arguments, their domain, and their end."""
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._callbacks: list[Callable[[], Any]] = []
+        self._life: Life | None = None
+        self._handle: Handle | None = None
+
+    @property
+    def handle(self) -> Handle | None:
+        return self._handle
+
+    @property
+    def life(self) -> Life | None:
+        """graphflow's: what nodes, executors and sleeps ask. None before `init`."""
+        return self._life
+
+    def init(
+        self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
+    ) -> None:
+        """Begin.
+
+        Args:
+            args: The command line; None for this program's.
+            domain_id: None for what the environment says.
+
+        Raises:
+            RuntimeError: It has begun before, or an argument is wrong.
+        """
+        words = list(sys.argv if args is None else args)
+        for word in words:
+            word.encode()
+        with self._lock:
+            if domain_id is not None and domain_id < 0:
+                raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+            if self._life is not None and self._life.is_ok:
+                raise RuntimeError("Context.init() must only be called once")
+            try:
+                life = Life(words, domain_id)
+                if life.args.unknown:
+                    raise UnknownROSArgsError(f"Found unknown ROS arguments: {life.args.unknown}")
+                if initialize_logging:
+                    setup_console(is_quiet=not life.args.has_stdout)
+                    level = log_level(life.args.log_level)
+                    if level != LoggingSeverity.INFO:
+                        RcutilsLogger().set_level(level)
+                    for name, word in life.args.log_levels.items():
+                        RcutilsLogger(name.replace("/", ".")).set_level(log_level(word))
+            except GraphflowError as error:
+                raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
+            self._life = life
+            self._handle = Handle(self._destroy, ok=self.ok, get_domain_id=self.get_domain_id, shutdown=self.shutdown)
+
+    def ok(self) -> bool:
+        """Whether it has begun and not ended."""
+        return self._life is not None and self._life.is_ok
+
+    def get_domain_id(self) -> int:
+        """The domain. Raises RuntimeError before `init`."""
+        if self._life is None:
+            raise RuntimeError("Context must be initialized before it has a domain id")
+        return self._life.domain
+
+    def shutdown(self) -> None:
+        """End: call what asked for it, and leave the network.
+
+        Raises:
+            RuntimeError: It has not begun.
+            RCLError: It has ended before.
+        """
+        if self._life is None:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
+        if not self.try_shutdown():
+            raise RCLError(_ALREADY)
+
+    def try_shutdown(self) -> bool:
+        """End, if it has not yet; whether it did now."""
+        with self._lock:
+            life = self._life
+            if life is None or not life.end():
+                return False
+        self.finish()
+        return True
+
+    def finish(self) -> None:
+        """What follows when its life has ended: it may take a while, and call users' code."""
+        with self._lock:
+            life, callbacks, self._callbacks = self._life, self._callbacks, []
+        for reference in callbacks:
+            callback = reference()
+            if callback is not None:
+                callback()
+        if life is not None:
+            life.close()
+
+    def on_shutdown(self, callback: Callable[[], None]) -> None:
+        """Call back when it ends, if `callback` is still there by then. Raises TypeError if that cannot be called."""
+        if not callable(callback):
+            raise TypeError(f"callback should be a callable, got {type(callback)}")
+        with self._lock:
+            if self._life is not None and not self._life.is_ok:
+                callback()
+                return
+            self._callbacks.append(WeakMethod(callback) if ismethod(callback) else ref(callback))
+
+    def destroy(self) -> None:
+        """End, and be of no more use."""
+        if self._handle is not None:
+            self._handle.destroy_when_not_in_use()
+
+    def _destroy(self) -> None:
+        self.try_shutdown()
+
+    def __del__(self) -> None:
+        life = getattr(self, "_life", None)
+        if life is not None and life.is_ok:
+            warnings.warn("a context was left without shutdown", ResourceWarning, stacklevel=1)
+
+    def __enter__(self) -> Self:
+        self.init()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.try_shutdown()

@@ -1,0 +1,324 @@
+"""What endpoints notice about each other: who came and went, what is late, lost, silent or does not fit."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from enum import IntEnum
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import rclpy.logging
+from graphflow.runtime.events import QosEvent
+from rclpy._rclpy_pybind11 import UnsupportedEventTypeError
+from rclpy.qos import QoSPolicyKind, qos_policy_name_from_kind
+from rclpy.waitable import Waitable
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.held import NodeBell
+    from rclpy.callback_groups import CallbackGroup
+
+__all__ = [
+    "EventHandler",
+    "IncompatibleTypeInfo",
+    "PublisherEventCallbacks",
+    "QoSEventHandler",
+    "QoSLivelinessChangedInfo",
+    "QoSLivelinessLostInfo",
+    "QoSMessageLostInfo",
+    "QoSOfferedDeadlineMissedInfo",
+    "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
+    "QoSPublisherMatchedInfo",
+    "QoSRequestedDeadlineMissedInfo",
+    "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
+    "QoSSubscriptionMatchedInfo",
+    "SubscriptionEventCallbacks",
+    "UnsupportedEventTypeError",
+]
+
+
+class QoSPublisherEventType(IntEnum):
+    """What a publisher notices."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class QoSSubscriptionEventType(IntEnum):
+    """What a subscription notices."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+class _Counts(NamedTuple):
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+class QoSRequestedDeadlineMissedInfo(_Counts):
+    """A subscription has had no message in time."""
+
+
+class QoSOfferedDeadlineMissedInfo(_Counts):
+    """A publisher has sent nothing in time."""
+
+
+class QoSLivelinessLostInfo(_Counts):
+    """A publisher has not shown in time that it is alive."""
+
+
+class QoSMessageLostInfo(_Counts):
+    """Messages never arrived."""
+
+
+class IncompatibleTypeInfo(_Counts):
+    """Another endpoint of the topic is of another type."""
+
+
+class QoSLivelinessChangedInfo(NamedTuple):
+    """Publishers came, went, fell silent or were heard again."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
+
+
+class QoSRequestedIncompatibleQoSInfo(NamedTuple):
+    """Another endpoint of the topic offers less than is asked for."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
+
+
+QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
+
+
+class QoSSubscriptionMatchedInfo(NamedTuple):
+    """Endpoints of the other side came or went."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    current_count: int = 0
+    current_count_change: int = 0
+
+
+QoSPublisherMatchedInfo = QoSSubscriptionMatchedInfo
+
+_KINDS: dict[IntEnum, str] = {
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: "deadline_missed",
+    QoSPublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: "liveliness_lost",
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: "incompatible_qos",
+    QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: "incompatible_type",
+    QoSPublisherEventType.RCL_PUBLISHER_MATCHED: "matched",
+}
+_SUBSCRIPTION_KINDS: dict[IntEnum, str] = {
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: "deadline_missed",
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: "liveliness_changed",
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: "incompatible_qos",
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: "message_lost",
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: "incompatible_type",
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: "matched",
+}
+_POLICIES = {
+    "reliability": QoSPolicyKind.RELIABILITY,
+    "durability": QoSPolicyKind.DURABILITY,
+    "deadline": QoSPolicyKind.DEADLINE,
+    "liveliness": QoSPolicyKind.LIVELINESS,
+    "liveliness lease": QoSPolicyKind.LIVELINESS,
+}
+"""Policies as graphflow and as ROS 2 call them."""
+
+
+class EventHandler(Waitable):
+    """Has an executor call `callback` with what an endpoint has noticed."""
+
+    def __init__(
+        self,
+        *,
+        callback_group: CallbackGroup,
+        callback: Callable[[Any], None],
+        event_type: IntEnum,
+        parent_impl: Any = None,
+        bell: NodeBell | None = None,
+    ) -> None:
+        super().__init__(callback_group)
+        self.event_type, self.callback = event_type, callback
+        is_publishers = isinstance(event_type, QoSPublisherEventType)
+        self.kind = (_KINDS if is_publishers else _SUBSCRIPTION_KINDS)[event_type]
+        self._bell, self._is_publishers = bell, is_publishers
+        self._events: deque[QosEvent] = deque(maxlen=1000)
+        self._told = 0
+        self._is_destroyed = False
+
+    def notice(self, event: QosEvent) -> None:
+        """The endpoint has noticed something. Callable from any thread."""
+        if not self._is_destroyed:
+            self._events.append(event)
+            if self._bell is not None:
+                self._bell.mark(self)
+
+    def is_ready(self, wait_set: Any) -> bool:
+        return bool(self._events) and not self._is_destroyed
+
+    def take_data(self) -> Any:
+        events, self._events = self._events, deque(maxlen=1000)
+        return self._info(list(events)) if events else None
+
+    def _info(self, events: list[QosEvent]) -> Any:
+        """Several events at once, as rcl tells them."""
+        last, more = events[-1], sum(event.change for event in events)
+        match self.kind:
+            case "liveliness_changed":
+                came = sum(e.change for e in events if e.change > 0)
+                gone = -sum(e.change for e in events if e.change < 0)
+                return QoSLivelinessChangedInfo(last.current, 0 if last.current else gone, came - gone, gone - came)
+            case "matched":
+                return QoSSubscriptionMatchedInfo(last.total, sum(e.change > 0 for e in events), last.current, more)
+            case "incompatible_qos":
+                first = last.detail.partition(",")[0].strip()
+                kind = _POLICIES.get(first, QoSPolicyKind.INVALID)
+                return QoSRequestedIncompatibleQoSInfo(last.total, more, kind)
+            case "deadline_missed":
+                cls = QoSOfferedDeadlineMissedInfo if self._is_publishers else QoSRequestedDeadlineMissedInfo
+                return cls(last.total, more)
+            case "message_lost":
+                return QoSMessageLostInfo(last.total, more)
+            case "liveliness_lost":
+                return QoSLivelinessLostInfo(last.total, more)
+        return IncompatibleTypeInfo(last.total, more)
+
+    async def execute(self, taken_data: Any) -> None:
+        if taken_data is not None:
+            self.callback(taken_data)
+
+    def destroy(self) -> None:
+        """Notice nothing more."""
+        self._is_destroyed = True
+
+
+QoSEventHandler = EventHandler
+
+
+def dispatcher(handlers: list[EventHandler]) -> Callable[[QosEvent], None]:
+    """What an endpoint calls with each event: it goes to those that want its kind."""
+
+    def told(event: QosEvent) -> None:
+        for handler in handlers:
+            if handler.kind == event.kind:
+                handler.notice(event)
+
+    return told
+
+
+class SubscriptionEventCallbacks:
+    """What a subscription's events call.
+
+    Args:
+        use_default_callbacks: Whether to log what does not fit, where no callback is given for that.
+    """
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[QoSRequestedDeadlineMissedInfo], None] | None = None,
+        incompatible_qos: Callable[[QoSRequestedIncompatibleQoSInfo], None] | None = None,
+        liveliness: Callable[[QoSLivelinessChangedInfo], None] | None = None,
+        message_lost: Callable[[QoSMessageLostInfo], None] | None = None,
+        incompatible_type: Callable[[IncompatibleTypeInfo], None] | None = None,
+        matched: Callable[[QoSSubscriptionMatchedInfo], None] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        self.deadline, self.incompatible_qos, self.liveliness = deadline, incompatible_qos, liveliness
+        self.message_lost, self.incompatible_type, self.matched = message_lost, incompatible_type, matched
+        self.use_default_callbacks = use_default_callbacks
+
+    def create_event_handlers(
+        self, callback_group: CallbackGroup, subscription: Any, topic_name: str, bell: NodeBell | None = None
+    ) -> list[EventHandler]:
+        """The handlers of these callbacks."""
+        kinds = QoSSubscriptionEventType
+        incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
+        if self.use_default_callbacks:
+            incompatible_qos = incompatible_qos or partial(_warn_qos, topic_name, _OFFERING)
+            incompatible_type = incompatible_type or partial(_warn_type, topic_name)
+        wanted = {
+            kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
+            kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: incompatible_qos,
+            kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: self.liveliness,
+            kinds.RCL_SUBSCRIPTION_MESSAGE_LOST: self.message_lost,
+            kinds.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: incompatible_type,
+            kinds.RCL_SUBSCRIPTION_MATCHED: self.matched,
+        }
+        return _handlers(wanted, callback_group, bell)
+
+
+class PublisherEventCallbacks:
+    """What a publisher's events call. `use_default_callbacks` as for `SubscriptionEventCallbacks`."""
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[QoSOfferedDeadlineMissedInfo], None] | None = None,
+        liveliness: Callable[[QoSLivelinessLostInfo], None] | None = None,
+        incompatible_qos: Callable[[QoSRequestedIncompatibleQoSInfo], None] | None = None,
+        incompatible_type: Callable[[IncompatibleTypeInfo], None] | None = None,
+        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        self.deadline, self.liveliness, self.incompatible_qos = deadline, liveliness, incompatible_qos
+        self.incompatible_type, self.matched = incompatible_type, matched
+        self.use_default_callbacks = use_default_callbacks
+
+    def create_event_handlers(
+        self, callback_group: CallbackGroup, publisher: Any, topic_name: str, bell: NodeBell | None = None
+    ) -> list[EventHandler]:
+        """The handlers of these callbacks."""
+        kinds = QoSPublisherEventType
+        incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
+        if self.use_default_callbacks:
+            incompatible_qos = incompatible_qos or partial(_warn_qos, topic_name, _REQUESTING)
+            incompatible_type = incompatible_type or partial(_warn_type, topic_name)
+        wanted = {
+            kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
+            kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
+            kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: incompatible_qos,
+            kinds.RCL_PUBLISHER_INCOMPATIBLE_TYPE: incompatible_type,
+            kinds.RCL_PUBLISHER_MATCHED: self.matched,
+        }
+        return _handlers(wanted, callback_group, bell)
+
+
+def _handlers(wanted: dict[Any, Any], group: CallbackGroup, bell: NodeBell | None) -> list[EventHandler]:
+    return [
+        EventHandler(callback_group=group, callback=callback, event_type=kind, bell=bell)
+        for kind, callback in wanted.items()
+        if callback is not None
+    ]
+
+
+_OFFERING = "New publisher discovered on topic '{}', offering incompatible QoS. No messages will be received from it."
+_REQUESTING = "New subscription discovered on topic '{}', requesting incompatible QoS. No messages will be sent to it."
+
+
+def _warn_qos(topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
+    policy = qos_policy_name_from_kind(info.last_policy_kind)
+    logger = rclpy.logging._root_logger.get_child("event")
+    logger.warn(f"{text.format(topic)} Last incompatible policy: {policy}")
+
+
+def _warn_type(topic: str, info: IncompatibleTypeInfo) -> None:
+    rclpy.logging._root_logger.get_child("event").warn(
+        f"Incompatible type on topic '{topic}', no messages will be sent"
+    )

@@ -1,0 +1,167 @@
+"""What rclpy raises."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from rclpy._rclpy_pybind11 import InvalidHandle
+
+if TYPE_CHECKING:
+    from rclpy.parameter import Parameter
+
+__all__ = [
+    "InvalidHandle",
+    "InvalidNamespaceException",
+    "InvalidNodeNameException",
+    "InvalidParameterException",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "InvalidServiceNameException",
+    "InvalidTopicNameException",
+    "NameValidationException",
+    "NoTypeSupportImportedException",
+    "NotInitializedException",
+    "ParameterAlreadyDeclaredException",
+    "ParameterException",
+    "ParameterImmutableException",
+    "ParameterNotDeclaredException",
+    "ParameterUninitializedException",
+    "ROSInterruptException",
+]
+
+
+class NotInitializedException(Exception):
+    """`rclpy.init` has not been called, or its context was shut down."""
+
+    def __init__(self, message: str | None = None) -> None:
+        text = "rclpy.init() has not been called"
+        super().__init__(f"{text}: {message}" if message is not None else text)
+
+
+class NoTypeSupportImportedException(Exception):
+    """A class has no type support."""
+
+    def __init__(self) -> None:
+        super().__init__("no type_support imported")
+
+
+class NameValidationException(Exception):
+    """A name is not legal.
+
+    Attributes:
+        invalid_index: Where in `name` what is wrong begins.
+    """
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
+        self.name_type, self.name, self.error_msg, self.invalid_index = name_type, name, error_msg, invalid_index
+        pointer = " " * (len(f"  '{name[:invalid_index]}")) + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n{pointer}")
+
+
+class InvalidNamespaceException(NameValidationException):
+    """A namespace is not legal."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node's name is not legal."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic's name is not legal."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service's name is not legal."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class ParameterException(Exception):
+    """Something is wrong with parameters.
+
+    Args:
+        parameters: The name of one, or several.
+    """
+
+    def __init__(self, error_msg: str, parameters: str | Iterable[str], *args: object) -> None:
+        shown = f"'{parameters}'" if isinstance(parameters, str) else str(list(parameters))
+        super().__init__(f"{error_msg}: {shown}", *args)
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """A parameter was not declared."""
+
+    def __init__(self, parameters: str | Iterable[str], *args: object) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters, *args)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter is declared a second time."""
+
+    def __init__(self, parameters: str | Iterable[str], *args: object) -> None:
+        super().__init__("Parameter(s) already declared", parameters, *args)
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter's name is not legal."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("Invalid parameter name", parameter, *args)
+
+
+class InvalidParameterTypeException(ParameterException):
+    """A value is of another type than its parameter."""
+
+    def __init__(self, parameter: Parameter[Any], expected_type: object, *args: object) -> None:
+        name = getattr(expected_type, "name", expected_type)
+        super().__init__(
+            f"Trying to set parameter '{parameter.name}' to '{parameter.value}' of type '{parameter.type_.name}', "
+            f"expecting type '{name}'",
+            parameter.name,
+            *args,
+        )
+
+
+class InvalidParameterValueException(ParameterException):
+    """A value was refused."""
+
+    def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
+        super().__init__(
+            f"Invalid parameter value ({value}) for parameter. Reason: {reason}"
+            if reason
+            else f"Invalid parameter value ({value}) for parameter",
+            parameter,
+            *args,
+        )
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter was to be changed."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter, *args)
+
+
+class ParameterUninitializedException(ParameterException):
+    """A parameter was declared with a type only, and has no value yet."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("The parameter is not initialized", parameter, *args)
+
+
+class ROSInterruptException(Exception):
+    """What was waited for was cut off by a shutdown."""
+
+    def __init__(self) -> None:
+        super().__init__("rclpy.shutdown() has been called")

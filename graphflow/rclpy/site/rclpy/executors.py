@@ -1,0 +1,333 @@
+"""Executors: threads that run the callbacks of nodes."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import threading
+import time
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Any, Self
+from weakref import WeakSet
+
+from rclpy.impl.spinning import (
+    POLL,
+    ConditionReachedException,
+    ExternalShutdownException,
+    Run,
+    ShutdownException,
+    Spinning,
+    TimeoutException,
+)
+from rclpy.task import Future, Task
+from rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from rclpy.context import Context
+
+__all__ = [
+    "ConditionReachedException",
+    "Executor",
+    "ExternalShutdownException",
+    "MultiThreadedExecutor",
+    "ShutdownException",
+    "SingleThreadedExecutor",
+    "TimeoutException",
+    "TimeoutObject",
+    "await_or_execute",
+]
+
+all_executors: WeakSet[Executor] = WeakSet()
+"""Those of this process, for the search for deadlocks."""
+
+
+class TimeoutObject:
+    """A time limit in seconds that several calls share."""
+
+    def __init__(self, timeout: float) -> None:
+        self._timeout = timeout
+
+    @property
+    def timeout(self) -> float:
+        return self._timeout
+
+    @timeout.setter
+    def timeout(self, timeout: float) -> None:
+        self._timeout = timeout
+
+
+async def await_or_execute(callback: Any, *args: Any) -> Any:
+    """Call `callback(*args)`, and await it if it is a coroutine function."""
+    return await callback(*args) if inspect.iscoroutinefunction(callback) else callback(*args)
+
+
+class Executor(AbstractContextManager["Executor"]):
+    """What all executors have in common. A subclass says in `spin_once` in what thread work is done."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__()
+        self._context = get_default_context() if context is None else context
+        self._graphflow = Spinning(self, self._context)
+        all_executors.add(self)
+
+    @property
+    def context(self) -> Context:
+        return self._context
+
+    @property
+    def spinning(self) -> Spinning:
+        """graphflow's: its workings."""
+        return self._graphflow
+
+    @property
+    def _is_shutdown(self) -> bool:
+        return self._graphflow.is_shutdown
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+        """Run a function, a coroutine function or a coroutine as a task; returns it."""
+        run = Run(self, callback, args, kwargs)
+        self._graphflow.start(run)
+        return run
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Begin nothing more.
+
+        Args:
+            timeout_sec: Seconds to wait for callbacks that run in other threads; None not to wait.
+
+        Returns:
+            Whether none runs any more.
+        """
+        spinning = self._graphflow
+        spinning.is_shutdown = True
+        spinning.wake.set()
+        me, until = threading.get_ident(), time.monotonic() + (timeout_sec or 0.0)
+        while others := [run for run in list(spinning.running) if run.thread not in (0, me)]:
+            if timeout_sec is not None and timeout_sec >= 0 and time.monotonic() >= until:
+                return False
+            if timeout_sec is None:
+                break
+            time.sleep(POLL)
+        for node in list(spinning.nodes):
+            self.remove_node(node)
+        return not others
+
+    def __del__(self) -> None:
+        spinning = getattr(self, "_graphflow", None)
+        if spinning is not None:
+            spinning.is_shutdown = True
+
+    def add_node(self, node: Any) -> bool:
+        """Run a node's callbacks from now on; whether they were not before."""
+        spinning = self._graphflow
+        if node in spinning.nodes:
+            return False
+        spinning.nodes[node] = None
+        node.executor = self
+        spinning.wake.set()
+        return True
+
+    def remove_node(self, node: Any) -> None:
+        """Run a node's callbacks no more."""
+        if self._graphflow.nodes.pop(node, self) is None:
+            self._graphflow.wake.set()
+
+    def wake(self) -> None:
+        """Have the thread that waits look for work. From any thread."""
+        self._graphflow.wake.set()
+
+    def get_nodes(self) -> list[Any]:
+        """The nodes whose callbacks it runs."""
+        return list(self._graphflow.nodes)
+
+    def spin(self) -> None:
+        """Run callbacks until the context, or this executor, is shut down."""
+        while self._context.ok() and not self._graphflow.is_shutdown:
+            self.spin_once()
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until a future is done, at most `timeout_sec` seconds."""
+        future._when_done(self.wake)
+        if timeout_sec is None or timeout_sec < 0:
+            while self._may_go_on(future):
+                self.spin_once_until_future_complete(future, timeout_sec)
+            return
+        until = time.monotonic() + timeout_sec
+        limit = TimeoutObject(timeout_sec)
+        while self._may_go_on(future):
+            self.spin_once_until_future_complete(future, limit)
+            limit.timeout = until - time.monotonic()
+            if limit.timeout <= 0:
+                return
+
+    def _may_go_on(self, future: Future[Any]) -> bool:
+        is_over = future.done() or future.cancelled()
+        return self._context.ok() and not is_over and not self._graphflow.is_shutdown
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait for a callback that is ready, and run it. For subclasses to say how.
+
+        Args:
+            timeout_sec: Seconds to wait for one; None or a negative number for any time.
+
+        Raises:
+            Exception: Whatever the callback raises.
+            ExternalShutdownException: The context was shut down.
+        """
+        raise NotImplementedError
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        """As `spin_once`, but wait no longer when a future is done."""
+        raise NotImplementedError
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether an entity's group lets its callback run now."""
+        return bool(entity.callback_group.can_execute(entity))
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        nodes: list[Any] | None = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> tuple[Task[Any], Any, Any]:
+        """Wait for something to do: a task to be called, the entity whose it is, and the node.
+
+        Raises:
+            TimeoutException: There was nothing in time.
+            ShutdownException: The executor was shut down.
+            ExternalShutdownException: The context was shut down.
+            ConditionReachedException: `condition()` holds.
+        """
+        timeout = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+        return self._graphflow.next(timeout, nodes, condition)
+
+    def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Generator[tuple[Task[Any], Any, Any], None, None]:
+        while True:
+            yield self.wait_for_ready_callbacks(*args, **kwargs)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.shutdown()
+
+
+_NOTHING_TO_DO = (ShutdownException, TimeoutException, ConditionReachedException)
+
+
+class SingleThreadedExecutor(Executor):
+    """Runs callbacks one after the other, in the thread that spins."""
+
+    def _do_one(self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False) -> None:
+        try:
+            handler, _, _ = self.wait_for_ready_callbacks(timeout, None, condition)
+        except _NOTHING_TO_DO:
+            return
+        handler()
+        error = handler.exception()
+        if error is not None:
+            raise error
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        self._do_one(timeout_sec)
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        future._when_done(self.wake)
+        self._do_one(timeout_sec, lambda: future.done() or future.cancelled())
+
+
+class _Pool:
+    """Threads that end with the process, whatever runs in them."""
+
+    def __init__(self, size: int, freed: Callable[[], None]) -> None:
+        self._max_workers = size
+        self._freed = freed
+        self._work: deque[Callable[[], None]] = deque()
+        self._there = threading.Semaphore(0)
+        self._lock = threading.Lock()
+        self._threads = self._busy = 0
+
+    @property
+    def has_room(self) -> bool:
+        return self._busy < self._max_workers
+
+    def submit(self, work: Callable[[], None]) -> None:
+        with self._lock:
+            self._busy += 1
+            self._work.append(work)
+            is_new = self._threads < min(self._busy, self._max_workers)
+            self._threads += is_new
+            number = self._threads
+        if is_new:
+            threading.Thread(target=self._serve, name=f"executor-{number}", daemon=True).start()
+        self._there.release()
+
+    def _serve(self) -> None:
+        while True:
+            self._there.acquire()
+            work = self._work.popleft()
+            try:
+                work()
+            finally:
+                del work
+                with self._lock:
+                    self._busy -= 1
+                self._freed()
+
+
+class MultiThreadedExecutor(Executor):
+    """Runs callbacks in a pool of threads, as many at a time as groups allow.
+
+    Args:
+        num_threads: None for as many as there are processors.
+    """
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        if num_threads is None:
+            affinity = getattr(os, "sched_getaffinity", None)
+            num_threads = len(affinity(0)) if affinity is not None else os.cpu_count() or 2
+        if num_threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        self._executor = _Pool(num_threads, self.wake)
+        self._failures: deque[BaseException] = deque()
+        self._graphflow.has_room = lambda: self._executor.has_room
+
+    def _do_one(self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False) -> None:
+        try:
+            handler, _, _ = self.wait_for_ready_callbacks(timeout, None, lambda: bool(self._failures) or condition())
+        except _NOTHING_TO_DO:
+            pass
+        else:
+            self._executor.submit(lambda: self._work(handler))
+        if self._failures:
+            raise self._failures.popleft()
+
+    def _work(self, handler: Task[Any]) -> None:
+        try:
+            handler()
+            error = handler.exception()
+        except BaseException as leaving:  # SystemExit and the like, which the spinning thread is to see
+            error = leaving
+        if error is not None:
+            self._failures.append(error)
+            self.wake()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        self._do_one(timeout_sec)
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
+    ) -> None:
+        future._when_done(self.wake)
+        self._do_one(timeout_sec, lambda: future.done() or future.cancelled())

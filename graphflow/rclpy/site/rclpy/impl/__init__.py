@@ -1,0 +1,1 @@
+"""What code finds under this name in rclpy."""

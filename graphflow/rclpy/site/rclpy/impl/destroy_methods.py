@@ -1,0 +1,77 @@
+"""The part of a node that destroys what it has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.client import Client
+from rclpy.exceptions import InvalidHandle
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.inner import Inner
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Rate, Timer
+
+
+class DestroyMethods:
+    """A node's methods that destroy; for `Node` to derive from. Each returns whether the thing was the node's."""
+
+    _graphflow: Inner
+
+    def _look_again(self) -> None:
+        """Have the executor see what there is."""
+        executor = self._graphflow.executor()
+        if executor is not None:
+            executor.wake()
+
+    def add_waitable(self, waitable: Any) -> None:
+        """Have the executor look after it."""
+        self._graphflow.waitables.append(waitable)
+        self._look_again()
+
+    def remove_waitable(self, waitable: Any) -> None:
+        """Have the executor look after it no longer."""
+        self._graphflow.waitables.remove(waitable)
+        self._graphflow.bell.ready.pop(waitable, None)
+        self._look_again()
+
+    def _destroy(self, things: list[Any], thing: Any) -> bool:
+        if thing not in things:
+            return False
+        things.remove(thing)
+        self._graphflow.bell.ready.pop(thing, None)
+        for handler in getattr(thing, "event_handlers", ()):
+            self.remove_waitable(handler)
+        try:
+            thing.destroy()
+        except InvalidHandle:
+            return False
+        self._look_again()
+        return True
+
+    def destroy_publisher(self, publisher: Publisher) -> bool:
+        return self._destroy(self._graphflow.publishers, publisher)
+
+    def destroy_subscription(self, subscription: Subscription) -> bool:
+        return self._destroy(self._graphflow.subscriptions, subscription)
+
+    def destroy_client(self, client: Client) -> bool:
+        return self._destroy(self._graphflow.clients, client)
+
+    def destroy_service(self, service: Service) -> bool:
+        return self._destroy(self._graphflow.services, service)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        return self._destroy(self._graphflow.timers, timer)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        return self._destroy(self._graphflow.guards, guard)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        timer = rate._timer
+        is_known = timer in self._graphflow.timers
+        if is_known:
+            self._graphflow.timers.remove(timer)
+            rate.destroy()
+        return is_known

@@ -1,0 +1,5 @@
+"""Where code finds rclpy's extension module."""
+
+import rclpy._rclpy_pybind11 as rclpy_implementation
+
+__all__ = ["rclpy_implementation"]

@@ -1,0 +1,221 @@
+"""The part of a node that is about its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy import held
+from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.parameter_answers import ParameterAnswers
+from rclpy.impl.inner import Inner
+from rclpy.impl.parameters import RELATIVE_TOLERANCE
+from rclpy.parameter import Parameter
+from rclpy.qos import qos_profile_parameter_events, qos_profile_parameters
+from rclpy.time_source import TimeSource
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
+
+
+class ParameterMethods:
+    """A node's methods for its parameters; for `Node` to derive from."""
+
+    PARAM_REL_TOL = RELATIVE_TOLERANCE
+    _graphflow: Inner
+
+    @property
+    def _as_node(self) -> Any:
+        return self
+
+    def _open_parameters(self, has_services: bool) -> None:
+        from rcl_interfaces.msg import ParameterEvent
+        from rcl_interfaces.srv import SetParameters, SetParametersAtomically
+
+        inner, node = self._graphflow, self._as_node
+        inner.events = node.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+        inner.time_source = TimeSource(node=self)
+        inner.time_source.attach_clock(inner.clock)
+        if not self.has_parameter("start_type_description_service"):
+            self.declare_parameter("start_type_description_service", True)
+        if self.get_parameter("start_type_description_service").value:
+            LOOP.call(held.describe_types, inner.node)
+        if has_services:
+            answers = ParameterAnswers(inner.parameters)
+            LOOP.call(answers.serve, inner.core)
+            options: dict[str, Any] = {"qos_profile": qos_profile_parameters}
+            base = node.get_name()
+            node.create_service(SetParameters, f"{base}/set_parameters", self._asked_to_set, **options)
+            all_name = f"{base}/set_parameters_atomically"
+            node.create_service(SetParametersAtomically, all_name, self._asked_to_set_all, **options)
+
+    def _declare_overrides(self) -> None:
+        from rcl_interfaces.msg import ParameterDescriptor
+
+        parameters = self._graphflow.parameters
+        wanted = [
+            (name, parameter.value, ParameterDescriptor(dynamic_typing=True))
+            for name, parameter in parameters.overrides.items()
+            if name not in parameters.values
+        ]
+        parameters.declare("", wanted)
+
+    def declare_parameter(
+        self, name: str, value: Any = None, descriptor: ParameterDescriptor | None = None, ignore_override: bool = False
+    ) -> Parameter[Any]:
+        """Declare a parameter.
+
+        Args:
+            value: Its default, or its type; a value from outside comes before a default.
+            ignore_override: Whether values from outside do not count.
+
+        Raises:
+            ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
+            InvalidParameterValueException: As they say.
+        """
+        given: tuple[Any, ...] = (name, value) if descriptor is None else (name, value, descriptor)
+        given = (name,) if value is None and descriptor is None else given
+        return self._graphflow.parameters.declare("", [given], ignore_override=ignore_override)[0]
+
+    def declare_parameters(
+        self, namespace: str, parameters: Sequence[Any], ignore_override: bool = False
+    ) -> list[Parameter[Any]]:
+        """Declare several, each given as (name,), (name, value or type) or (name, value or type, descriptor)."""
+        return self._graphflow.parameters.declare(namespace, parameters, ignore_override=ignore_override)
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Remove a parameter. Raises ParameterNotDeclaredException, ParameterImmutableException."""
+        self._graphflow.parameters.undeclare(name)
+
+    def has_parameter(self, name: str) -> bool:
+        return name in self._graphflow.parameters.values
+
+    def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError("All names must be instances of type str")
+        return [self.get_parameter_type(name) for name in names]
+
+    def get_parameter_type(self, name: str) -> Parameter.Type:
+        """The type of a parameter. Raises ParameterNotDeclaredException."""
+        parameters = self._graphflow.parameters
+        if name in parameters.values:
+            return parameters.values[name].type_
+        return parameters.get(name).type_
+
+    def get_parameters(self, names: list[str]) -> list[Parameter[Any]]:
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError("All names must be instances of type str")
+        return [self.get_parameter(name) for name in names]
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """A parameter. Raises ParameterNotDeclaredException, ParameterUninitializedException."""
+        return self._graphflow.parameters.get(name)
+
+    def get_parameter_or(self, name: str, alternative_value: Parameter[Any] | None = None) -> Parameter[Any]:
+        """A parameter, or the alternative if it was not declared or has no value."""
+        if alternative_value is None:
+            alternative_value = Parameter(name, Parameter.Type.NOT_SET)
+        found = self._graphflow.parameters.values.get(name)
+        return alternative_value if found is None or found.type_ is Parameter.Type.NOT_SET else found
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+        """The parameters below a prefix, by the rest of their names."""
+        return self._graphflow.parameters.with_prefix(prefix)
+
+    def set_parameters(self, parameter_list: list[Parameter[Any]]) -> list[SetParametersResult]:
+        """Set parameters one after the other. Raises ParameterNotDeclaredException; nothing was set then."""
+        return self._graphflow.parameters.set_each(parameter_list)
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
+        """Set parameters, all or none. Raises ParameterNotDeclaredException."""
+        return self._graphflow.parameters.set_all(parameter_list)
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
+        """The names below prefixes, at most `depth` levels; 0 for any."""
+        return self._graphflow.parameters.listed(prefixes, depth)
+
+    def add_pre_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], list[Parameter[Any]]]) -> None:
+        """Before parameters are set, let `callback` say which are."""
+        self._graphflow.parameters.before.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], SetParametersResult]) -> None:
+        """Before parameters are set, ask `callback` whether they may be."""
+        self._graphflow.parameters.checks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter[Any]]], None]) -> None:
+        """After parameters were set, tell `callback`."""
+        self._graphflow.parameters.after.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
+        """Raises ValueError if it was not added."""
+        self._graphflow.parameters.before.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
+        """Raises ValueError if it was not added."""
+        self._graphflow.parameters.checks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: Callable[..., Any]) -> None:
+        """Raises ValueError if it was not added."""
+        self._graphflow.parameters.after.remove(callback)
+
+    # The lists of callbacks, under the names that rclpy has for them.
+
+    @property
+    def _pre_set_parameters_callbacks(self) -> list[Any]:
+        return self._graphflow.parameters.before
+
+    @property
+    def _on_set_parameters_callbacks(self) -> list[Any]:
+        return self._graphflow.parameters.checks
+
+    @property
+    def _post_set_parameters_callbacks(self) -> list[Any]:
+        return self._graphflow.parameters.after
+
+    def describe_parameter(self, name: str) -> ParameterDescriptor:
+        """How a parameter was described. Raises ParameterNotDeclaredException."""
+        return self._graphflow.parameters.describe(name)
+
+    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
+        return [self.describe_parameter(name) for name in names]
+
+    def set_descriptor(
+        self, name: str, descriptor: ParameterDescriptor, alternative_value: ParameterValue | None = None
+    ) -> ParameterValue:
+        """Describe a parameter anew; returns its value, which is `alternative_value` then, if that is given."""
+        found: ParameterValue = self._graphflow.parameters.set_descriptor(name, descriptor, alternative_value)
+        return found
+
+    def _parameters_changed(self, parameters: list[Parameter[Any]], former: Any) -> None:
+        from rcl_interfaces.msg import ParameterEvent
+
+        events = self._graphflow.events
+        if events is None:
+            return
+        event = ParameterEvent(stamp=self._graphflow.clock.now().to_msg(), node=self._graphflow.node.full_name)
+        for parameter in parameters:
+            message = parameter.to_parameter_msg()
+            if parameter.type_ is Parameter.Type.NOT_SET:
+                if parameter.name in former:
+                    event.deleted_parameters.append(former[parameter.name].to_parameter_msg())
+            elif parameter.name in former:
+                event.changed_parameters.append(message)
+            else:
+                event.new_parameters.append(message)
+        events.publish(event)
+
+    def _asked_to_set(self, request: Any, response: Any) -> Any:
+        response.results = [self._asked([parameter]) for parameter in request.parameters]
+        return response
+
+    def _asked_to_set_all(self, request: Any, response: Any) -> Any:
+        response.result = self._asked(request.parameters)
+        return response
+
+    def _asked(self, given: Sequence[Any]) -> Any:
+        from rcl_interfaces.msg import SetParametersResult
+
+        try:
+            return self.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in given])
+        except Exception as error:  # whatever a user's check raises is told to who asked
+            return SetParametersResult(successful=False, reason=str(error))

@@ -1,0 +1,197 @@
+"""A node's logger: lines go to the terminal, to the log files and to /rosout, as those of graphflow's own nodes."""
+
+from __future__ import annotations
+
+import logging as python_logging
+import sys
+import time
+from types import CodeType, FrameType, SimpleNamespace
+from typing import Any
+
+from graphflow.runtime.logger import ROOT, node_logger
+from graphflow.runtime.rosout import setup_console
+from rclpy.impl.logging_severity import LoggingSeverity
+
+
+class _WallClock:
+    """The time of day, where a call names no clock."""
+
+    @staticmethod
+    def now() -> SimpleNamespace:
+        return SimpleNamespace(nanoseconds=time.time_ns())
+
+
+_WALL_CLOCK = _WallClock()
+_FILTERS: dict[str, dict[str, Any]] = {
+    "throttle": {"throttle_duration_sec": None, "throttle_time_source_type": _WALL_CLOCK},
+    "skip_first": {"skip_first": None},
+    "once": {"once": None},
+}
+"""What may be said of a call, and what else then: None for what must be. They are asked in this order."""
+
+
+class _Site:
+    """One call in the code."""
+
+    def __init__(self, name: str, severity: int, options: dict[str, Any]) -> None:
+        self.name, self.severity, self.options = name, severity, options
+        self.is_first = True
+        self.was_logged = False
+        self.last_ns: int | None = None
+
+    def compare(self, name: str, severity: int, options: dict[str, Any]) -> None:
+        """Raises ValueError if the call is not what it was."""
+        if name != self.name:
+            raise ValueError("Logger name cannot be changed between calls.")
+        if severity != self.severity:
+            raise ValueError("Logger severity cannot be changed between calls.")
+        if options != self.options:
+            raise ValueError(f"Logging parameters cannot be changed between calls. Was: {self.options}, is: {options}")
+
+    def is_due(self) -> bool:
+        """Whether the line is to be logged this time."""
+        options = self.options
+        if "throttle_duration_sec" in options and not self._has_passed(options["throttle_duration_sec"]):
+            return False
+        if "skip_first" in options and self.is_first:
+            self.is_first = False
+            return False
+        if "once" in options:
+            first, self.was_logged = not self.was_logged, True
+            return first
+        return True
+
+    def _has_passed(self, seconds: float) -> bool:
+        clock = self.options["throttle_time_source_type"]
+        now_ns = clock.now().nanoseconds
+        last_ns = self.last_ns if self.last_ns is not None else 0
+        if now_ns >= last_ns + int(seconds * 1e9):
+            self.last_ns = now_ns
+            return True
+        return False
+
+
+def _options(given: dict[str, Any]) -> dict[str, Any]:
+    """What a call says of itself; without what is false. Raises TypeError for what is no such word."""
+    found: dict[str, Any] = {}
+    for name, words in _FILTERS.items():
+        needed = [word for word, default in words.items() if default is None]
+        is_half = any(given.get(word) is not None for word in words if word not in needed)
+        if is_half and not all(given.get(word) is not None for word in needed):
+            raise TypeError(f'required parameter "{needed[0]}" not specified but is required for the {name} filter')
+        if all(given.get(word) for word in needed):
+            found |= {word: given.get(word, default) for word, default in words.items()}
+    for word in given:
+        if not any(word in words for words in _FILTERS.values()):
+            raise TypeError(f'parameter "{word}" is not one of the recognized logging options')
+    return found
+
+
+class RcutilsLogger:
+    """A logger. Those whose name begins with that of another and a dot are its children, and have its level."""
+
+    _has_root_level = False
+    """Whether the root's was set; before, it is INFO."""
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self._sites: dict[tuple[CodeType, int], _Site] = {}
+
+    @property
+    def _logger(self) -> python_logging.Logger:
+        return node_logger(f"/{self.name.replace('.', '/')}") if self.name else python_logging.getLogger(ROOT)
+
+    def get_child(self, name: str) -> RcutilsLogger:
+        """The logger `name` below this one. Raises ValueError for an empty name."""
+        if not name:
+            raise ValueError("Child logger name must not be empty.")
+        return RcutilsLogger(f"{self.name}.{name}" if self.name else name)
+
+    def set_level(self, level: LoggingSeverity | int) -> None:
+        """Log only what matters this much."""
+        self._logger.setLevel(int(LoggingSeverity(level)))
+        if not self.name:
+            RcutilsLogger._has_root_level = True
+
+    def get_effective_level(self) -> LoggingSeverity:
+        """How much must a line matter: its own level, or that of the nearest above that has one."""
+        logger: python_logging.Logger | None = self._logger
+        if not self.name:
+            return _severity(self._logger.level) if self._has_root_level else LoggingSeverity.INFO
+        while logger is not None and logger.name.startswith(ROOT):
+            if logger.level:
+                return _severity(logger.level)
+            logger = logger.parent
+        return LoggingSeverity.INFO
+
+    def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
+        """Whether a line that matters this much is logged."""
+        return (self.get_effective_level() or LoggingSeverity.INFO) <= LoggingSeverity(severity)
+
+    def log(self, message: object, severity: LoggingSeverity | int, **kwargs: Any) -> bool:
+        """Log a line; whether it was logged.
+
+        Args:
+            kwargs: `throttle_duration_sec=1.0` at most once in that time, with `throttle_time_source_type` by another
+                clock; `once=True`; `skip_first=True`; `name` of another logger.
+
+        Raises:
+            TypeError: A word is unknown.
+            ValueError: What a call in the code says of itself has changed since it was first made.
+        """
+        severity = LoggingSeverity(severity)
+        name = kwargs.pop("name", None) or self.name
+        frame = _caller()
+        site_key = (frame.f_code, frame.f_lasti)
+        site = self._sites.get(site_key)
+        options = _options(kwargs) if kwargs else {}
+        if site is None:
+            site = self._sites[site_key] = _Site(name, severity, options)
+        else:
+            site.compare(name, severity, options)
+        if not self.is_enabled_for(severity) or (options and not site.is_due()):
+            return False
+        if not python_logging.getLogger("graphflow").handlers:
+            setup_console()
+        logger = self._logger if name == self.name else RcutilsLogger(name)._logger
+        code = frame.f_code
+        record = logger.makeRecord(
+            logger.name, int(severity), code.co_filename, frame.f_lineno, str(message), (), None, code.co_qualname
+        )
+        logger.handle(record)
+        return True
+
+    def debug(self, message: object, **kwargs: Any) -> bool:
+        """As `log` with DEBUG."""
+        return self.log(message, LoggingSeverity.DEBUG, **kwargs)
+
+    def info(self, message: object, **kwargs: Any) -> bool:
+        """As `log` with INFO."""
+        return self.log(message, LoggingSeverity.INFO, **kwargs)
+
+    def warning(self, message: object, **kwargs: Any) -> bool:
+        """As `log` with WARN."""
+        return self.log(message, LoggingSeverity.WARN, **kwargs)
+
+    warn = warning
+
+    def error(self, message: object, **kwargs: Any) -> bool:
+        """As `log` with ERROR."""
+        return self.log(message, LoggingSeverity.ERROR, **kwargs)
+
+    def fatal(self, message: object, **kwargs: Any) -> bool:
+        """As `log` with FATAL."""
+        return self.log(message, LoggingSeverity.FATAL, **kwargs)
+
+
+def _severity(level: int) -> LoggingSeverity:
+    return LoggingSeverity(level) if level in LoggingSeverity._value2member_map_ else LoggingSeverity.INFO
+
+
+def _caller() -> FrameType:
+    """The frame of the code that logs: the first that is not rclpy's."""
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None and frame.f_code.co_filename == __file__ and frame.f_back is not None:
+        frame = frame.f_back
+    assert frame is not None
+    return frame

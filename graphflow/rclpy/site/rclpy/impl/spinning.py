@@ -1,0 +1,271 @@
+"""What an executor has to do and what it does: tasks, and the callbacks of its nodes' entities."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from graphflow.rclpy.wake import Wake
+from rclpy.exceptions import InvalidHandle
+from rclpy.task import Task
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.held import NodeBell
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.context import Context
+
+POLL = 0.001
+"""Seconds between two steps of a coroutine that suspends without saying what it waits for."""
+
+
+class TimeoutException(Exception):
+    """Nothing was ready in time."""
+
+
+class ShutdownException(Exception):
+    """The executor was shut down."""
+
+
+class ExternalShutdownException(Exception):
+    """The context was shut down while an executor was spinning."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(args or ("The passed context is invalid",)))
+
+
+class ConditionReachedException(Exception):
+    """What was waited for has come about."""
+
+
+class Entity(Protocol):
+    """What has callbacks: a timer, a subscription, and the like."""
+
+    callback_group: Any
+
+    def has_work(self) -> bool:
+        """Whether there is something to take."""
+
+    def take_work(self) -> Callable[[], Any] | None:
+        """Take one piece: a function or coroutine function that does it."""
+
+
+class SpunNode(Protocol):
+    """A node, as an executor sees it."""
+
+    executor: Any
+
+    @property
+    def bell(self) -> NodeBell: ...
+
+    @property
+    def timers(self) -> Any: ...
+
+    @property
+    def waitables(self) -> Any: ...
+
+
+class Spins(Protocol):
+    """An executor, as its own workings see it."""
+
+    @property
+    def spinning(self) -> Spinning: ...
+
+    def can_execute(self, entity: Any) -> bool: ...
+
+    def create_task(self, callback: Any, *args: Any) -> Any: ...
+
+
+class Run(Task[Any]):
+    """A task of an executor, or one run of a callback, for which a place in its group is held until it has ended.
+
+    Attributes:
+        entity, node: Whose callback it is; None for tasks.
+        thread: The number of the thread that runs it right now; 0 while none does.
+    """
+
+    def __init__(
+        self, executor: Spins, handler: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
+    ) -> None:
+        super().__init__(handler, args, kwargs, executor=executor)
+        self.executor = executor
+        self.entity: Any = None
+        self.node: Any = None
+        self.group: CallbackGroup | None = None
+        self.thread = 0
+        self.began_ns = self.stepped_ns = 0
+
+    def _step(self) -> None:
+        self.thread = threading.get_ident()
+        self.began_ns = self.began_ns or time.monotonic_ns()
+        try:
+            super()._step()
+        finally:
+            self.thread = 0
+
+    def _stepped(self) -> None:
+        self.stepped_ns = time.monotonic_ns()
+        self.executor.spinning.stepped(self)
+
+    def cancel(self) -> None:
+        super().cancel()
+        if not self.executing():
+            self.executor.spinning.stepped(self)
+
+    def ended(self) -> bool:
+        return self.done() or self.cancelled()
+
+    def release(self) -> None:
+        """Give back the place in the group. Twice is harmless."""
+        group, self.group = self.group, None
+        if group is not None:
+            group.ending_execution(self.entity)
+
+
+class Spinning:
+    """What an executor has to do, and what it does: the part of it that no subclass sees."""
+
+    def __init__(self, executor: Spins, context: Context) -> None:
+        self.executor, self.context = executor, context
+        self.wake = Wake()
+        self.nodes: dict[Any, None] = {}
+        self.is_shutdown = False
+        self.running: dict[Run, None] = {}
+        """Runs of callbacks that have begun and not ended, suspended ones too."""
+        self._runnable: deque[Run] = deque()
+        self._polled: deque[Run] = deque()
+        self._round: deque[tuple[Any, Any]] = deque()
+        """What was found to have something to do, with its node; tasks have none."""
+        self._tasks_were_last = False
+        self._looking = threading.Lock()
+        self.has_room: Callable[[], bool] = lambda: True
+
+    # tasks
+
+    def start(self, run: Run) -> None:
+        """Have a task begun in the next turn."""
+        self._runnable.append(run)
+        self.wake.set()
+
+    def stepped(self, run: Run) -> None:
+        """A run has made a step: it has ended, or waits for something."""
+        if run.ended():
+            self.running.pop(run, None)
+            run.release()
+            self.wake.set()
+        elif run._awaits is None:
+            self._polled.append(run)
+            self.wake.set()
+        else:
+            run._awaits._when_done(lambda: self.start(run))
+
+    # what is next
+
+    def next(self, timeout: float | None, nodes: Any, condition: Callable[[], bool]) -> tuple[Run, Any, Any]:
+        """The next thing to do, with whose it is; waits for one if there is none.
+
+        Raises:
+            ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: As they say.
+        """
+        until = None if timeout is None or timeout < 0 else time.monotonic() + timeout
+        life = self.context.life
+        if life is not None:
+            life.on_end(self.wake)
+        if not self._looking.acquire(blocking=False):
+            raise ValueError("generator already executing")
+        try:
+            while True:
+                if self.is_shutdown:
+                    raise ShutdownException
+                if not self.context.ok():
+                    raise ExternalShutdownException
+                if condition():
+                    raise ConditionReachedException
+                found = self._find(nodes, is_hurried=timeout == 0) if self.has_room() else None
+                if found is not None:
+                    return found
+                left = None if until is None else until - time.monotonic()
+                if left is not None and left <= 0:
+                    raise TimeoutException
+                self.wake.wait(_shorter(left, self._next_timer(nodes) if self.has_room() else None))
+        finally:
+            self._looking.release()
+
+    def _find(self, nodes: Any, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
+        for _ in range(3):  # what the last look has found, then new ones, for tasks and for the rest
+            while self._round:
+                what, node = self._round.popleft()
+                found = what if isinstance(what, Run) else self._begin(what, node)
+                if found is not None and not found.ended():
+                    return found, found.entity, found.node
+            self._look(nodes, is_hurried=is_hurried)
+        return None
+
+    def _look(self, nodes: Any, *, is_hurried: bool) -> None:
+        """Fill the round: tasks, the newest first, then timers, and what has arrived by kind."""
+        now_ns = time.monotonic_ns()
+        for _ in range(len(self._polled)):
+            run = self._polled.popleft()
+            is_due = is_hurried or now_ns - run.stepped_ns >= POLL * 1e9
+            (self._runnable if is_due else self._polled).append(run)
+        if self._runnable and not self._tasks_were_last:  # what they bring about comes before what came before
+            self._tasks_were_last = True
+            while self._runnable:
+                self._round.append((self._runnable.pop(), None))
+            return
+        self._tasks_were_last = False
+        chosen = list(self.nodes) if nodes is None else list(nodes)
+        for node in chosen:
+            self._round.extend((timer, node) for timer in list(node.timers) if timer.has_work())
+        for node in chosen:
+            bell = node.bell
+            bell.attend()
+            ready = bell.ready
+            for waitable in list(node.waitables):
+                if waitable not in ready and waitable.has_work():
+                    ready[waitable] = None
+            for entity in sorted(ready, key=_order):
+                if entity.has_work():
+                    self._round.append((entity, node))
+                else:
+                    del ready[entity]
+
+    def _begin(self, entity: Any, node: Any) -> Run | None:
+        """Take a piece of work, and a place in the group for it; None if there is none."""
+        if node not in self.nodes and self.nodes:
+            return None
+        group = entity.callback_group
+        try:
+            if not self.executor.can_execute(entity) or not group.beginning_execution(entity):
+                return None
+            work = entity.take_work()
+        except InvalidHandle:
+            work = None
+        if work is None:
+            group.ending_execution(entity)
+            return None
+        run = Run(self.executor, work)
+        run.entity, run.node, run.group = entity, node, group
+        self.running[run] = None
+        return run
+
+    def _next_timer(self, nodes: Any) -> float | None:
+        """Seconds until something is due by the clock of this machine."""
+        soonest: float | None = POLL if self._polled else None
+        for node in list(self.nodes) if nodes is None else list(nodes):
+            for timer in list(node.timers):
+                left = timer.seconds_left()
+                if left is not None and (soonest is None or left < soonest) and self.executor.can_execute(timer):
+                    soonest = max(0.0, left)
+        return soonest
+
+
+def _shorter(a: float | None, b: float | None) -> float | None:
+    return b if a is None else a if b is None else min(a, b)
+
+
+def _order(entity: Any) -> int:
+    """Where an entity comes in a round: subscriptions, guard conditions, clients, services, and the rest."""
+    return getattr(type(entity), "turn", 9)

@@ -1,0 +1,67 @@
+"""What follows the life cycle of a node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
+
+
+class ManagedEntity:
+    """Something that is told of its node's transitions. Derive from it."""
+
+    def on_configure(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_error(self, state: Any) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.SUCCESS
+
+
+class SimpleManagedEntity(ManagedEntity):
+    """Something that works only while its node is active."""
+
+    def __init__(self) -> None:
+        self._enabled = False
+
+    def on_activate(self, state: Any) -> TransitionCallbackReturn:
+        self._enabled = True
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
+        self._enabled = False
+        return TransitionCallbackReturn.SUCCESS
+
+    @property
+    def is_activated(self) -> bool:
+        return self._enabled
+
+    @staticmethod
+    def when_enabled(
+        wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
+    ) -> Callable[..., Any]:
+        """Have a method do nothing, or call `when_not_enabled`, while the node is not active."""
+
+        def decorated(method: Callable[..., Any]) -> Callable[..., Any]:
+            @wraps(method)
+            def guarded(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> Any:
+                if self._enabled:
+                    return method(self, *args, **kwargs)
+                return None if when_not_enabled is None else when_not_enabled(self, *args, **kwargs)
+
+            return guarded
+
+        return decorated if wrapped is None else decorated(wrapped)

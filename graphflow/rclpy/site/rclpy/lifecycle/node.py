@@ -1,0 +1,272 @@
+"""Nodes that have a life cycle."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graphflow.machines.lifecycle import (
+    TRANSITIONS,
+    Outcome,
+    Transition,
+    after,
+    asked,
+    available,
+)
+from graphflow.machines.lifecycle import LifecycleState as State
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
+from rclpy.lifecycle.managed_entity import ManagedEntity
+from rclpy.lifecycle.publisher import LifecyclePublisher
+from rclpy.node import Node
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+
+__all__ = ["LifecycleNode", "LifecycleNodeMixin", "LifecycleState", "TransitionCallbackReturn"]
+
+
+class LifecycleState(NamedTuple):
+    """A state, as the callbacks get it."""
+
+    label: str
+    state_id: int
+
+
+class _StateMachine:
+    """Where a node is, and whether others can ask."""
+
+    def __init__(self, *, has_services: bool) -> None:
+        self.state = State.UNCONFIGURED
+        self.service_change_state = self.service_get_state = has_services
+        self.service_get_available_states = self.service_get_available_transitions = has_services
+        self.service_get_transition_graph = has_services
+
+    @property
+    def current_state(self) -> tuple[int, str]:
+        return int(self.state), self.state.label
+
+    @property
+    def initialized(self) -> bool:
+        return True
+
+    @property
+    def available_states(self) -> list[tuple[int, str]]:
+        return [(int(state), state.label) for state in State]
+
+    @property
+    def available_transitions(self) -> list[tuple[int, str, int, str, int, str]]:
+        return [_row(transition) for transition in available(self.state)]
+
+    @property
+    def transition_graph(self) -> list[tuple[int, str, int, str, int, str]]:
+        return [_row(transition) for transition in TRANSITIONS]
+
+
+def _row(t: Transition) -> tuple[int, str, int, str, int, str]:
+    return t.id, t.label, int(t.start), t.start.label, int(t.goal), t.goal.label
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """The life cycle, for classes that derive from `Node` too, which must be made first.
+
+    Args:
+        enable_communication_interface: Whether others can ask for the state, and change it.
+        callback_group: That of the services.
+    """
+
+    def __init__(
+        self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
+    ) -> None:
+        if not isinstance(enable_communication_interface, bool):
+            raise TypeError("enable_communication_interface must be a bool")
+        self._managed_entities: dict[ManagedEntity, None] = {self: None}
+        self._state_machine = _StateMachine(has_services=enable_communication_interface)
+        self._transition_event: Any = None
+        if enable_communication_interface:
+            self._open_services(callback_group)
+
+    def _open_services(self, group: CallbackGroup | None) -> None:
+        from lifecycle_msgs import msg, srv
+
+        node: Any = self
+        group = group or node.default_callback_group
+        self._transition_event = node.create_publisher(msg.TransitionEvent, "~/transition_event", 10)
+
+        def service(type_: Any, name: str, callback: Callable[[Any, Any], Any]) -> Any:
+            return node.create_service(type_, f"~/{name}", callback, callback_group=group)
+
+        self._service_change_state = service(srv.ChangeState, "change_state", self._asked_to_change)
+        self._service_get_state = service(srv.GetState, "get_state", self._asked_for_state)
+        self._service_get_available_states = service(
+            srv.GetAvailableStates, "get_available_states", self._asked_for_states
+        )
+        self._service_get_available_transitions = service(
+            srv.GetAvailableTransitions, "get_available_transitions", self._asked_for_transitions
+        )
+        self._service_get_transition_graph = service(
+            srv.GetAvailableTransitions, "get_transition_graph", self._asked_for_graph
+        )
+
+    # transitions
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        """Configure. Raises RCLError if that cannot be done from here."""
+        return self._trigger("configure")
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        """Clean up. Raises RCLError if that cannot be done from here."""
+        return self._trigger("cleanup")
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut down. Raises RCLError if that cannot be done from here."""
+        return self._trigger("shutdown")
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        """Activate. Raises RCLError if that cannot be done from here."""
+        return self._trigger("activate")
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        """Deactivate. Raises RCLError if that cannot be done from here."""
+        return self._trigger("deactivate")
+
+    def _trigger(self, wanted: int | str) -> TransitionCallbackReturn:
+        machine = self._state_machine
+        transition = asked(machine.state, wanted)
+        if transition is None:
+            raise RCLError(f"Transition is not registered: {wanted!r} from state {machine.state.label}")
+        former = machine.state
+        self._go(transition)
+        outcome = self._run_hook(former)
+        self._go(after(machine.state, outcome))
+        if machine.state is State.ERRORPROCESSING:
+            self._go(after(machine.state, self._run_hook(former)))
+        return TransitionCallbackReturn(int(outcome))
+
+    def _run_hook(self, former: State) -> Outcome:
+        hook, state = self._state_machine.state.hook, LifecycleState(former.label, int(former))
+        for entity in list(self._managed_entities):
+            try:
+                answer = getattr(entity, hook)(state)
+            except Exception as error:  # it counts as an error of the node's, as in ROS 2, and is told
+                node: Any = self
+                node.get_logger().error(f"{hook} raised {type(error).__name__}: {error}")
+                traceback.print_exc()
+                return Outcome.ERROR
+            if not isinstance(answer, TransitionCallbackReturn):
+                raise TypeError(f"{hook}() return value must be of type TransitionCallbackReturn, got {answer!r}")
+            if answer is not TransitionCallbackReturn.SUCCESS:
+                return Outcome(answer.value)
+        return Outcome.SUCCESS
+
+    def _go(self, transition: Transition) -> None:
+        self._state_machine.state = transition.goal
+        if self._transition_event is None:
+            return
+        from lifecycle_msgs.msg import State as StateMessage
+        from lifecycle_msgs.msg import Transition as TransitionMessage
+        from lifecycle_msgs.msg import TransitionEvent
+
+        event = TransitionEvent()
+        event.transition = TransitionMessage(id=transition.id, label=transition.label)
+        event.start_state = StateMessage(id=int(transition.start), label=transition.start.label)
+        event.goal_state = StateMessage(id=int(transition.goal), label=transition.goal.label)
+        node: Any = self
+        if hasattr(event, "timestamp"):
+            event.timestamp = node.get_clock().now().nanoseconds
+        self._transition_event.publish(event)
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Tell an entity of transitions too, after the node's own callbacks."""
+        self._managed_entities[entity] = None
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: from unconfigured to inactive."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: from inactive to unconfigured."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: to finalized."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: from inactive to active."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: from active to inactive."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """For subclasses: after an error; a success leads to unconfigured, anything else to finalized."""
+        return TransitionCallbackReturn.SUCCESS
+
+    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
+        """A publisher that sends only while the node is active. Arguments as for `create_publisher`."""
+        if "publisher_class" in kwargs:
+            raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+        node: Any = self
+        made: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
+        self._managed_entities[made] = None
+        return made
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
+        """Withdraw such a publisher."""
+        node: Any = self
+        self._managed_entities.pop(publisher, None)
+        return bool(node.destroy_publisher(publisher))
+
+    # what others ask
+
+    def _asked_to_change(self, request: Any, response: Any) -> Any:
+        wanted = request.transition
+        state = self._state_machine.state
+        known = asked(state, wanted.label) if wanted.label else asked(state, wanted.id)
+        response.success = False
+        if known is not None:
+            response.success = self._trigger(known.id) is TransitionCallbackReturn.SUCCESS
+        return response
+
+    def _asked_for_state(self, request: Any, response: Any) -> Any:
+        response.current_state.id, response.current_state.label = self._state_machine.current_state
+        return response
+
+    def _asked_for_states(self, request: Any, response: Any) -> Any:
+        from lifecycle_msgs.msg import State as StateMessage
+
+        rows = self._state_machine.available_states
+        response.available_states = [StateMessage(id=number, label=label) for number, label in rows]
+        return response
+
+    def _asked_for_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _described(available(self._state_machine.state))
+        return response
+
+    def _asked_for_graph(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _described(TRANSITIONS)
+        return response
+
+
+def _described(transitions: Any) -> list[Any]:
+    from lifecycle_msgs.msg import TransitionDescription
+
+    found = []
+    for transition in transitions:
+        row = TransitionDescription()
+        row.transition.id, row.transition.label = transition.id, transition.label
+        row.start_state.id, row.start_state.label = int(transition.start), transition.start.label
+        row.goal_state.id, row.goal_state.label = int(transition.goal), transition.goal.label
+        found.append(row)
+    return found
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A node that has a life cycle. Arguments as for `Node`."""
+
+    def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
+        Node.__init__(self, node_name, **kwargs)
+        LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)

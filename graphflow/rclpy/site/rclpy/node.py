@@ -1,0 +1,486 @@
+"""Nodes."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from functools import partial
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from graphflow.errors import GraphflowError
+from graphflow.msgs import registry
+from graphflow.names import Resolver
+from graphflow.rclpy import held, messages
+from graphflow.rclpy.held import HeldNode, NodeBell
+from graphflow.rclpy.life import Life, parse_only_ros
+from graphflow.runtime.threaded import ThreadedClient, ThreadedPublisher, ThreadedService, ThreadedSubscription
+from rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLInvalidROSArgsError, UnknownROSArgsError
+from rclpy.callback_groups import CallbackGroup
+from rclpy.client import Client
+from rclpy.clock import Clock
+from rclpy.constants import S_TO_NS
+from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks, dispatcher
+from rclpy.exceptions import NotInitializedException
+from rclpy.executors import Executor
+from rclpy.expand_topic_name import expand_topic_name
+from rclpy.guard_condition import GuardCondition
+from rclpy.handle import Handle
+from rclpy.impl.destroy_methods import DestroyMethods
+from rclpy.impl.graph_methods import GraphMethods
+from rclpy.impl.inner import Holdings, Inner, none
+from rclpy.impl.parameter_methods import ParameterMethods
+from rclpy.impl.parameters import NodeParameters
+from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.logging_service import LoggingService
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import (
+    QoSProfile,
+    qos_profile_services_default,
+    to_graphflow,
+    validated,
+)
+from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Rate, Timer
+from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.utilities import get_default_context
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from rclpy.validate_namespace import validate_namespace
+from rclpy.validate_node_name import validate_node_name
+from rclpy.validate_topic_name import validate_topic_name
+
+if TYPE_CHECKING:
+    pass
+
+__all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]
+
+HIDDEN_NODE_PREFIX = "_"
+
+
+class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
+    """A node. Its arguments, like those of its methods, are rclpy's; what it does, graphflow does.
+
+    Raises:
+        NotInitializedException: The context has not begun, or has ended.
+        InvalidNodeNameException, InvalidNamespaceException: A name is not legal.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        context: Context | None = None,
+        cli_args: list[str] | None = None,
+        namespace: str | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: list[Parameter[Any]] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+    ) -> None:
+        context = get_default_context() if context is None else context
+        life = context.life
+        if life is None or not context.ok():
+            raise NotInitializedException("cannot create node")
+        try:
+            own = parse_only_ros(cli_args or ())
+        except GraphflowError as error:
+            raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
+        if own.unknown:
+            raise UnknownROSArgsError(f"Found unknown ROS arguments: {own.unknown}")
+        remaps = [*own.remaps, *(life.args.remaps if use_global_arguments else ())]
+        space = namespace or "/"
+        space = space if space.startswith("/") else f"/{space}"
+        validate_node_name(node_name)
+        validate_namespace(space)
+        names = Resolver(node_name, space, remaps)
+        try:
+            values = held.overrides_for(life.args, names) if use_global_arguments else {}
+            values |= held.overrides_for(own, names)
+        except GraphflowError as error:
+            raise RCLInvalidROSArgsError(str(error)) from None
+        bell = NodeBell()
+        has_rosout = enable_rosout and own.has_rosout and life.args.has_rosout
+        node = held.open_node(life, node_name, space, remaps, rosout=has_rosout)
+        inner = self._graphflow = Inner(context, life, node, bell)
+        life.nodes[self] = partial(_destroy, weakref.ref(self))
+        self._handle_of_node = Handle(partial(_close, life, node))
+        overrides: dict[str, Parameter[Any]] = {
+            name: Parameter(name, value=value) for name, (value, _) in values.items()
+        }
+        overrides |= {p.name: p for p in parameter_overrides or ()}
+        inner.parameters = NodeParameters(
+            overrides, self._parameters_changed, allows_undeclared=allow_undeclared_parameters
+        )
+        self._open_parameters(start_parameter_services)
+        if enable_logger_service:
+            LoggingService(self)
+        if automatically_declare_parameters_from_overrides:
+            self._declare_overrides()
+
+    # what it has
+
+    @property
+    def bell(self) -> NodeBell:
+        """graphflow's: what its arrivals ring."""
+        return self._graphflow.bell
+
+    @property
+    def held(self) -> HeldNode:
+        """graphflow's node behind this one."""
+        return self._graphflow.node
+
+    @property
+    def executor(self) -> Executor | None:
+        """What runs its callbacks."""
+        found: Executor | None = self._graphflow.executor()
+        return found
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.executor
+        if current is new_executor:
+            return
+        if current is not None:
+            current.remove_node(self)
+        inner = self._graphflow
+        if new_executor is None:
+            inner.executor = inner.bell.executor = none
+        else:
+            new_executor.add_node(self)
+            inner.executor = inner.bell.executor = weakref.ref(new_executor)
+
+    @property
+    def context(self) -> Context:
+        return self._graphflow.context
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The group of whatever names none: its callbacks exclude each other."""
+        return self._graphflow.group
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle_of_node
+
+    @handle.setter
+    def handle(self, value: object) -> None:
+        raise AttributeError("handle cannot be modified after node creation")
+
+    def get_name(self) -> str:
+        with self.handle:
+            return self._graphflow.node.name
+
+    def get_namespace(self) -> str:
+        with self.handle:
+            return self._graphflow.node.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        with self.handle:
+            return self._graphflow.node.full_name
+
+    def get_clock(self) -> Clock:
+        """The node's clock: the time of day, or simulated time where `use_sim_time` is true."""
+        return self._graphflow.clock
+
+    def get_logger(self) -> RcutilsLogger:
+        return self._graphflow.logger
+
+    # names
+
+    def _resolved(self, name: str, kind: Any = "topic", *, only_expand: bool = False) -> str:
+        inner = self._graphflow
+        full = expand_topic_name(name, inner.node.name, inner.node.namespace)
+        validate_full_topic_name(full, is_service=kind == "service")
+        return full if only_expand else inner.core.names.resolve(full, kind)
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The full name of a topic; remapped, unless it is only to be expanded."""
+        with self.handle:
+            return self._resolved(topic, only_expand=only_expand)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """The full name of a service; remapped, unless it is only to be expanded."""
+        with self.handle:
+            return self._resolved(service, "service", only_expand=only_expand)
+
+    # making and destroying
+
+    def create_publisher(
+        self,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: Any = Publisher,
+    ) -> Any:
+        """A publisher of messages of a class. `callback_group` is that of its events."""
+        qos = validated(qos_profile)
+        group = callback_group or self.default_callback_group
+        name = self._topic(msg_type, topic)
+        if qos_overriding_options is not None:
+            _declare_qos_parameters(Publisher, self, name, qos, qos_overriding_options)
+        inner = self._graphflow
+        callbacks = event_callbacks or PublisherEventCallbacks()
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
+        told = dispatcher(handlers)
+        with self.handle:
+            endpoint = held.add(
+                inner.node, lambda core: ThreadedPublisher(core, msg_type, name, to_graphflow(qos), told)
+            )
+        made: Publisher = publisher_class(
+            endpoint,
+            msg_type,
+            topic,
+            qos,
+            callbacks,
+            group,
+            life=inner.life,
+            handle=self._withdraws(endpoint),
+            event_handlers=handlers,
+        )
+        inner.publishers.append(made)
+        for handler in handlers:
+            self.add_waitable(handler)
+        return made
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+    ) -> Subscription:
+        """Have `callback` called with each message of a topic.
+
+        Args:
+            callback: Takes the message, and perhaps a `MessageInfo`.
+            raw: Whether it takes CDR in place of the message.
+        """
+        qos = validated(qos_profile)
+        group = callback_group or self.default_callback_group
+        name = self._topic(msg_type, topic)
+        if qos_overriding_options is not None:
+            _declare_qos_parameters(Subscription, self, name, qos, qos_overriding_options)
+        inner = self._graphflow
+        callbacks = event_callbacks or SubscriptionEventCallbacks()
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell)
+        told, mark = dispatcher(handlers), _Mark(inner.bell)
+        with self.handle:
+            endpoint = held.add(
+                inner.node,
+                lambda core: ThreadedSubscription(core, msg_type, name, to_graphflow(qos), inner.bell, mark, told),
+            )
+        handle = self._withdraws(endpoint)
+        made = Subscription(
+            endpoint, msg_type, topic, callback, group, qos, raw, callbacks, handle=handle, event_handlers=handlers
+        )
+        mark.entity = made
+        group.add_entity(made)
+        inner.subscriptions.append(made)
+        for handler in handlers:
+            self.add_waitable(handler)
+        mark()
+        self._look_again()
+        return made
+
+    def _topic(self, msg_type: Any, topic: str) -> str:
+        check_is_valid_msg_type(msg_type)
+        validate_topic_name(topic)
+        return self._resolved(topic)
+
+    def _service(self, srv_type: Any, srv_name: str) -> str:
+        check_is_valid_srv_type(srv_type)
+        validate_topic_name(srv_name, is_service=True)
+        return self._resolved(srv_name, "service")
+
+    def _withdraws(self, endpoint: Any) -> Handle:
+        life = self._graphflow.life
+        return Handle(partial(_remove, life, endpoint))
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """A client of a service. Its answers need a place in its group."""
+        group = callback_group or self.default_callback_group
+        name, inner = self._service(srv_type, srv_name), self._graphflow
+        type_ = registry.interface_class(messages.type_name(srv_type))
+        mark, changed = _Mark(inner.bell), dict[Any, None]()
+
+        def servers_changed() -> None:
+            for wake in list(changed):
+                wake.set()
+
+        def make(core: Any) -> ThreadedClient:
+            return ThreadedClient(core, type_, name, to_graphflow(qos_profile), inner.bell, mark, servers_changed)
+
+        with self.handle:
+            endpoint = held.add(inner.node, make)
+        handle = self._withdraws(endpoint)
+        made = Client(
+            self.context,
+            endpoint,
+            srv_type,
+            srv_name,
+            qos_profile,
+            group,
+            life=inner.life,
+            handle=handle,
+            changed=changed,
+        )
+        mark.entity = made
+        group.add_entity(made)
+        inner.clients.append(made)
+        return made
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Have `callback(request, response)` answer the requests of a service; it returns the response."""
+        group = callback_group or self.default_callback_group
+        name, inner = self._service(srv_type, srv_name), self._graphflow
+        type_ = registry.interface_class(messages.type_name(srv_type))
+        mark = _Mark(inner.bell)
+        with self.handle:
+            endpoint = held.add(
+                inner.node,
+                lambda core: ThreadedService(core, type_, name, to_graphflow(qos_profile), inner.bell, mark),
+            )
+        handle = self._withdraws(endpoint)
+        made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, life=inner.life, handle=handle)
+        mark.entity = made
+        group.add_entity(made)
+        inner.services.append(made)
+        mark()
+        return made
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Have `callback` called once in `timer_period_sec` seconds of the node's clock, or of another."""
+        group = callback_group or self.default_callback_group
+        inner = self._graphflow
+        period_ns = int(float(timer_period_sec) * S_TO_NS)
+        made = Timer(
+            callback,
+            group,
+            period_ns,
+            clock or inner.clock,
+            context=self.context,
+            autostart=autostart,
+            bell=inner.bell,
+        )
+        group.add_entity(made)
+        inner.timers.append(made)
+        self._look_again()
+        return made
+
+    def create_guard_condition(
+        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """Have `callback` called when somebody triggers it."""
+        group = callback_group or self.default_callback_group
+        made = GuardCondition(callback, group, context=self.context, bell=self._graphflow.bell)
+        group.add_entity(made)
+        self._graphflow.guards.append(made)
+        return made
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """A rhythm for threads. Raises ValueError for a frequency that is not positive."""
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        from rclpy.callback_groups import ReentrantCallbackGroup
+
+        inner = self._graphflow
+        inner.rate_group = inner.rate_group or ReentrantCallbackGroup()
+        timer = self.create_timer(1.0 / frequency, None, inner.rate_group, clock or inner.clock)
+        return Rate(timer, context=self.context)
+
+    def destroy_node(self) -> None:
+        """Take the node off the network, with all it has. Twice is harmless."""
+        inner = self._graphflow
+        if self.handle.is_destroyed:
+            return
+        if self.executor is not None:
+            self.executor.remove_node(self)
+        inner.life.nodes.pop(self, None)
+        if inner.time_source is not None:
+            inner.time_source.detach_node()
+        inner.events = None
+        for timer in list(inner.timers):
+            self.destroy_timer(timer)
+        for guard in list(inner.guards):
+            self.destroy_guard_condition(guard)
+        # What is on the network goes with the node, all at once.
+        self.handle.destroy_when_not_in_use()
+        kinds: tuple[list[Any], ...] = (inner.publishers, inner.subscriptions, inner.clients, inner.services)
+        for things in kinds:
+            for thing in things:
+                thing.handle.destroy_when_not_in_use()
+            things.clear()
+        inner.bell.ready.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy_node()
+
+
+class _Mark:
+    """Says that an entity has something to do, once there is the entity; called by whom the node's bell wakes."""
+
+    def __init__(self, bell: NodeBell) -> None:
+        self._bell, self.entity = bell, None  # type: Any, Any
+
+    def __call__(self) -> None:
+        if self.entity is not None:
+            self._bell.ready[self.entity] = None
+
+
+def _destroy(reference: Callable[[], Node | None]) -> None:
+    node = reference()
+    if node is not None:
+        node.destroy_node()
+
+
+def _close(life: Life, node: HeldNode) -> None:
+    if life.is_ok:
+        held.close_node(node)
+
+
+def _remove(life: Life, endpoint: Any) -> None:
+    if life.is_ok and endpoint.is_open:
+        held.remove(endpoint)

@@ -1,0 +1,152 @@
+"""The parameters of other nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy.wake import Wake
+from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
+from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+from rclpy.task import Future
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.event_handler import SubscriptionEventCallbacks
+    from rclpy.qos_overriding_options import QoSOverridingOptions
+    from rclpy.subscription import Subscription
+
+Callback = Callable[[Any], Any] | None
+
+
+class AsyncParameterClient:
+    """A client of the parameter services of a node; each call returns a future of the service's response.
+
+    Args:
+        remote_node_name: The node's full name, or one relative to this node's namespace.
+    """
+
+    def __init__(
+        self,
+        node: Any,
+        remote_node_name: str,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        from rcl_interfaces import srv
+
+        self.remote_node_name, self.node = remote_node_name, node
+
+        def client(type_: Any, name: str) -> Any:
+            options: dict[str, Any] = {"qos_profile": qos_profile, "callback_group": callback_group}
+            return node.create_client(type_, f"{remote_node_name}/{name}", **options)
+
+        self._get = client(srv.GetParameters, "get_parameters")
+        self._list = client(srv.ListParameters, "list_parameters")
+        self._set = client(srv.SetParameters, "set_parameters")
+        self._types = client(srv.GetParameterTypes, "get_parameter_types")
+        self._describe = client(srv.DescribeParameters, "describe_parameters")
+        self._set_all = client(srv.SetParametersAtomically, "set_parameters_atomically")
+        self._clients = (self._get, self._list, self._set, self._types, self._describe, self._set_all)
+
+    def services_are_ready(self) -> bool:
+        """Whether the node is there, with all its services."""
+        return all(client.service_is_ready() for client in self._clients)
+
+    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
+        """Block until it is, at most `timeout_sec` seconds; whether it is."""
+        life, wake = self.node.context.life, Wake()
+        life.on_end(wake)
+        for client in self._clients:
+            client._changed[wake] = None
+        try:
+            limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+            wake.wait_until(lambda: not life.is_ok or self.services_are_ready(), limit)
+        finally:
+            life.forget(wake)
+            for client in self._clients:
+                client._changed.pop(wake, None)
+        return self.services_are_ready()
+
+    @staticmethod
+    def _call(client: Any, request: Any, callback: Callback) -> Future[Any]:
+        future: Future[Any] = client.call_async(request)
+        if callback is not None:
+            future.add_done_callback(callback)
+        return future
+
+    def list_parameters(
+        self, prefixes: list[str] | None = None, depth: int | None = None, callback: Callback = None
+    ) -> Future[Any]:
+        """The names below prefixes, at most `depth` levels."""
+        request = self._list.srv_type.Request(prefixes=prefixes or [], depth=depth or 0)
+        return self._call(self._list, request, callback)
+
+    def get_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+        return self._call(self._get, self._get.srv_type.Request(names=names), callback)
+
+    def set_parameters(self, parameters: Sequence[Any], callback: Callback = None) -> Future[Any]:
+        """Set parameters, given as `Parameter`s or as messages, one after the other."""
+        return self._call(self._set, self._set.srv_type.Request(parameters=_messages(parameters)), callback)
+
+    def describe_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+        return self._call(self._describe, self._describe.srv_type.Request(names=names), callback)
+
+    def get_parameter_types(self, names: list[str], callback: Callback = None) -> Future[Any]:
+        return self._call(self._types, self._types.srv_type.Request(names=names), callback)
+
+    def set_parameters_atomically(self, parameters: Sequence[Any], callback: Callback = None) -> Future[Any]:
+        """Set parameters, all or none."""
+        return self._call(self._set_all, self._set_all.srv_type.Request(parameters=_messages(parameters)), callback)
+
+    def delete_parameters(self, names: list[str], callback: Callback = None) -> Future[Any]:
+        """Delete parameters; only those with dynamic typing can be."""
+        return self.set_parameters([Parameter(name) for name in names], callback)
+
+    def load_parameter_file(
+        self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
+    ) -> Future[Any]:
+        """Set what a file has for the node. Errors as for `parameter_dict_from_yaml_file`."""
+        return self.set_parameters(self._of_file(parameter_file, use_wildcard), callback)
+
+    def load_parameter_file_atomically(
+        self, parameter_file: str, use_wildcard: bool = False, callback: Callback = None
+    ) -> Future[Any]:
+        """Set what a file has for the node, all or none."""
+        return self.set_parameters_atomically(self._of_file(parameter_file, use_wildcard), callback)
+
+    def _of_file(self, file: str, use_wildcard: bool) -> list[Any]:
+        return list(parameter_dict_from_yaml_file(file, use_wildcard).values())
+
+    def on_parameter_event(
+        self,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile = qos_profile_parameter_events,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+    ) -> Subscription:
+        """Have `callback` called with each change of parameters in the graph."""
+        made: Subscription = on_parameter_event(
+            self.node,
+            callback,
+            qos_profile,
+            callback_group=callback_group,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            raw=raw,
+        )
+        return made
+
+
+def on_parameter_event(node: Any, callback: Callable[..., Any], qos_profile: QoSProfile, **options: Any) -> Any:
+    """A subscription of /parameter_events."""
+    from rcl_interfaces.msg import ParameterEvent
+
+    return node.create_subscription(ParameterEvent, "/parameter_events", callback, qos_profile, **options)
+
+
+def _messages(parameters: Sequence[Any]) -> list[Any]:
+    return [p.to_parameter_msg() if isinstance(p, Parameter) else p for p in parameters]

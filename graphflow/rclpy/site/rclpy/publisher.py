@@ -1,0 +1,96 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy import messages
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.duration import Duration
+from rclpy.handle import Handle
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+    from graphflow.runtime.threaded import ThreadedPublisher
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.event_handler import EventHandler, PublisherEventCallbacks
+    from rclpy.qos import QoSProfile
+
+_FOREVER = Duration(seconds=-1)
+
+
+class Publisher:
+    """A publisher. Make it by `Node.create_publisher`."""
+
+    def __init__(
+        self,
+        publisher_impl: ThreadedPublisher,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: PublisherEventCallbacks,
+        callback_group: CallbackGroup,
+        *,
+        life: Life,
+        handle: Handle,
+        event_handlers: list[EventHandler],
+    ) -> None:
+        self._endpoint, self._life, self._handle = publisher_impl, life, handle
+        self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
+        self.event_handlers = event_handlers
+
+    def publish(self, msg: Any) -> None:
+        """Send a message, or the CDR of one as bytes. Never waits.
+
+        Raises:
+            TypeError: It is no message of the publisher's type.
+            RCLError: The context was shut down.
+            InvalidHandle: The publisher was destroyed.
+        """
+        with self._handle:
+            if isinstance(msg, self.msg_type):
+                payload = messages.encode(msg)
+            elif isinstance(msg, bytes):
+                payload = msg
+            else:
+                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+            if not self._life.is_ok:
+                raise RCLError("Failed to publish: publisher's context is invalid")
+            self._endpoint.put(payload)
+
+    def get_subscription_count(self) -> int:
+        """The number of subscriptions that get its messages."""
+        with self._handle:
+            return len(self._endpoint.matched)
+
+    @property
+    def topic_name(self) -> str:
+        """The full name of the topic."""
+        with self._handle:
+            return self._endpoint.name
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle
+
+    def destroy(self) -> None:
+        """Withdraw it. `Node.destroy_publisher` is what to call."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        self._handle.destroy_when_not_in_use()
+
+    def assert_liveliness(self) -> None:
+        """Show that it is alive, for MANUAL_BY_TOPIC."""
+        with self._handle:
+            self._life.on_loop(self._endpoint.assert_liveliness)
+
+    def wait_for_all_acked(self, timeout: Duration = _FOREVER) -> bool:
+        """Whether all has arrived: always, since the wire has no acknowledgements."""
+        with self._handle:
+            return True
+
+    def __enter__(self) -> Publisher:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()

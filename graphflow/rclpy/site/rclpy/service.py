@@ -1,0 +1,126 @@
+"""Servers of services."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graphflow.errors import DecodeError
+from graphflow.rclpy import messages
+from graphflow.runtime.service_events import ServiceEvent
+from rclpy.client import configure_introspection
+from rclpy.handle import Handle
+from rclpy.service_introspection import ServiceIntrospectionState
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+    from graphflow.runtime.threaded import Asked, ThreadedService
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.clock import Clock
+    from rclpy.qos import QoSProfile
+
+
+class RequestHeader(NamedTuple):
+    """Whose request it is, by which it is answered."""
+
+    asked: Asked
+
+    @property
+    def request_id(self) -> tuple[bytes, int]:
+        return self.asked.gid, self.asked.sequence
+
+    @property
+    def source_timestamp(self) -> int:
+        return self.asked.source_ns
+
+
+class Service:
+    """A server of a service. Make it by `Node.create_service`."""
+
+    turn = 4
+
+    def __init__(
+        self,
+        service_impl: ThreadedService,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        *,
+        life: Life,
+        handle: Handle,
+    ) -> None:
+        self.srv_type, self.srv_name, self.callback = srv_type, srv_name, callback
+        self.callback_group, self.qos_profile = callback_group, qos_profile
+        self._endpoint, self._life, self._handle = service_impl, life, handle
+        handle.__dict__["service_take_request"] = self._take_request
+
+    def send_response(self, response: Any, header: RequestHeader) -> None:
+        """Answer a request. Raises TypeError if that is no response of the service's."""
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
+        with self._handle:
+            payload = messages.encode(response)
+            self._endpoint.answer(header.asked, payload)
+            self._endpoint.tell(ServiceEvent.RESPONSE_SENT, header.asked, payload)
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
+        configure_introspection(self._life, self._endpoint, service_event_qos_profile, introspection_state)
+
+    def has_work(self) -> bool:
+        return bool(self._endpoint.inbox.items)
+
+    def take_work(self) -> Callable[[], Any] | None:
+        asked = self._endpoint.take()
+        if asked is None:
+            return None
+        return partial(self._do_async if inspect.iscoroutinefunction(self.callback) else self._do, asked)
+
+    def _request(self, asked: Asked) -> Any:
+        try:
+            request = messages.decode(self.srv_type.Request, asked.payload)
+            self._endpoint.tell(ServiceEvent.REQUEST_RECEIVED, asked, asked.payload)
+            return request
+        except DecodeError as error:
+            self._endpoint.host.log.warning("%s: a malformed request is not answered: %s", self._endpoint.name, error)
+            return None
+
+    def _do(self, asked: Asked) -> None:
+        request = self._request(asked)
+        if request is not None:
+            self.send_response(self.callback(request, self.srv_type.Response()), RequestHeader(asked))
+
+    async def _do_async(self, asked: Asked) -> None:
+        request = self._request(asked)
+        if request is not None:
+            self.send_response(await self.callback(request, self.srv_type.Response()), RequestHeader(asked))
+
+    def _take_request(self, request_type: Any) -> tuple[Any, RequestHeader | None]:
+        asked = self._endpoint.take()
+        return (None, None) if asked is None else (messages.decode(request_type, asked.payload), RequestHeader(asked))
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self._handle:
+            return self._endpoint.name
+
+    def destroy(self) -> None:
+        """Withdraw it. `Node.destroy_service` is what to call."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Service:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()

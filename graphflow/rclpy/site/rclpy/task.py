@@ -1,0 +1,256 @@
+"""Results that come later, and the tasks of an executor that bring them about."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import threading
+import warnings
+import weakref
+from collections.abc import Callable, Generator
+from typing import Any, Generic, Protocol, TypeVar
+
+T = TypeVar("T")
+
+
+class Runs(Protocol):
+    """What runs tasks: an executor."""
+
+    def create_task(self, callback: Any, *args: Any) -> Any: ...
+
+
+class _Stepping(threading.local):
+    """The task that the thread is stepping."""
+
+    task: Task[Any] | None = None
+
+
+_stepping = _Stepping()
+
+
+class Future(Generic[T]):
+    """A result that comes later. It may be awaited in an executor's tasks and callbacks, and in asyncio's tasks.
+
+    Args:
+        executor: Runs the callbacks when it is done; without one they run where it is set.
+    """
+
+    def __init__(self, *, executor: Runs | None = None) -> None:
+        self._result: T | None = None
+        self._exception: BaseException | None = None
+        self._is_done = self._is_cancelled = self._was_raised = False
+        self._callbacks: list[Callable[[Any], Any]] = []
+        self._lock = threading.RLock()
+        self._runs: Callable[[], Runs | None] = _none
+        self._set_executor(executor)
+
+    def __del__(self) -> None:
+        error = getattr(self, "_exception", None)
+        if error is not None and not self._was_raised:
+            warnings.warn(f"The following exception was never retrieved: {error}", stacklevel=1)
+
+    def _set_executor(self, executor: Runs | None) -> None:
+        self._runs = _none if executor is None else weakref.ref(executor)
+
+    def __await__(self) -> Generator[Any, None, T]:
+        if not (self._is_done or self._is_cancelled) and _stepping.task is None and asyncio._get_running_loop():
+            yield from self._of_asyncio().__await__()
+        while not (self._is_done or self._is_cancelled):
+            yield self
+        return self.result()  # type: ignore[return-value]
+
+    def _of_asyncio(self) -> asyncio.Future[None]:
+        """A future of the running event loop that is done when this one is."""
+        loop = asyncio.get_running_loop()
+        twin: asyncio.Future[None] = loop.create_future()
+
+        def settle() -> None:
+            if not twin.done():
+                twin.set_result(None)
+
+        self._when_done(lambda: loop.call_soon_threadsafe(settle))
+        return twin
+
+    def _when_done(self, callback: Callable[[], Any]) -> None:
+        """Call back, at once and in whatever thread, when it is done or cancelled."""
+        wanted = _AtOnce(callback)
+        with self._lock:
+            if not (self._is_done or self._is_cancelled):
+                if wanted not in self._callbacks:
+                    self._callbacks.append(wanted)
+                return
+        callback()
+
+    def cancel(self) -> None:
+        """Nobody waits any more; nothing is set afterwards. Without effect when it is done."""
+        with self._lock:
+            if self._is_done:
+                return
+            self._is_cancelled = True
+        self._call_back()
+
+    def cancelled(self) -> bool:
+        return self._is_cancelled
+
+    def done(self) -> bool:
+        return self._is_done
+
+    def result(self) -> T | None:
+        """The result; None as long as there is none. Raises the exception, if that was set."""
+        error = self.exception()
+        if error is not None:
+            raise error
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """The exception that was set, if one was."""
+        self._was_raised = True
+        return self._exception
+
+    def set_result(self, result: T) -> None:
+        with self._lock:
+            self._result = result
+            self._is_done, self._is_cancelled = True, False
+        self._call_back()
+
+    def set_exception(self, exception: BaseException) -> None:
+        with self._lock:
+            self._exception = exception
+            self._was_raised = False
+            self._is_done, self._is_cancelled = True, False
+        self._call_back()
+
+    def _call_back(self) -> None:
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+        executor = self._runs()
+        for callback in callbacks:
+            if isinstance(callback, _AtOnce):
+                callback(self)
+            elif executor is not None:
+                executor.create_task(callback, self)
+            else:
+                try:
+                    callback(self)
+                except Exception as error:  # it is not the setter's
+                    warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
+
+    def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
+        """Call `callback(future)` when it is done: as a task of the executor, else in the thread that sets it."""
+        with self._lock:
+            if not (self._is_done or self._is_cancelled):
+                self._callbacks.append(callback)
+                return
+            executor = self._runs()
+        if executor is not None:
+            executor.create_task(callback, self)
+        else:
+            callback(self)
+
+
+class _AtOnce:
+    """A callback that is no user's, and does not wait for an executor."""
+
+    def __init__(self, callback: Callable[[], Any]) -> None:
+        self._callback = callback
+
+    def __call__(self, future: object) -> None:
+        self._callback()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _AtOnce) and self._callback == other._callback
+
+    def __hash__(self) -> int:
+        return hash(self._callback)
+
+
+def _none() -> None:
+    """No executor."""
+
+
+class Task(Future[T]):
+    """A function or coroutine that an executor runs, a step each time that it is called.
+
+    Args:
+        handler: A function, a coroutine function, or a coroutine.
+    """
+
+    def __init__(
+        self,
+        handler: Any,
+        args: tuple[Any, ...] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        executor: Runs | None = None,
+    ) -> None:
+        super().__init__(executor=executor)
+        self._args, self._kwargs = args or (), kwargs or {}
+        self._coroutine: Any = None
+        self._handler: Any = None
+        if inspect.iscoroutinefunction(handler):
+            self._coroutine = handler(*self._args, **self._kwargs)
+        elif inspect.iscoroutine(handler):
+            self._coroutine = handler
+        else:
+            self._handler = handler
+        self._step_lock = threading.Lock()
+        self._awaits: Future[Any] | None = None
+        """What the coroutine waits for, where that is known."""
+
+    def __call__(self) -> None:
+        """Run the function, or a step of the coroutine. Without effect when it is done, or another thread does."""
+        if self._is_done or self._is_cancelled or not self._step_lock.acquire(blocking=False):
+            return
+        try:
+            if not (self._is_done or self._is_cancelled):
+                self._step()
+        finally:
+            self._step_lock.release()
+            self._stepped()
+
+    def _stepped(self) -> None:
+        """A step was made, and another thread may make the next."""
+
+    def executing(self) -> bool:
+        """Whether some thread is running it right now."""
+        return self._step_lock.locked()
+
+    def _step(self) -> None:
+        around, _stepping.task = _stepping.task, self
+        try:
+            if self._coroutine is None:
+                handler, self._handler = self._handler, None
+                result = handler(*self._args, **self._kwargs)
+                if not self._suspends(result):
+                    self._end(result, None)
+                    return
+                self._coroutine = result
+            self._awaits = None
+            awaited = self._coroutine.send(None)
+            self._awaits = awaited if isinstance(awaited, Future) else None
+        except StopIteration as stop:
+            self._end(stop.value, None)
+        except (KeyboardInterrupt, SystemExit) as leaving:
+            self._end(None, leaving)
+            self._was_raised = True
+            raise
+        except BaseException as error:
+            self._end(None, error)
+        finally:
+            _stepping.task = around
+
+    def _suspends(self, result: Any) -> bool:
+        """Whether what the function has returned is to be stepped on."""
+        return False
+
+    def _end(self, result: Any, error: BaseException | None) -> None:
+        self._args, self._kwargs, self._coroutine, self._handler = (), {}, None, None
+        if error is not None:
+            self.set_exception(error)
+        else:
+            self.set_result(result)
+
+    def cancel(self) -> None:
+        super().cancel()
+        coroutine = self._coroutine
+        if coroutine is not None and not self.executing() and not self._is_done:
+            coroutine.close()

@@ -1,0 +1,174 @@
+"""Simulated time: what comes on /clock sets the clocks of a node, while its parameter `use_sim_time` is true.
+
+/clock is heard on a thread of its own, so that time goes on while a callback sleeps by it.
+"""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy import held, messages
+from graphflow.rclpy.held import NodeBell
+from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.wake import Wake
+from graphflow.runtime.threaded import ThreadedSubscription
+from rclpy._rclpy_pybind11 import InvalidHandle
+from rclpy.clock import ROSClock
+from rclpy.clock_type import ClockType
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy, to_graphflow
+from rclpy.time import Time
+
+if TYPE_CHECKING:
+    import rosgraph_msgs.msg
+
+CLOCK_TOPIC = "/clock"
+USE_SIM_TIME_NAME = "use_sim_time"
+_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class TimeSource:
+    """Sets the clocks that are attached to it."""
+
+    def __init__(self, *, node: Any = None) -> None:
+        self._clock_sub: _Hearing | None = None
+        self._node: Any = None
+        self._clocks: list[ROSClock] = []
+        self._is_active = False
+        self._last = Time(clock_type=ClockType.ROS_TIME)
+        if node is not None:
+            self.attach_node(node)
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether the clocks go by /clock."""
+        return self._is_active
+
+    @ros_time_is_active.setter
+    def ros_time_is_active(self, enabled: bool) -> None:
+        if self._is_active is enabled:
+            return
+        self._is_active = enabled
+        for clock in self._clocks:
+            clock._set_ros_time_is_active(enabled)
+        self._hear()
+
+    def _hear(self) -> None:
+        node = self._get_node()
+        if self._is_active and node is not None and self._clock_sub is None:
+            self._clock_sub = _Hearing(node, self)
+        elif not self._is_active and self._clock_sub is not None:
+            self._clock_sub.close()
+            self._clock_sub = None
+
+    def attach_node(self, node: Any) -> None:
+        """Go by a node's parameter `use_sim_time`, which is declared if it is not. Raises TypeError for no node."""
+        if not hasattr(node, "declare_parameter"):
+            raise TypeError("Node must be of type rclpy.node.Node")
+        if self._node is not None:
+            self.detach_node()
+        self._node = weakref.ref(node)
+        if not node.has_parameter(USE_SIM_TIME_NAME):
+            node.declare_parameter(USE_SIM_TIME_NAME, False)
+        value = node.get_parameter(USE_SIM_TIME_NAME)
+        if value.type_ is Parameter.Type.BOOL:
+            self.ros_time_is_active = value.value
+        else:
+            node.get_logger().error(f"Invalid type for parameter '{USE_SIM_TIME_NAME}' {value.type_!r} should be bool")
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._set)
+
+    def detach_node(self) -> None:
+        """Go by no node any more."""
+        if self._clock_sub is not None:
+            self._clock_sub.close()
+            self._clock_sub = None
+        node = self._get_node()
+        if node is not None:
+            node.remove_on_set_parameters_callback(self._check)
+            node.remove_post_set_parameters_callback(self._set)
+        self._node = None
+        self.ros_time_is_active = False
+
+    def attach_clock(self, clock: ROSClock) -> None:
+        """Set this clock too. Raises ValueError for one that does not go by ROS time."""
+        if not isinstance(clock, ROSClock):
+            raise ValueError("Only clocks with type ROS_TIME can be attached.")
+        clock.set_ros_time_override(self._last)
+        clock._set_ros_time_is_active(self._is_active)
+        self._clocks.append(clock)
+
+    def clock_callback(self, msg: rosgraph_msgs.msg.Clock) -> None:
+        """Set the clocks by a message."""
+        self._last = Time.from_msg(msg.clock)
+        for clock in self._clocks:
+            clock.set_ros_time_override(self._last)
+
+    def _check(self, parameters: list[Parameter[Any]]) -> Any:
+        from rcl_interfaces.msg import SetParametersResult
+
+        for parameter in parameters:
+            if parameter.name == USE_SIM_TIME_NAME and parameter.type_ is not Parameter.Type.BOOL:
+                reason = f"{USE_SIM_TIME_NAME} parameter set to something besides a bool"
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _set(self, parameters: list[Parameter[Any]]) -> None:
+        for parameter in parameters:
+            if parameter.name == USE_SIM_TIME_NAME:
+                self.ros_time_is_active = parameter.value
+
+    def _get_node(self) -> Any:
+        return None if self._node is None else self._node()
+
+
+class _Waking(NodeBell):
+    """A bell that wakes one thread."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.wakes = Wake()
+
+    def ring(self) -> None:
+        self.pending = True
+        self.wakes.set()
+
+
+class _Hearing:
+    """A subscription of /clock, and the thread that takes its messages."""
+
+    def __init__(self, node: Any, source: TimeSource) -> None:
+        import rosgraph_msgs.msg
+
+        self._type, self._source = rosgraph_msgs.msg.Clock, source
+        self._bell, self._is_closed = _Waking(), False
+        name = node.resolve_topic_name(CLOCK_TOPIC)
+
+        def make(core: Any) -> ThreadedSubscription:
+            made = ThreadedSubscription(core, self._type, name, to_graphflow(_QOS), self._bell, _nothing)
+            made.is_inner = True
+            return made
+
+        self._endpoint = held.add(node.held, make)
+        threading.Thread(target=self._listen, name="graphflow-clock", daemon=True).start()
+
+    def _listen(self) -> None:
+        while not self._is_closed:
+            self._bell.wakes.wait()
+            self._bell.attend()
+            while (taken := self._endpoint.take()) is not None and not self._is_closed:
+                try:
+                    self._source.clock_callback(messages.decode(self._type, taken.payload))
+                except InvalidHandle:  # a clock that was destroyed
+                    continue
+
+    def close(self) -> None:
+        self._is_closed = True
+        self._bell.ring()
+        LOOP.call(self._endpoint.close)
+
+
+def _nothing() -> None:
+    """The thread takes all there is."""

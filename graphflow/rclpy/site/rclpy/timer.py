@@ -1,0 +1,223 @@
+"""Timers, and the rates that threads keep by them."""
+
+from __future__ import annotations
+
+import inspect
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from graphflow.rclpy.wake import Wake
+from rclpy._rclpy_pybind11 import TimerCancelledError
+from rclpy.callback_groups import CallbackGroup
+from rclpy.clock import Clock
+from rclpy.exceptions import InvalidHandle, ROSInterruptException
+from rclpy.handle import Handle
+from rclpy.time import Time
+from rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.held import NodeBell
+    from rclpy.context import Context
+
+
+class TimerInfo:
+    """When a call was due, and when it came."""
+
+    def __init__(self, *, expected_call_time: int, actual_call_time: int, clock_type: Any) -> None:
+        self.expected_call_time = Time(nanoseconds=max(0, expected_call_time), clock_type=clock_type)
+        self.actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
+
+
+class Timer:
+    """Has an executor call `callback` once a period, by a clock. Missed periods are skipped, and the phase is kept.
+
+    Args:
+        callback: Takes nothing, or a `TimerInfo`.
+        autostart: Whether it runs at once, or after its first `reset`.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None,
+        timer_period_ns: int,
+        clock: Clock,
+        *,
+        context: Context | None = None,
+        autostart: bool = True,
+        bell: NodeBell | None = None,
+    ) -> None:
+        self._context = get_default_context() if context is None else context
+        self._clock, self._period_ns, self._bell = clock, int(timer_period_ns), bell
+        self._is_canceled = not autostart
+        self._lock = threading.Lock()
+        self._last_ns = clock.now_ns()
+        self._next_ns = self._last_ns + self._period_ns
+        self._handle = Handle(_nothing)
+        self._callback: Callable[..., Any] | None = None
+        self._takes_info = False
+        self.callback = callback
+        self.callback_group = callback_group
+        clock.watch(self)
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any] | None) -> None:
+        self._callback = value
+        self._takes_info = value is not None and _takes_one(value)
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle
+
+    @property
+    def clock(self) -> Clock:
+        return self._clock
+
+    @property
+    def timer_period_ns(self) -> int:
+        return self._period_ns
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        with self._lock:
+            self._period_ns = int(value)
+        self._look_again()
+
+    def is_ready(self) -> bool:
+        """Whether a call is due."""
+        with self._handle:
+            return not self._is_canceled and self._clock.now_ns() >= self._next_ns
+
+    def is_canceled(self) -> bool:
+        with self._handle:
+            return self._is_canceled
+
+    def cancel(self) -> None:
+        """Be due no more, until `reset`."""
+        with self._handle:
+            self._is_canceled = True
+
+    def reset(self) -> None:
+        """Begin a period now."""
+        with self._handle, self._lock:
+            self._is_canceled = False
+            self._last_ns = self._clock.now_ns()
+            self._next_ns = self._last_ns + self._period_ns
+        self._look_again()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call."""
+        with self._handle:
+            return self._clock.now_ns() - self._last_ns
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until the next call; negative when it is overdue, None for a canceled timer."""
+        with self._handle:
+            return None if self._is_canceled else self._next_ns - self._clock.now_ns()
+
+    def clock_moved(self) -> None:
+        """Its clock was set: what is due may have changed."""
+        now_ns = self._clock.now_ns()
+        with self._lock:
+            if self._next_ns - now_ns > self._period_ns:  # it went back
+                self._last_ns, self._next_ns = now_ns, now_ns + self._period_ns
+        self._look_again()
+
+    def _look_again(self) -> None:
+        if self._bell is not None:
+            self._bell.wake()
+
+    def seconds_left(self) -> float | None:
+        """Seconds until it is due; None if no time of this machine's brings that about."""
+        if self._is_canceled or self._handle.is_destroyed or self._clock.is_set_from_outside:
+            return None
+        return (self._next_ns - self._clock.now_ns()) / 1e9
+
+    def has_work(self) -> bool:
+        return not self._handle.is_destroyed and self.is_ready()
+
+    def take_work(self) -> Callable[[], Any] | None:
+        """Take the call that is due."""
+        with self._lock:
+            now_ns = self._clock.now_ns()
+            if self._is_canceled or self._handle.is_destroyed or now_ns < self._next_ns:
+                return None
+            expected_ns, self._last_ns = self._next_ns, now_ns
+            behind = (now_ns - self._next_ns) // self._period_ns if self._period_ns else 0
+            self._next_ns += self._period_ns * (behind + 1)
+        if self.callback is None:
+            return None
+        if self._takes_info:
+            kind = self._clock.clock_type
+            info = TimerInfo(expected_call_time=expected_ns, actual_call_time=now_ns, clock_type=kind)
+            return partial(self.callback, info)
+        return self.callback
+
+    def destroy(self) -> None:
+        """Be of no more use. `Node.destroy_timer` is what to call."""
+        self._handle.destroy_when_not_in_use()
+
+
+def _takes_one(callback: Callable[..., Any]) -> bool:
+    """Whether a callback takes a `TimerInfo`."""
+    try:
+        inspect.signature(callback).bind()
+    except TypeError:
+        return True
+    except ValueError:  # no signature to be read
+        return False
+    return False
+
+
+class Rate:
+    """Keeps a thread to a rhythm: `sleep` returns once a period. The timer's executor must be spinning meanwhile."""
+
+    def __init__(self, timer: Timer, *, context: Context) -> None:
+        self._timer, self._context = timer, context
+        self._sleepers: dict[Wake, None] = {}
+        self._is_destroyed = False
+        timer.callback = self._tick
+
+    def _tick(self) -> None:
+        for sleeper in list(self._sleepers):
+            sleeper.set()
+
+    def destroy(self) -> None:
+        """End all sleeps. `Node.destroy_rate` is what to call."""
+        self._is_destroyed = True
+        self._timer.destroy()
+        self._tick()
+
+    def sleep(self) -> None:
+        """Block until the timer has called.
+
+        Raises:
+            ROSInterruptException: The context was shut down.
+        """
+        life = self._context.life
+        if life is None or not life.is_ok:
+            raise ROSInterruptException
+        if self._is_destroyed:
+            raise InvalidHandle("the rate was destroyed")
+        if self._timer.is_canceled():
+            raise TimerCancelledError("the timer of the rate was cancelled")
+        wake = Wake()
+        self._sleepers[wake] = None
+        life.on_end(wake)
+        try:
+            wake.wait()
+        finally:
+            life.forget(wake)
+            self._sleepers.pop(wake, None)
+        if not life.is_ok:
+            raise ROSInterruptException
+
+
+def _nothing() -> None:
+    """Nothing is held."""

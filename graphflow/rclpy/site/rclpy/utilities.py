@@ -1,0 +1,104 @@
+"""The default context, and questions about the middleware."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Sequence
+
+from graphflow.errors import GraphflowError
+from graphflow.rclpy.life import parse_only_ros
+from rclpy._rclpy_pybind11 import RCLInvalidROSArgsError
+from rclpy.constants import S_TO_NS
+from rclpy.context import Context
+
+_default: Context | None = None
+_lock = threading.Lock()
+
+
+def get_default_context(*, shutting_down: bool = False) -> Context:
+    """The context of whoever names none; a new one once that was shut down.
+
+    Args:
+        shutting_down: Whether it is to be shut down: then it stays what it is, and there must be one.
+    """
+    global _default
+    with _lock:
+        if shutting_down:
+            if _default is None:
+                raise RuntimeError("There is no default context to be shutdown")
+            former, _default = _default, None
+            return former
+        if _default is None:
+            _default = Context()
+        return _default
+
+
+def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
+    """A command line without what is meant for ROS.
+
+    Raises:
+        RCLInvalidROSArgsError: What is meant for ROS is wrong.
+    """
+    words = list(sys.argv if args is None else args)
+    kept: list[str] = []
+    in_ros = False
+    for word in words:
+        if word == "--ros-args":
+            in_ros = True
+        elif in_ros and word == "--":
+            in_ros = False
+        elif not in_ros:
+            kept.append(word)
+    try:
+        parse_only_ros(words)
+    except GraphflowError as error:
+        raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
+    return kept
+
+
+def ok(*, context: Context | None = None) -> bool:
+    """Whether a context has begun and not ended."""
+    return (get_default_context() if context is None else context).ok()
+
+
+def shutdown(*, context: Context | None = None) -> None:
+    """End a context. Raises RuntimeError if it has ended before."""
+    if context is None:
+        current = _default
+        if current is None or current.life is None:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
+        current.shutdown()
+        _replace(current)
+    else:
+        context.shutdown()
+
+
+def try_shutdown(*, context: Context | None = None) -> None:
+    """End a context if it has not ended."""
+    current = _default if context is None else context
+    if current is not None and current.try_shutdown() and context is None:
+        _replace(current)
+
+
+def _replace(ended: Context) -> None:
+    """Let the default context be another from now on; unless it is already."""
+    global _default
+    with _lock:
+        if _default is ended:
+            _default = None
+
+
+def get_rmw_implementation_identifier() -> str:
+    """The middleware whose wire protocol is spoken."""
+    return "rmw_zenoh_cpp"
+
+
+def get_available_rmw_implementations() -> set[str]:
+    """All there are."""
+    return {get_rmw_implementation_identifier()}
+
+
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """Seconds as nanoseconds; -1 for no limit."""
+    return -1 if timeout_sec is None or timeout_sec < 0 else int(float(timeout_sec) * S_TO_NS)

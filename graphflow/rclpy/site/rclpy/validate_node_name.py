@@ -1,0 +1,20 @@
+"""Whether a name will do for a node."""
+
+from __future__ import annotations
+
+import re
+
+from rclpy.exceptions import InvalidNodeNameException
+
+
+def validate_node_name(node_name: str) -> bool:
+    """Whether a name will do: True, or else InvalidNodeNameException is raised."""
+    if not node_name:
+        raise InvalidNodeNameException(node_name, "node name must not be empty", 0)
+    wrong = re.search(r"[^A-Za-z0-9_]", node_name)
+    if wrong:
+        text = "node name must not contain characters other than alphanumerics or '_'"
+        raise InvalidNodeNameException(node_name, text, wrong.start())
+    if node_name[0].isdigit():
+        raise InvalidNodeNameException(node_name, "node name must not start with a number", 0)
+    return True

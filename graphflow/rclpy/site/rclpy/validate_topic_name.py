@@ -1,0 +1,49 @@
+"""Whether a name will do for a topic or a service, before it is made a full one."""
+
+from __future__ import annotations
+
+import re
+
+from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
+
+TOPIC_SEPARATOR_STRING = "/"
+_ALLOWED = re.compile(r"[A-Za-z0-9_/~{}]")
+
+
+def fault_of(name: str) -> tuple[str, int] | None:
+    """What is wrong with a name, and where; None if nothing is."""
+    if not name:
+        return "topic name must not be empty string", 0
+    for index, letter in enumerate(name):
+        if not _ALLOWED.match(letter):
+            return "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'", index
+        if letter == "~" and index:
+            return "topic name must not have tilde '~' unless it is the first character", index
+    if name.endswith("/"):
+        return "topic name must not end with a forward slash", len(name) - 1
+    if name.startswith("~") and len(name) > 1 and name[1] != "/":
+        return "topic name must not have anything but a forward slash after a tilde '~'", 1
+    twice = name.find("//")
+    if twice >= 0:
+        return "topic name must not contain repeated '/'", twice + 1
+    number = re.search(r"(?:^|/)([0-9])", name)
+    if number:
+        return "topic name token must not start with a number", number.start(1)
+    for index in (i for i, letter in enumerate(name) if letter in "{}"):
+        before = name[:index]
+        if (name[index] == "{") == (before.count("{") > before.count("}")):
+            return "topic name must not have unbalanced curly braces '{}'", index
+    if name.count("{") != name.count("}"):
+        return "topic name must not have unbalanced curly braces '{}'", name.rindex("{")
+    return None
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """Whether a name will do: True, or else InvalidTopicNameException or InvalidServiceNameException is raised."""
+    fault = fault_of(name)
+    if fault is not None:
+        text, index = fault
+        if is_service:
+            raise InvalidServiceNameException(name, text.replace("topic", "service", 1), index)
+        raise InvalidTopicNameException(name, text, index)
+    return True

@@ -1,0 +1,60 @@
+"""Waiting for one message of a topic."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from graphflow.rclpy import held
+from graphflow.rclpy.held import NodeBell
+from graphflow.rclpy.wake import Wake
+from graphflow.runtime.threaded import ThreadedSubscription
+from rclpy.qos import QoSProfile, to_graphflow, validated
+from rclpy.serialization import deserialize_message
+from rclpy.type_support import check_is_valid_msg_type
+
+
+class _Waking(NodeBell):
+    """A bell that wakes one thread."""
+
+    def __init__(self, wake: Wake) -> None:
+        super().__init__()
+        self._wake = wake
+
+    def ring(self) -> None:
+        self.pending = True
+        self._wake.set()
+
+
+def wait_for_message(
+    msg_type: Any, node: Any, topic: str, *, qos_profile: QoSProfile | int = 1, time_to_wait: float = -1
+) -> tuple[bool, Any]:
+    """Block until a message comes; nobody has to spin.
+
+    Args:
+        time_to_wait: Seconds; -1 for any time.
+
+    Returns:
+        Whether one came, and the message.
+    """
+    check_is_valid_msg_type(msg_type)
+    life, wake, name = node.context.life, Wake(), node.resolve_topic_name(topic)
+    bell, qos = _Waking(wake), to_graphflow(validated(qos_profile))
+    endpoint = held.add(node.held, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing))
+    life.on_end(wake)
+
+    def is_over() -> bool:
+        bell.attend()
+        return endpoint.waiting > 0 or not life.is_ok
+
+    try:
+        wake.wait_until(is_over, None if time_to_wait < 0 else time_to_wait)
+        taken = endpoint.take() if life.is_ok else None
+        return (False, None) if taken is None else (True, deserialize_message(taken.payload, msg_type))
+    finally:
+        life.forget(wake)
+        if life.is_ok:
+            held.remove(endpoint)
+
+
+def _nothing() -> None:
+    """The waiting thread takes what there is."""

@@ -1,0 +1,101 @@
+"""Things other than topics, services and timers that an executor looks after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Self
+
+from rclpy.callback_groups import CallbackGroup
+
+
+class NumberOfEntities:
+    """How much room a waitable needs in a wait set of rcl's."""
+
+    __slots__ = (
+        *("num_subscriptions", "num_guard_conditions", "num_timers", "num_clients", "num_services", "num_events"),
+    )
+
+    def __init__(
+        self,
+        num_subs: int = 0,
+        num_gcs: int = 0,
+        num_timers: int = 0,
+        num_clients: int = 0,
+        num_services: int = 0,
+        num_events: int = 0,
+    ) -> None:
+        self.num_subscriptions, self.num_guard_conditions, self.num_timers = num_subs, num_gcs, num_timers
+        self.num_clients, self.num_services, self.num_events = num_clients, num_services, num_events
+
+    def __add__(self, other: NumberOfEntities) -> NumberOfEntities:
+        total = NumberOfEntities()
+        total += self
+        total += other
+        return total
+
+    def __iadd__(self, other: NumberOfEntities) -> Self:
+        for name in self.__slots__:
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+        return self
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(str(getattr(self, name)) for name in self.__slots__)})"
+
+
+class Waitable:
+    """Something that becomes ready, has data to be taken, and executes with them. Derive from it.
+
+    There are no wait sets of rcl's here: `is_ready` is asked whenever the executor looks, with None for one.
+    """
+
+    def __init__(self, callback_group: CallbackGroup) -> None:
+        self.callback_group = callback_group
+        self.callback_group.add_entity(self)
+        self._futures: list[Any] = []
+
+    def __enter__(self) -> None:
+        """Nothing has to be held."""
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing is held."""
+
+    def add_future(self, future: Any) -> None:
+        """Keep a future until it is done."""
+        self._futures.append(future)
+
+    def remove_future(self, future: Any) -> None:
+        """Keep a future no longer."""
+        self._futures.remove(future)
+
+    def is_ready(self, wait_set: Any) -> bool:
+        """Whether there is something to take."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    def take_data(self) -> Any:
+        """Take what is there."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    async def execute(self, taken_data: Any) -> None:
+        """Do the work with what was taken."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """The room in a wait set."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    def add_to_wait_set(self, wait_set: Any) -> None:
+        """Add what becomes ready to a wait set."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    # what executors ask of everything that they look after
+
+    def has_work(self) -> bool:
+        return bool(self.is_ready(None))
+
+    def take_work(self) -> Callable[[], Any] | None:
+        data = self.take_data()
+
+        async def execute() -> None:
+            await self.execute(data)
+
+        return execute

@@ -1,0 +1,133 @@
+"""Coordinates of messages in another frame."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from geometry_msgs.msg import (
+    PointStamped,
+    Pose,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+    Vector3,
+    Vector3Stamped,
+    WrenchStamped,
+)
+from tf2_py import poses
+from tf2_py.core import pose_of
+from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
+
+__all__ = [
+    "PointStamped",
+    "PoseStamped",
+    "PoseWithCovarianceStamped",
+    "Vector3Stamped",
+    "WrenchStamped",
+    "do_transform_point",
+    "do_transform_pose",
+    "do_transform_pose_stamped",
+    "do_transform_pose_with_covariance_stamped",
+    "do_transform_vector3",
+    "do_transform_wrench",
+    "from_msg_msg",
+    "to_msg_msg",
+    "transform_covariance",
+]
+
+
+def to_msg_msg(msg: Any) -> Any:
+    """A message as a message."""
+    return msg
+
+
+def from_msg_msg(msg: Any) -> Any:
+    """A message as a message."""
+    return msg
+
+
+def _xyz(vector: Any) -> poses.Vector:
+    return vector.x, vector.y, vector.z
+
+
+def _set(vector: Any, values: poses.Vector) -> None:
+    vector.x, vector.y, vector.z = values
+
+
+def do_transform_point(point: PointStamped, transform: TransformStamped) -> PointStamped:
+    """A point with its coordinates in the frame of the transform's header."""
+    out = PointStamped(header=transform.header)
+    _set(out.point, pose_of(transform.transform).point(_xyz(point.point)))
+    return out
+
+
+def do_transform_vector3(vector3: Vector3Stamped, transform: TransformStamped) -> Vector3Stamped:
+    """A vector, which is rotated only."""
+    out = Vector3Stamped(header=transform.header)
+    _set(out.vector, _rotated(vector3.vector, transform))
+    return out
+
+
+def _rotated(vector: Vector3, transform: TransformStamped) -> poses.Vector:
+    return poses.rotate(pose_of(transform.transform).rotation, _xyz(vector))
+
+
+def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
+    """A pose without a header."""
+    q = pose.orientation
+    moved = pose_of(transform.transform).of(poses.Pose(_xyz(pose.position), (q.x, q.y, q.z, q.w)))
+    out = Pose()
+    _set(out.position, moved.translation)
+    r = out.orientation
+    r.x, r.y, r.z, r.w = moved.rotation
+    return out
+
+
+def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) -> PoseStamped:
+    """A pose with its coordinates in the frame of the transform's header."""
+    return PoseStamped(header=transform.header, pose=do_transform_pose(pose.pose, transform))
+
+
+def transform_covariance(cov_in: Any, transform: TransformStamped) -> Any:
+    """A covariance of a pose, 6 by 6 in 36 numbers, with its axes rotated; translation does not change it."""
+    rotation = pose_of(transform.transform).rotation
+    turn = np.array([poses.rotate(rotation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
+    both = np.kron(np.eye(2), turn)
+    return (both @ np.reshape(cov_in, (6, 6)) @ both.T).ravel()
+
+
+def do_transform_pose_with_covariance_stamped(
+    pose: PoseWithCovarianceStamped, transform: TransformStamped
+) -> PoseWithCovarianceStamped:
+    """A pose and how sure it is, in the frame of the transform's header."""
+    out = PoseWithCovarianceStamped(header=transform.header)
+    out.pose.pose = do_transform_pose(pose.pose.pose, transform)
+    out.pose.covariance = transform_covariance(pose.pose.covariance, transform)
+    return out
+
+
+def do_transform_wrench(wrench: WrenchStamped, transform: TransformStamped) -> WrenchStamped:
+    """A force and a torque, which are rotated only."""
+    out = WrenchStamped(header=transform.header)
+    _set(out.wrench.force, _rotated(wrench.wrench.force, transform))
+    _set(out.wrench.torque, _rotated(wrench.wrench.torque, transform))
+    return out
+
+
+def _register() -> None:
+    transforms, conversions = TransformRegistration(), ConvertRegistration()
+    known = {
+        PointStamped: do_transform_point,
+        Vector3Stamped: do_transform_vector3,
+        PoseStamped: do_transform_pose_stamped,
+        PoseWithCovarianceStamped: do_transform_pose_with_covariance_stamped,
+        WrenchStamped: do_transform_wrench,
+    }
+    for kind, do in known.items():
+        transforms.add(kind, do)
+        conversions.add_to_msg(kind, to_msg_msg)
+        conversions.add_from_msg(kind, from_msg_msg)
+
+
+_register()

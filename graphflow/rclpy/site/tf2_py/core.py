@@ -1,0 +1,194 @@
+"""The buffer of transforms, by messages."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+
+from rclpy.duration import Duration
+from rclpy.logging import get_logger
+from rclpy.time import Time
+from tf2_py.exceptions import InvalidArgumentException, TransformException
+from tf2_py.frames import Frames
+from tf2_py.poses import Pose
+
+TOLERANCE = 0.01
+"""How far the squared length of a quaternion may be from 1."""
+NAME_BOUND = 1000
+"""Characters of a frame's name."""
+
+
+def pose_of(transform: Any) -> Pose:
+    """A `geometry_msgs/Transform` as a pose."""
+    t, r = transform.translation, transform.rotation
+    return Pose((t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
+
+
+def nanoseconds(time: Any) -> int:
+    """A time of rclpy's, or of a message."""
+    return time.nanoseconds if isinstance(time, Time) else time.sec * 10**9 + time.nanosec
+
+
+def message(pose: Pose, target: str, source: str, stamp: int) -> TransformStamped:
+    """The pose of a frame, as a message."""
+    out = TransformStamped()
+    out.header.stamp.sec, out.header.stamp.nanosec = divmod(stamp, 10**9)
+    out.header.frame_id, out.child_frame_id = target, source
+    t, r = out.transform.translation, out.transform.rotation
+    t.x, t.y, t.z = pose.translation
+    r.x, r.y, r.z, r.w = pose.rotation
+    return out
+
+
+class BufferCore:
+    """Transforms between frames over time. May be used by several threads.
+
+    Args:
+        cache_time: How long they are kept; 10 seconds where nothing is said.
+    """
+
+    def __init__(self, cache_time: Duration | None = None) -> None:
+        kept = 10 * 10**9 if cache_time is None else cache_time.nanoseconds
+        self._frames = Frames(kept)
+        self._authorities: dict[str, str] = {}
+        self._lock = threading.Lock()
+
+    def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        """Put in where a frame is; what makes no sense is left out, and told in the log."""
+        self._put(transform, authority, is_static=False)
+
+    def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        """Put in where a frame is for ever."""
+        self._put(transform, authority, is_static=True)
+
+    def _put(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
+        parent, frame = transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/")
+        pose = pose_of(transform.transform)
+        fault = _fault(frame, parent, pose)
+        if fault is not None:
+            get_logger("tf2").error(f"transform from {authority!r} is left out: {fault}", throttle_duration_sec=1.0)
+            return
+        with self._lock:
+            stamp = nanoseconds(transform.header.stamp)
+            is_kept = self._frames.put(frame, parent, stamp, pose, is_static=is_static)
+            if is_kept:
+                self._authorities[frame] = authority
+        if not is_kept:
+            text = (
+                f"transform of {frame!r} from {authority!r} is left out: it is older than what is kept, or one too many"
+            )
+            get_logger("tf2").warning(text, throttle_duration_sec=1.0)
+
+    def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
+        """The transform that takes coordinates in `source_frame` to those in `target_frame`.
+
+        Args:
+            time: 0 for the latest.
+
+        Raises:
+            TransformException: One of its kinds says why there is none.
+        """
+        _check(target_frame, "target_frame")
+        _check(source_frame, "source_frame")
+        with self._lock:
+            pose, stamp = self._frames.find(target_frame, source_frame, nanoseconds(time))
+        return message(pose, target_frame, source_frame, stamp)
+
+    def lookup_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> TransformStamped:
+        """The same between two times; `fixed_frame` is what has not moved between them."""
+        for name, role in ((target_frame, "target"), (source_frame, "source"), (fixed_frame, "fixed")):
+            _check(name, f"{role}_frame")
+        with self._lock:
+            first, _ = self._frames.find(fixed_frame, source_frame, nanoseconds(source_time))
+            second, stamp = self._frames.find(target_frame, fixed_frame, nanoseconds(target_time))
+        return message(second.of(first), target_frame, source_frame, stamp)
+
+    def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
+        """Whether there is that transform, and why not."""
+        return _can(lambda: self.lookup_transform_core(target_frame, source_frame, time))
+
+    def can_transform_full_core(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> tuple[bool, str]:
+        """Whether there is that transform between two times, and why not."""
+        return _can(
+            lambda: self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
+        )
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
+        """The latest time of which all on the way between two frames is known. Raises TransformException."""
+        with self._lock:
+            return Time(nanoseconds=self._frames.latest_common(target_frame, source_frame))
+
+    def clear(self) -> None:
+        """Forget all."""
+        with self._lock:
+            self._frames.clear()
+            self._authorities.clear()
+
+    def all_frames_as_string(self) -> str:
+        """A line for each frame that has a parent."""
+        with self._lock:
+            known = [(f, h.parents[-1]) for f, h in sorted(self._frames.histories.items())]
+        return "".join(f"Frame {frame} exists with parent {parent}.\n" for frame, parent in known)
+
+    def all_frames_as_yaml(self) -> str:
+        """For each frame that has a parent: that, who says so, how often, and over what times."""
+        with self._lock:
+            known = sorted(self._frames.histories.items())
+            lines = []
+            for frame, history in known:
+                span = (history.stamps[-1] - history.stamps[0]) / 1e9
+                rate = 10000.0 if span <= 0 else (len(history.stamps) - 1) / span
+                lines += [f"{frame}: ", f"  parent: '{history.parents[-1]}'"]
+                lines += [f"  broadcaster: '{self._authorities.get(frame, '')}'", f"  rate: {rate:.3f}"]
+                lines += [f"  most_recent_transform: {history.stamps[-1] / 1e9:.6f}"]
+                lines += [f"  oldest_transform: {history.stamps[0] / 1e9:.6f}", f"  buffer_length: {span:.3f}"]
+        return "".join(f"{line}\n" for line in lines) or "{}"
+
+    def _frameExists(self, frame_id: str) -> bool:  # noqa: N802 - tf2's name
+        """Whether a frame has been heard of."""
+        with self._lock:
+            return self._frames.has(frame_id)
+
+    def _getFrameStrings(self) -> list[str]:  # noqa: N802 - tf2's name
+        """All frames that have been heard of."""
+        with self._lock:
+            return self._frames.names()
+
+
+def _can(look_up: Callable[[], object]) -> tuple[bool, str]:
+    try:
+        look_up()
+    except TransformException as error:
+        return False, str(error)
+    return True, ""
+
+
+def _check(frame: str, role: str) -> None:
+    said = f'Invalid argument "{frame}" passed to lookupTransform argument {role}'
+    if frame.startswith("/"):
+        raise InvalidArgumentException(f"{said} in tf2 frame_ids cannot start with a '/'")
+    if not frame:
+        raise InvalidArgumentException(f"{said} in tf2 frame_ids cannot be empty")
+
+
+def _fault(frame: str, parent: str, pose: Pose) -> str | None:
+    """What is wrong with a transform."""
+    if not frame or not parent:
+        return "frame_id and child_frame_id must not be empty"
+    if frame == parent:
+        return f"frame_id and child_frame_id are both {frame!r}"
+    if max(len(frame), len(parent)) > NAME_BOUND:
+        return f"the name of a frame is longer than {NAME_BOUND} characters"
+    if not all(map(math.isfinite, (*pose.translation, *pose.rotation))):
+        return f"a number of {frame!r} is infinite or none"
+    if abs(sum(q * q for q in pose.rotation) - 1) > TOLERANCE:
+        return f"the quaternion of {frame!r} is not normalized"
+    return None

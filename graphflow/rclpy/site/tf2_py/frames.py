@@ -1,0 +1,190 @@
+"""Frames in their parents over time, and the way from one frame to another."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass, field
+
+from tf2_py.exceptions import ConnectivityException, ExtrapolationException, LookupException, TransformException
+from tf2_py.poses import IDENTITY, Pose
+
+FRAMES_BOUND = 10_000
+"""Frames and parents that are kept; more come from a mistake, or an attack."""
+SAMPLES_BOUND = 20_000
+"""Poses that are kept of one frame, whatever their times."""
+TOTAL_BOUND = 1_000_000
+"""Poses that are kept of all."""
+
+
+@dataclass(slots=True)
+class History:
+    """The poses of one frame, each in what was its parent then."""
+
+    is_static: bool = False
+    stamps: list[int] = field(default_factory=list)
+    """In nanoseconds, ascending."""
+    poses: list[Pose] = field(default_factory=list)
+    parents: list[str] = field(default_factory=list)
+
+    def put(self, stamp: int, pose: Pose, parent: str, kept: int) -> bool:
+        """Add a pose, and drop those more than `kept` nanoseconds older than the latest; False if it is too old."""
+        if self.is_static:
+            self.stamps, self.poses, self.parents = [stamp], [pose], [parent]
+            return True
+        if self.stamps and stamp < self.stamps[-1] - kept:
+            return False
+        at = bisect_left(self.stamps, stamp)
+        is_known = at < len(self.stamps) and self.stamps[at] == stamp
+        place = slice(at, at + is_known)
+        self.stamps[place], self.poses[place], self.parents[place] = [stamp], [pose], [parent]
+        gone = max(bisect_left(self.stamps, self.stamps[-1] - kept), len(self.stamps) - SAMPLES_BOUND)
+        if gone > 0:
+            del self.stamps[:gone], self.poses[:gone], self.parents[:gone]
+        return True
+
+    def at(self, stamp: int) -> tuple[Pose, str] | str:
+        """The pose and the parent at a time, 0 for the latest; or why there is none."""
+        if self.is_static or stamp == 0:
+            return self.poses[-1], self.parents[-1]
+        at = bisect_left(self.stamps, stamp)
+        if at < len(self.stamps) and self.stamps[at] == stamp:
+            return self.poses[at], self.parents[at]
+        if len(self.stamps) == 1:
+            known = f"but only time {_seconds(self.stamps[0])} is in the buffer"
+            return f"at time {_seconds(stamp)}, {known}"
+        if at == 0:
+            return f"into the past.  Requested time {_seconds(stamp)} but the earliest data is at time " + _seconds(
+                self.stamps[0]
+            )
+        if at == len(self.stamps):
+            return f"into the future.  Requested time {_seconds(stamp)} but the latest data is at time " + _seconds(
+                self.stamps[-1]
+            )
+        if self.parents[at - 1] != self.parents[at]:  # there is nothing between two parents
+            return self.poses[at - 1], self.parents[at - 1]
+        before, after = self.stamps[at - 1], self.stamps[at]
+        return self.poses[at - 1].towards(self.poses[at], (stamp - before) / (after - before)), self.parents[at]
+
+
+class Frames:
+    """All frames that have been heard of. Not for several threads at once.
+
+    Args:
+        kept: Nanoseconds of each frame's history.
+    """
+
+    def __init__(self, kept: int) -> None:
+        self.kept = kept
+        self.histories: dict[str, History] = {}
+        self.refused = 0
+        """Poses that were too old, or too many."""
+        self._count = 0
+        self._parents: set[str] = set()
+
+    def put(self, frame: str, parent: str, stamp: int, pose: Pose, *, is_static: bool) -> bool:
+        """Say where a frame is in its parent, in nanoseconds; whether that was accepted."""
+        history = self.histories.get(frame)
+        is_full = len(self.histories) + len(self._parents) >= FRAMES_BOUND
+        if (is_full and not (history and parent in self._parents)) or self._count >= TOTAL_BOUND:
+            self.refused += 1
+            return False
+        before = len(history.stamps) if history else 0
+        if history is None or history.is_static != is_static:
+            history = self.histories[frame] = History(is_static)
+        is_kept = history.put(stamp, pose, parent, self.kept)
+        self._count += len(history.stamps) - before
+        self.refused += not is_kept
+        self._parents.add(parent)
+        return is_kept
+
+    def clear(self) -> None:
+        """Forget all."""
+        self.histories.clear()
+        self._parents.clear()
+        self._count = 0
+
+    def has(self, frame: str) -> bool:
+        """Whether a frame has been heard of, be it as a parent."""
+        return frame in self.histories or frame in self._parents
+
+    def names(self) -> list[str]:
+        """All of them."""
+        return sorted({*self.histories, *self._parents})
+
+    def find(self, target: str, source: str, stamp: int) -> tuple[Pose, int]:
+        """The pose of `source` in `target`, and its time.
+
+        Args:
+            stamp: Nanoseconds; 0 for the latest that all on the way have.
+
+        Raises:
+            LookupException, ConnectivityException, ExtrapolationException: There is none.
+        """
+        for frame, role in ((target, "target_frame"), (source, "source_frame")):
+            if not self.has(frame):
+                raise LookupException(f'"{frame}" passed to lookupTransform argument {role} does not exist. ')
+        if stamp == 0:
+            stamp = self.latest_common(target, source)
+        ups = {source: IDENTITY}
+        fault = self._climb(source, stamp, ups, stop=target)
+        if target in ups:
+            return ups[target], stamp
+        downs = {target: IDENTITY}
+        other_fault = self._climb(target, stamp, downs, stop=ups)
+        common = next((frame for frame in downs if frame in ups), None)
+        if common is None:
+            missing = fault or other_fault
+            if missing is not None:
+                way = f"when looking up transform from frame [{source}] to frame [{target}]"
+                raise ExtrapolationException(f"Lookup would require extrapolation {missing}, {way}")
+            raise self._unconnected(target, source)
+        return downs[common].inverse().of(ups[common]), stamp
+
+    def chain(self, frame: str) -> list[str]:
+        """A frame and all above it, as of now."""
+        above: dict[str, Pose] = {frame: IDENTITY}
+        self._climb(frame, 0, above, stop=())
+        return list(above)
+
+    def latest_common(self, target: str, source: str) -> int:
+        """The latest time of which all frames on the way between two have poses; 0 if none of them moves.
+
+        Raises:
+            ConnectivityException: There is no way.
+        """
+        ups, downs = self.chain(source), self.chain(target)
+        common = next((frame for frame in ups if frame in downs), None)
+        if common is None:
+            raise self._unconnected(target, source)
+        way = ups[: ups.index(common)] + downs[: downs.index(common)]
+        moving = [self.histories[frame] for frame in way or [common] if frame in self.histories]
+        return min((history.stamps[-1] for history in moving if not history.is_static), default=0)
+
+    def _climb(
+        self, frame: str, stamp: int, poses: dict[str, Pose], stop: str | tuple[()] | dict[str, Pose]
+    ) -> str | None:
+        """Go up to the root, or to where it is enough, and note the poses of `frame`; says what is not known."""
+        pose, start = IDENTITY, frame
+        ends = (stop,) if isinstance(stop, str) else stop
+        while frame in self.histories and frame not in ends:
+            found = self.histories[frame].at(stamp)
+            if isinstance(found, str):
+                return found
+            step, frame = found
+            if frame in poses:
+                raise TransformException(
+                    f"The tf tree is invalid because it contains a loop at [{frame}], above [{start}]"
+                )
+            pose = poses[frame] = step.of(pose)
+        return None
+
+    @staticmethod
+    def _unconnected(target: str, source: str) -> ConnectivityException:
+        return ConnectivityException(
+            f"Could not find a connection between '{target}' and '{source}' because they are not part of the same "
+            "tree. Tf has two or more unconnected trees."
+        )
+
+
+def _seconds(stamp: int) -> str:
+    return f"{stamp // 10**9}.{stamp % 10**9 // 1000:06d}"

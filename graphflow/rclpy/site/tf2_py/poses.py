@@ -1,0 +1,81 @@
+"""Where one frame is in another: a rotation, and then a translation. In plain floats: these are three or four each."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TypeAlias
+
+Vector: TypeAlias = tuple[float, float, float]
+"""x, y, z in metres."""
+Quaternion: TypeAlias = tuple[float, float, float, float]
+"""x, y, z, w; its length is 1."""
+
+
+class Pose(NamedTuple):
+    """A frame's pose in its parent, which also takes coordinates in the frame to those in the parent."""
+
+    translation: Vector
+    rotation: Quaternion
+
+    def of(self, inner: Pose) -> Pose:
+        """The pose, in the parent of this one, of what has the pose `inner` in this one."""
+        return Pose(self.point(inner.translation), multiply(self.rotation, inner.rotation))
+
+    def point(self, point: Vector) -> Vector:
+        """A point's coordinates in the parent."""
+        x, y, z = rotate(self.rotation, point)
+        return x + self.translation[0], y + self.translation[1], z + self.translation[2]
+
+    def inverse(self) -> Pose:
+        """The parent's pose in the frame."""
+        back = conjugate(self.rotation)
+        x, y, z = rotate(back, self.translation)
+        return Pose((-x, -y, -z), back)
+
+    def towards(self, other: Pose, share: float) -> Pose:
+        """The pose on the way to another, at a share of 0 to 1 of it: straight, and turning evenly."""
+        (x, y, z), (u, v, w) = self.translation, other.translation
+        moved = (x + (u - x) * share, y + (v - y) * share, z + (w - z) * share)
+        return Pose(moved, slerp(self.rotation, other.rotation, share))
+
+
+IDENTITY = Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
+    """The rotation `b`, and then `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def conjugate(q: Quaternion) -> Quaternion:
+    """The rotation back."""
+    return -q[0], -q[1], -q[2], q[3]
+
+
+def rotate(q: Quaternion, vector: Vector) -> Vector:
+    """A vector, rotated."""
+    x, y, z, w = q
+    a, b, c = vector
+    u, v, t = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
+    return a + w * u + y * t - z * v, b + w * v + z * u - x * t, c + w * t + x * v - y * u
+
+
+def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
+    """The rotation at a share of 0 to 1 of the shorter way from `a` to `b`."""
+    dot = sum(p * q for p, q in zip(a, b, strict=True))
+    sign = -1.0 if dot < 0 else 1.0
+    angle = math.acos(min(1.0, abs(dot)))
+    if angle < 1e-6:
+        start, end = 1 - share, share
+    else:
+        start, end = math.sin((1 - share) * angle) / math.sin(angle), math.sin(share * angle) / math.sin(angle)
+    x, y, z, w = (start * p + sign * end * q for p, q in zip(a, b, strict=True))
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    return x / length, y / length, z / length, w / length

@@ -1,0 +1,158 @@
+"""The buffer of transforms that a node fills and asks."""
+
+from __future__ import annotations
+
+import threading
+import time as clocks
+from collections.abc import Callable
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.srv import FrameGraph
+from tf2_py import BufferCore
+
+from rclpy.duration import Duration
+from rclpy.task import Future
+from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
+
+
+class Buffer(BufferCore, BufferInterface):
+    """What is known about frames; ask it where one is in another.
+
+    Args:
+        cache_time: How long that is kept; 10 seconds where nothing is said.
+        node: One that answers `tf2_frames`, and ends the waiting of others when it does.
+    """
+
+    def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
+        BufferCore.__init__(self, cache_time)
+        BufferInterface.__init__(self)
+        self._changed = threading.Condition()
+        self._waiting: dict[Future[Any], Callable[[], tuple[bool, str]]] = {}
+        self._node = node
+        if node is not None:
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._answer_frames)
+
+    def _answer_frames(self, request: Any, response: Any) -> Any:
+        response.frame_yaml = self.all_frames_as_yaml()
+        return response
+
+    def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        super().set_transform(transform, authority)
+        self._tell()
+
+    def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
+        super().set_transform_static(transform, authority)
+        self._tell()
+
+    def _tell(self) -> None:
+        """Let those who wait look again."""
+        with self._changed:
+            self._changed.notify_all()
+            ready = [future for future, can in self._waiting.items() if can()[0]]
+            for future in ready:
+                del self._waiting[future]
+        for future in ready:
+            future.set_result(True)
+
+    def lookup_transform(
+        self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE
+    ) -> TransformStamped:
+        """The transform that takes coordinates in `source_frame` to those in `target_frame`.
+
+        Args:
+            time: 0 for the latest.
+            timeout: How long to wait for it. Another thread must spin the listener's node meanwhile.
+
+        Raises:
+            TransformException: One of its kinds says why there is none.
+        """
+        self.can_transform(target_frame, source_frame, time, timeout)
+        return self.lookup_transform_core(target_frame, source_frame, time)
+
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Duration = AT_ONCE,
+    ) -> TransformStamped:
+        """The same between two times; `fixed_frame` is what has not moved between them."""
+        self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
+        return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
+
+    def can_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any,
+        timeout: Duration = AT_ONCE,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Whether there is that transform, after waiting for it; with `return_debug_tuple` also why not."""
+        answer = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        return answer if return_debug_tuple else answer[0]
+
+    def can_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Duration = AT_ONCE,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Whether there is that transform between two times, after waiting for it."""
+        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        answer = self._wait(lambda: self.can_transform_full_core(*asked), timeout)
+        return answer if return_debug_tuple else answer[0]
+
+    def _wait(self, can: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
+        until = clocks.monotonic() + timeout.nanoseconds / 1e9
+        with self._changed:
+            while True:
+                answer = can()
+                left = until - clocks.monotonic()
+                is_over = self._node is not None and not self._node.context.ok()
+                if answer[0] or left <= 0 or is_over:
+                    return answer
+                self._changed.wait(min(left, 0.1))  # the end of a context tells nobody
+
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[bool]:
+        """A future that is done as soon as there is that transform."""
+        return self._when(lambda: self.can_transform_core(target_frame, source_frame, time))
+
+    def wait_for_transform_full_async(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> Future[bool]:
+        """A future that is done as soon as there is that transform between two times."""
+        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        return self._when(lambda: self.can_transform_full_core(*asked))
+
+    def _when(self, can: Callable[[], tuple[bool, str]]) -> Future[bool]:
+        future: Future[bool] = Future()
+        with self._changed:
+            is_ready = can()[0]
+            if not is_ready:
+                self._waiting[future] = can
+        if is_ready:
+            future.set_result(True)
+        else:
+            future.add_done_callback(lambda done: self._waiting.pop(done, None))
+        return future
+
+    async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:
+        """Wait for a transform in a callback that is a coroutine. Raises TransformException."""
+        await self.wait_for_transform_async(target_frame, source_frame, time)
+        return self.lookup_transform_core(target_frame, source_frame, time)
+
+    async def lookup_transform_full_async(
+        self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
+    ) -> TransformStamped:
+        """The same between two times. Raises TransformException."""
+        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        await self.wait_for_transform_full_async(*asked)
+        return self.lookup_transform_full_core(*asked)

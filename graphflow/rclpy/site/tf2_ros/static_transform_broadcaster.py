@@ -1,0 +1,28 @@
+"""Saying where frames are that do not move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
+
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from tf2_ros.transform_broadcaster import as_list
+
+
+class StaticTransformBroadcaster:
+    """Publishes transforms on `/tf_static`, for those too who join later."""
+
+    def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
+        if qos is None:
+            kept = DurabilityPolicy.TRANSIENT_LOCAL
+            qos = QoSProfile(depth=1, durability=kept, history=HistoryPolicy.KEEP_LAST)
+        self.pub_tf = node.create_publisher(TFMessage, "/tf_static", qos)
+        self._sent: dict[str, TransformStamped] = {}
+
+    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
+        """Publish one transform, or several, with all that were published before: only the last message is kept."""
+        self._sent |= {one.child_frame_id: one for one in as_list(transform)}
+        self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))

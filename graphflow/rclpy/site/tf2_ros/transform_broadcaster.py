@@ -1,0 +1,27 @@
+"""Saying where frames are that move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
+
+from rclpy.qos import QoSProfile
+
+
+class TransformBroadcaster:
+    """Publishes transforms on `/tf`."""
+
+    def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
+        self.pub_tf = node.create_publisher(TFMessage, "/tf", 100 if qos is None else qos)
+
+    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
+        """Publish one transform, or several."""
+        self.pub_tf.publish(TFMessage(transforms=as_list(transform)))
+
+
+def as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
+    """One transform, or several, as a list."""
+    return list(transform) if hasattr(transform, "__iter__") else [transform]

@@ -1,0 +1,81 @@
+"""What fills a buffer with transforms."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from tf2_msgs.msg import TFMessage
+from tf2_py import BufferCore
+
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+
+DEPTH = 100
+
+
+class TransformListener:
+    """Puts what is said on `/tf` and `/tf_static` into a buffer, while its node is spun.
+
+    Args:
+        spin_thread: Whether it spins the node itself, in a thread.
+        static_only: Whether it leaves out `/tf`.
+    """
+
+    def __init__(
+        self,
+        buffer: BufferCore,
+        node: Any,
+        *,
+        spin_thread: bool = False,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
+        static_only: bool = False,
+    ) -> None:
+        self.buffer, self.node = buffer, node
+        self.group = ReentrantCallbackGroup()
+        if static_qos is None:
+            kept = DurabilityPolicy.TRANSIENT_LOCAL
+            static_qos = QoSProfile(depth=DEPTH, durability=kept, history=HistoryPolicy.KEEP_LAST)
+        self.tf_sub = None
+        if not static_only:
+            self.tf_sub = node.create_subscription(
+                TFMessage, "/tf", self.callback, DEPTH if qos is None else qos, callback_group=self.group
+            )
+        self.tf_static_sub = node.create_subscription(
+            TFMessage, "/tf_static", self.static_callback, static_qos, callback_group=self.group
+        )
+        self.executor: SingleThreadedExecutor | None = None
+        if spin_thread:
+            self.executor = SingleThreadedExecutor(context=node.context)
+            self.executor.add_node(node)
+            self.dedicated_listener_thread = threading.Thread(target=self._spin, args=(self.executor,), daemon=True)
+            self.dedicated_listener_thread.start()
+
+    @staticmethod
+    def _spin(executor: SingleThreadedExecutor) -> None:
+        try:
+            executor.spin()
+        except (ExternalShutdownException, ShutdownException):
+            return  # its context has ended, or `unregister` was called
+
+    def callback(self, data: TFMessage) -> None:
+        """Take what is said on `/tf`."""
+        for transform in data.transforms:
+            self.buffer.set_transform(transform)
+
+    def static_callback(self, data: TFMessage) -> None:
+        """Take what is said on `/tf_static`."""
+        for transform in data.transforms:
+            self.buffer.set_transform_static(transform)
+
+    def unregister(self) -> None:
+        """Listen no more."""
+        if self.executor is not None:
+            self.executor.shutdown()
+            self.executor = None
+        for subscription in (self.tf_sub, self.tf_static_sub):
+            if subscription is not None:
+                self.node.destroy_subscription(subscription)
+        self.tf_sub = self.tf_static_sub = None

@@ -1,0 +1,215 @@
+"""What a field of a strict message takes, and what it says of all else.
+
+Source: the setters that rosidl_generator_py writes, whose words these are.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections import UserList
+from collections.abc import Callable, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any
+
+from graphflow.wire.schema import INTEGER_RANGES, STRINGS, FieldType
+
+Check = Callable[[Any], Any]
+"""Returns what is kept of a value; raises AssertionError for one that does not fit."""
+
+SEQUENCE_CODES = {
+    "float32": "f",
+    "float64": "d",
+    "int8": "b",
+    "uint8": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+}
+"""Numbers whose sequences are kept as `array.array`, with its codes, and whose fixed arrays as numpy's."""
+_WORDS = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet", "char": "uint8"}
+_FLOAT32 = 3.402823466e38
+
+
+def rosidl_type(type_: FieldType) -> str:
+    """A field's type in rosidl's words: `sequence<double, 3>`."""
+    base = _WORDS.get(type_.base, type_.base.replace("/msg/", "/"))
+    if type_.string_bound:
+        base = f"{base}<{type_.string_bound}>"
+    match type_.array:
+        case "fixed":
+            return f"{base}[{type_.size}]"
+        case "bounded":
+            return f"sequence<{base}, {type_.size}>"
+        case "unbounded":
+            return f"sequence<{base}>"
+    return base
+
+
+def checker(name: str, type_: FieldType, cls: type | None) -> Check:
+    """What checks the values of a field.
+
+    Args:
+        cls: The class of its messages, if it holds messages.
+    """
+    return _sequence(name, type_, cls) if type_.array else _single(name, type_, cls)
+
+
+def _single(name: str, type_: FieldType, cls: type | None) -> Check:
+    base = type_.base
+    if cls is not None:
+        return _kind(cls, f"The '{name}' field must be a sub message of type '{cls.__name__}'")
+    if base == "bool":
+        return _kind(bool, f"The '{name}' field must be of type 'bool'")
+    if base == "byte":
+        return _byte(name)
+    if base in STRINGS:
+        return _string(name, type_.string_bound)
+    if base in INTEGER_RANGES:
+        return _integer(name, base)
+    if base == "float32":
+        return _float32(name)
+    return _kind(float, f"The '{name}' field must be of type 'float'")
+
+
+def _kind(cls: type, complaint: str) -> Check:
+    def check(value: Any) -> Any:
+        if not isinstance(value, cls):
+            raise AssertionError(complaint)
+        return value
+
+    return check
+
+
+def _byte(name: str) -> Check:
+    def check(value: Any) -> bytes:
+        if not isinstance(value, (bytes, bytearray)) or len(value) != 1:
+            raise AssertionError(f"The '{name}' field must be of type 'bytes' or 'ByteString' with length 1")
+        return bytes(value)
+
+    return check
+
+
+def _string(name: str, bound: int) -> Check:
+    def check(value: Any) -> str:
+        if not isinstance(value, str):
+            raise AssertionError(f"The '{name}' field must be of type 'str'")
+        if bound and len(value) > bound:
+            raise AssertionError(f"The '{name}' field must be string value not longer than {bound}")
+        return value
+
+    return check
+
+
+def _integer(name: str, base: str) -> Check:
+    low, high = INTEGER_RANGES[base]
+    kind = "an unsigned integer" if low == 0 else "an integer"
+
+    def check(value: Any) -> int:
+        if not isinstance(value, int):
+            raise AssertionError(f"The '{name}' field must be of type 'int'")
+        if not low <= value <= high:
+            raise AssertionError(f"The '{name}' field must be {kind} in [{low}, {high}]")
+        return value
+
+    return check
+
+
+def _float32(name: str) -> Check:
+    def check(value: Any) -> float:
+        if not isinstance(value, float):
+            raise AssertionError(f"The '{name}' field must be of type 'float'")
+        if abs(value) > _FLOAT32 and not math.isinf(value):
+            raise AssertionError(f"The '{name}' field must be a float in [-{_FLOAT32}, {_FLOAT32}]")
+        return value
+
+    return check
+
+
+def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
+    element = _single(name, type_._replace(array="", size=0), cls)
+    size = type_.size
+    length = {"fixed": f" with length {size}", "bounded": f" with length <= {size}"}.get(type_.array, "")
+    word = cls.__name__ if cls is not None else _python_word(type_.base)
+    complaint = f"The '{name}' field must be a set or sequence{length} and each value of type '{word}'"
+
+    def fits(count: int) -> bool:
+        return count == size if type_.array == "fixed" else not size or count <= size
+
+    def plain(value: Any) -> list[Any]:
+        is_sequence = isinstance(value, (Sequence, AbstractSet, UserList, array)) or hasattr(value, "dtype")
+        if not is_sequence or isinstance(value, str) or not fits(len(value)):
+            raise AssertionError(complaint)
+        items = list(value)
+        try:
+            for item in items:
+                element(item)
+        except AssertionError as error:
+            within = str(error).partition(" in [")[2]
+            raise AssertionError(f"{complaint}{f' in [{within}' if within else ''}") from None
+        return items
+
+    if type_.base not in SEQUENCE_CODES:
+        # A list is kept as it is: whoever has it may change it, as in ROS 2.
+        return lambda value: (plain(value), value)[1] if isinstance(value, list) else plain(value)
+    code = SEQUENCE_CODES[type_.base]
+    if type_.array == "fixed":
+        return lambda value: _fixed(name, type_, value, plain)
+
+    def numbers(value: Any) -> array[Any]:
+        if isinstance(value, array):
+            if value.typecode != code:
+                raise AssertionError(f"The '{name}' array.array() must have the type code of '{code}'")
+            if not fits(len(value)):
+                raise AssertionError(f"The '{name}' array.array() must have a size <= {size}")
+            return value
+        return array(code, value if fits(_length(value)) and _are_all(type_.base, value) else plain(value))
+
+    return numbers
+
+
+def _length(value: Any) -> int:
+    return len(value) if hasattr(value, "__len__") else -1
+
+
+def _are_all(base: str, value: Any) -> bool:
+    """Whether all of a sequence is seen at one look to be of a type; where it is not, each number is looked at."""
+    if isinstance(value, (bytes, bytearray)):
+        return base in ("uint8", "char")
+    if not isinstance(value, (list, tuple)):
+        return base == "float64" and getattr(value, "dtype", None) == "float64" and value.ndim == 1
+    kinds = set(map(type, value))
+    if base == "float64":
+        return kinds <= {float}
+    if base == "float32" or not kinds <= {int}:
+        return False
+    low, high = INTEGER_RANGES[base]
+    return not value or (low <= min(value) and max(value) <= high)
+
+
+def _fixed(name: str, type_: FieldType, value: Any, plain: Check) -> Any:
+    """An array of fixed length, as numpy's."""
+    import numpy as np
+
+    from graphflow.wire.arrays import DTYPES, ndarray
+
+    dtype = DTYPES[type_.base]
+    if isinstance(value, ndarray):
+        if value.dtype != dtype:
+            raise AssertionError(f"The '{name}' numpy.ndarray() must have the dtype of 'numpy.{dtype.name}'")
+        if value.size != type_.size:
+            raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {type_.size}")
+        return value
+    return np.array(plain(value), dtype)
+
+
+def _python_word(base: str) -> str:
+    if base in STRINGS:
+        return "str"
+    if base in ("bool", "byte"):
+        return {"bool": "bool", "byte": "bytes"}[base]
+    return "int" if base in INTEGER_RANGES else "float"

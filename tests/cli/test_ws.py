@@ -1,0 +1,55 @@
+"""`graphflow ws`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Machine
+
+SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['lamp = lamp.node:main']})\n"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """One package with a node, and one with a message."""
+    for name in ("lamp", "lamp_interfaces"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    (tmp_path / "src/lamp/setup.py").write_text(SETUP)
+    (tmp_path / "src/lamp/lamp").mkdir()
+    (tmp_path / "src/lamp/lamp/node.py").write_text("import rclpy\n")
+    (tmp_path / "src/lamp_interfaces/msg").mkdir()
+    (tmp_path / "src/lamp_interfaces/msg/LampLight.msg").write_text("int32 level\n")
+    return tmp_path
+
+
+def test_what_there_is(machine: Machine, workspace: Path) -> None:
+    """From any folder in it; out of habit, people build it."""
+    shown = machine.look("ws", cwd=workspace / "src" / "lamp")
+    assert [line.split() for line in shown.splitlines()[:3]] == [
+        ["PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER"],
+        ["lamp", "lamp", "-", "src/lamp"],
+        ["lamp_interfaces", "-", "msg/LampLight", "src/lamp_interfaces"],
+    ]
+    assert "Start one with: graphflow run PACKAGE EXECUTABLE" in shown
+    assert "Nothing has to be built" in machine.look("ws", "build", "--symlink-install", cwd=workspace)
+    found = json.loads(machine.look("ws", "--json", cwd=workspace))
+    assert found["faults"] == []
+    assert found["packages"][0]["executables"] == ["lamp"]
+
+
+def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
+    """An executable without its module, and a definition that is none."""
+    (workspace / "src/lamp/lamp/node.py").unlink()
+    (workspace / "src/lamp_interfaces/msg/Broken.msg").write_text("int32\n")
+    shown = machine.look("ws", cwd=workspace, code=1)
+    assert "lamp is lamp.node:main, and there is no" in shown
+    assert "Broken.msg" in shown
+
+
+def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
+    """It is said where one would be."""
+    assert "go to a folder that has packages in src/" in machine.look("ws", cwd=tmp_path, code=1)

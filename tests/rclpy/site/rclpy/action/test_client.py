@@ -1,0 +1,81 @@
+"""Clients of actions."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from example_interfaces.action import Fibonacci
+
+from rclpy.action import ActionClient, ActionServer
+from rclpy.action.server import ServerGoalHandle
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+from tests.rclpy.conftest import Spinner
+
+
+def succeed(goal: ServerGoalHandle) -> Any:
+    goal.succeed()
+    return Fibonacci.Result(sequence=[1, 2])
+
+
+def test_another_thread_may_block_on_a_goal(node: Node, spin: Spinner) -> None:
+    """From sending to its result, or step by step."""
+    ActionServer(node, Fibonacci, "fib", succeed)
+    client, results = ActionClient(node, Fibonacci, "fib"), list[Any]()
+    client.wait_for_server(5)
+    thread = threading.Thread(target=lambda: results.append(client.send_goal(Fibonacci.Goal())))
+    thread.start()
+    spin(lambda: results)
+    thread.join()
+    assert (results[0].status, list(results[0].result.sequence)) == (4, [1, 2])
+    future = client.send_goal_async(Fibonacci.Goal())
+    spin(future.done)
+    handle: Any = future.result()
+    thread = threading.Thread(target=lambda: results.append(handle.get_result()))
+    thread.start()
+    spin(lambda: len(results) == 2)
+    thread.join()
+    assert handle.accepted
+    assert "accepted=True" in repr(handle)
+
+
+def test_a_server_is_there_when_all_of_it_is(node: Node) -> None:
+    """Waiting ends in time."""
+    client = ActionClient(node, Fibonacci, "fib")
+    assert not client.wait_for_server(0.02)
+    server = ActionServer(node, Fibonacci, "fib", succeed)
+    assert client.wait_for_server(5)
+    assert client.server_is_ready()
+    server.destroy()
+    assert not client.server_is_ready()
+
+
+def test_handles_know_the_states_of_their_goals(node: Node, spin: Spinner) -> None:
+    """As the server publishes them."""
+    kept: list[ServerGoalHandle] = []
+    ActionServer(node, Fibonacci, "fib", succeed, handle_accepted_callback=kept.append)
+    client = ActionClient(node, Fibonacci, "fib", callback_group=ReentrantCallbackGroup())
+    client.wait_for_server(5)
+    future = client.send_goal_async(Fibonacci.Goal())
+    spin(future.done)
+    handle: Any = future.result()
+    kept[0].execute()
+    spin(lambda: handle.status == 4)
+    assert bytes(handle.goal_id.uuid) == bytes(kept[0].goal_id.uuid)
+    assert handle.stamp.sec > 0
+
+
+def test_what_is_no_goal_is_refused(node: Node) -> None:
+    """And a client that was destroyed is gone."""
+    client = ActionClient(node, Fibonacci, "fib")
+    for wrong in (lambda: client.send_goal("x"), lambda: client.send_goal_async("x")):
+        with pytest.raises(TypeError):
+            wrong()
+    for refuse in (client.cancel, client.result_of):
+        with pytest.raises(TypeError):
+            refuse("x")  # type: ignore[arg-type]
+    client.destroy()
+    client.destroy()
+    assert node.count_clients("/fib/_action/send_goal") == 0

@@ -1,0 +1,159 @@
+"""Programs written for rclpy."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import UsageFault
+from graphflow.rclpy.programs import find_program
+from graphflow.transport.rendezvous import free_endpoint
+
+NODE = """
+import sys
+import rclpy
+from rclpy.node import Node
+from lamp_interfaces.msg import Light
+
+
+class Lamp(Node):
+    def __init__(self):
+        super().__init__("lamp")
+        self.declare_parameter("level", 1)
+        self.shines = self.create_publisher(Light, "light", 10)
+        self.create_subscription(Light, "light", self.seen, 10)
+        self.timer = self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        self.shines.publish(Light(level=self.get_parameter("level").value))
+
+    def seen(self, light):
+        self.get_logger().info(f"{self.get_fully_qualified_name()} shines: {light.level}", once=True)
+
+
+def main():
+    rclpy.init()
+    lamp = Lamp()
+    print(sys.argv[1:], flush=True)
+    try:
+        rclpy.spin(lamp)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        lamp.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
+"""
+SETUP = """from setuptools import setup
+setup(entry_points={'console_scripts': ['lamp = lamp.node:main', 'none = lamp.no:main']})
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace with a package of nodes, one of messages, and one of programs."""
+    for name in ("lamp", "lamp_interfaces", "tools"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    lamp = tmp_path / "src" / "lamp"
+    (lamp / "lamp").mkdir()
+    (lamp / "lamp" / "__init__.py").touch()
+    (lamp / "lamp" / "node.py").write_text(NODE)
+    (lamp / "lamp" / "ours.py").write_text("from graphflow import Node\n\nclass Ours(Node):\n    pass\n")
+    (lamp / "setup.py").write_text(SETUP.replace("]", ", 'ours = lamp.ours:main']"))
+    (tmp_path / "src/lamp_interfaces/msg").mkdir()
+    (tmp_path / "src/lamp_interfaces/msg/Light.msg").write_text("int32 level\n")
+    (tmp_path / "src/tools/scripts").mkdir()
+    (tmp_path / "src/tools/scripts/say").write_text("#!/usr/bin/env python3\nimport rclpy\nprint('said')\n")
+    return tmp_path
+
+
+def test_a_program_is_a_file_or_an_executable_of_a_package(workspace: Path) -> None:
+    """With the words that are left; what is graphflow's own is none."""
+    node = workspace / "src/lamp/lamp/node.py"
+    found = find_program("lamp", ["lamp", "--ros-args"], workspace)
+    assert found is not None
+    assert (found.file, found.entry, found.words) == (node, ("lamp.node", "main"), ["--ros-args"])
+    by_file = find_program("src/lamp/lamp/node.py", ["x"], workspace)
+    assert by_file is not None
+    assert (by_file.file, by_file.entry, set(by_file.workspace.packages)) == (
+        node,
+        None,
+        {"lamp", "lamp_interfaces", "tools"},
+    )
+    for what, words in (("lamp", ["ours"]), ("lamp_interfaces", []), ("nothing", ["x"]), ("src/lamp/lamp/ours.py", [])):
+        assert find_program(what, words, workspace) is None
+
+
+def test_what_a_package_has_not_is_told(workspace: Path) -> None:
+    """With what it has; and what it says it has."""
+    with pytest.raises(UsageFault, match="'lamp' has no executable 'lmap'; did you mean 'lamp'"):
+        find_program("lamp", ["lmap"], workspace)
+    with pytest.raises(UsageFault, match="name an executable of the package 'lamp': lamp, none, ours"):
+        find_program("lamp", [], workspace)
+    with pytest.raises(UsageFault, match=r"none is lamp\.no:main, and there is no"):
+        find_program("lamp", ["none"], workspace)
+
+
+def start(workspace: Path, *words: str) -> subprocess.Popen[str]:
+    env = {**os.environ, "GRAPHFLOW_RENDEZVOUS": free_endpoint(), "PYTHONUNBUFFERED": "1"}
+    command = [sys.executable, "-m", "graphflow.rclpy", *words]
+    return subprocess.Popen(
+        command, cwd=workspace, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("words", [("lamp", "lamp"), ("src/lamp/lamp/node.py",)])
+def test_it_runs_as_it_stands(workspace: Path, words: tuple[str, ...]) -> None:
+    """With messages of its workspace, and what the command line says; Ctrl-C ends it cleanly."""
+    process = start(workspace, *words, "mine", "--ros-args", "-r", "__ns:=/attic", "-p", "level:=7")
+    lines: list[str] = []
+    assert process.stdout is not None
+    try:
+        for line in process.stdout:
+            lines.append(line)
+            if "shines: 7" in line:
+                process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 0
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+    assert lines[0] == "['mine', '--ros-args', '-r', '__ns:=/attic', '-p', 'level:=7']\n"
+    assert [line for line in lines if "[attic.lamp]: /attic/lamp shines: 7" in line]
+    assert len(lines) == 2
+
+
+@pytest.mark.real
+def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
+    """And a sentence."""
+    for words, code, text in (
+        (("tools", "say"), 0, "said\n"),
+        (("lamp", "lmap"), 2, "error: package 'lamp' has no executable 'lmap'; did you mean 'lamp'?\n"),
+        (("nothing",), 2, "error: nothing is no program that uses rclpy\n"),
+    ):
+        process = start(workspace, *words)
+        output, _ = process.communicate(timeout=20)
+        assert (output, process.returncode) == (text, code)
+
+
+def test_a_program_without_an_end_of_its_own_ends_too() -> None:
+    """A node that nobody has destroyed, and a context that nobody has shut down."""
+    code = (
+        "from graphflow.rclpy import enabling; enabling.here(); import rclpy; from rclpy.node import Node; "
+        "rclpy.init(); node = Node('left'); print('left')"
+    )
+    env = {**os.environ, "GRAPHFLOW_RENDEZVOUS": free_endpoint()}
+    ended = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=30, check=False
+    )
+    assert (ended.stdout, ended.stderr, ended.returncode) == ("left\n", "", 0)

@@ -1,0 +1,45 @@
+"""Waking threads."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+from graphflow.rclpy.wake import Wake
+
+
+def test_a_wait_ends_when_somebody_wakes() -> None:
+    """From another thread, or before the wait began."""
+    wake = Wake()
+    threading.Timer(0.01, wake.set).start()
+    assert wake.wait(5)
+    wake.set()
+    wake.set()
+    assert wake.wait(0)
+    assert not wake.wait(0)  # twice before a wait is once
+
+
+def test_a_signal_handler_wakes_the_thread_that_it_interrupts() -> None:
+    """Which waits, and holds whatever a wait holds."""
+    wake = Wake()
+    former = signal.signal(signal.SIGUSR1, lambda *_: wake.set())
+    try:
+        threading.Timer(0.02, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+        assert wake.wait(5)
+    finally:
+        signal.signal(signal.SIGUSR1, former)
+
+
+def test_a_condition_is_looked_at_again_whenever_somebody_wakes() -> None:
+    """And the wait goes on as long as it does not hold."""
+    wake, looked = Wake(), [0]
+
+    def third_time() -> bool:
+        looked[0] += 1
+        if looked[0] < 3:
+            wake.set()
+        return looked[0] == 3
+
+    assert wake.wait_until(third_time, 5)
+    assert not wake.wait_until(lambda: False, 0.01)
