@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 from hypothesis import HealthCheck, Phase, settings
+
+T = TypeVar("T")
 
 VARIABLE = "GRAPHFLOW_CASES"
 """How the option reaches test modules, which need it while they are imported."""
@@ -30,7 +32,7 @@ def cases(number: int) -> settings:
     )
 
 
-def sample(names: Sequence[str]) -> Sequence[str]:
+def sample(names: Sequence[T]) -> Sequence[T]:
     """One in four of many alike, beginning with the first; all of them with `--cases full`, as in CI."""
     return names[::4] if _WANTED == "few" else names
 

@@ -14,6 +14,9 @@ from graphflow.domain import rendezvous_endpoint
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
+LOOK_EVERY = 0.05
+"""Seconds between two looks whether the rendezvous has been reached."""
+
 
 @click.command()
 @reach_options
@@ -33,7 +36,9 @@ def router(connect: tuple[str, ...], net: str | None) -> int:
             output.data(f"Started Zenoh router with id {node.context.router_id}")
             output.talk(f"ROS 2 and graphflow find each other at {endpoint}. Ctrl-C ends it")
         else:
-            output.data(f"There is a Zenoh router at {endpoint} already, with id {node.context.router_id}")
+            while not (zid := node.context.router_id):  # it is being connected to
+                await asyncio.sleep(LOOK_EVERY)
+            output.data(f"There is a Zenoh router at {endpoint} already, with id {zid}")
             output.talk("This one waits to take over when it ends. Ctrl-C ends it")
         await asyncio.get_running_loop().create_future()
         return 0

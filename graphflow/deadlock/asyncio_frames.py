@@ -248,9 +248,18 @@ def object_wait(frame: FrameType) -> ObjectWait | None:
     return ObjectWait(names["self"], endings, names.get("timeout") is not None)
 
 
+_OTHER_FUTURES: set[type] = set()
+
+
+def know_futures(cls: type) -> None:
+    """Have the instances of a class, not those of its subclasses, taken for futures that code may set."""
+    _OTHER_FUTURES.add(cls)
+
+
 def awaited_future(future: Any) -> ObjectWait | None:
     """A wait for a future that is not a task; a task would end by itself."""
     is_plain = isinstance(future, asyncio.Future) and not isinstance(future, asyncio.Task)
+    is_plain |= type(future) in _OTHER_FUTURES
     return ObjectWait(future, FUTURE, False) if is_plain else None
 
 

@@ -365,7 +365,7 @@ def method_of(task: Any) -> str:
     return str(getattr(task.get_coro(), "__name__", ""))
 
 
-_LIBRARIES = ("graphflow.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")
+_LIBRARIES = ("graphflow.", "rclpy.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")
 
 
 def is_library(frame: FrameType) -> bool:

@@ -63,6 +63,8 @@ class Inspection:
             return self._last_waits
         search, watchdog = self._search, self._search.watchdog
         nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
+        for other in list(self._process.elsewhere):
+            nodes |= other.groups()
         reports = dict(search.reports)
         told = {
             **to_json(search.snapshot.take_for_others()),

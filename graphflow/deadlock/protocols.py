@@ -13,6 +13,7 @@ from graphflow.executor.groups import Groups
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
 from graphflow.machines.cache import GraphCache, GraphChange
+from graphflow.machines.wait_graph import WaitGraph
 from graphflow.transport.base import Session
 
 
@@ -71,6 +72,16 @@ class Subject(Protocol):
         """What is wrong with it that it knows itself, a sentence for each."""
 
 
+class Elsewhere(Protocol):
+    """Callbacks that run elsewhere than on the loop, in threads of somebody else's."""
+
+    def waits(self) -> WaitGraph:
+        """Who waits for whom among them. Called on any thread."""
+
+    def groups(self) -> dict[str, list[dict[str, Any]]]:
+        """What they are in, by node, as plain data. Called on any thread."""
+
+
 class Surroundings(Protocol):
     """What the nodes of one process share, as far as the search needs it."""
 
@@ -94,6 +105,9 @@ class Surroundings(Protocol):
 
     @property
     def nodes(self) -> Sequence[Subject]: ...
+
+    @property
+    def elsewhere(self) -> Sequence[Elsewhere]: ...
 
     def arrived(self) -> list[tuple[Runner, bytes, int]]:
         """Requests that the loop has not seen yet: the runner each is for, the client's GID, its number."""

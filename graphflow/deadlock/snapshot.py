@@ -48,6 +48,7 @@ from graphflow.machines.wait_graph import (
     call_id,
     calls_of,
     goal_id,
+    joined,
     parts_of,
 )
 from graphflow.times import to_ns
@@ -75,7 +76,8 @@ class Snapshot:
         with self._lock:
             for _ in range(_ATTEMPTS):
                 try:
-                    return _Look(self._process, self, self._watchdog).graph()
+                    own = _Look(self._process, self, self._watchdog).graph()
+                    return joined([own, *(other.waits() for other in list(self._process.elsewhere))])
                 except RuntimeError:  # something changed its size meanwhile
                     continue
         return WaitGraph()

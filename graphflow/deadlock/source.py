@@ -38,6 +38,8 @@ _SAME |= {"diagonal", "copyto"}
 """Functions of numpy that may return another view of the same array, or write to it."""
 _INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
 """Methods by which attributes change in ways that their names do not show."""
+_RCLPYS = {"ActionServer", "ActionClient", "TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"}
+"""Classes that are given the node, and do nothing to attributes that it has of its own."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
 
 
@@ -386,7 +388,10 @@ def _word(function: ast.expr) -> str:
 
 
 def _registers(above: ast.AST) -> bool:
-    return isinstance(above, ast.Call) and ast.unparse(above.func).startswith("self.create_")
+    if not isinstance(above, ast.Call):
+        return False
+    function = ast.unparse(above.func)
+    return function.startswith("self.create_") or function.rpartition(".")[2] == "ActionServer"
 
 
 def _is_awaited(parents: Sequence[ast.AST]) -> bool:
@@ -402,7 +407,9 @@ def _is_awaited(parents: Sequence[ast.AST]) -> bool:
 def _knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
     """Whether a call that receives the node leads to code that is read here too, or that only looks at it."""
     call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]
-    return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | defined
+    return (
+        isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | _RCLPYS | defined
+    )
 
 
 def _is_part_of(node: ast.expr, owner: str) -> bool:

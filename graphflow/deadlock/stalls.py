@@ -85,6 +85,6 @@ def _wanted(graph: WaitGraph, holders: dict[str, list[ActivityView]]) -> dict[st
             group, by = graph.groups[name], holders.get(name, [])
             is_full = group.limit is not None and len(by) >= group.limit
             # A handler's own runs queueing for each other is what groups are for.
-            if group.name and is_full and any(a.label != queue.label for a in by):
+            if group.name and not group.sort and is_full and any(a.label != queue.label for a in by):
                 found.setdefault(name, []).append(queue)
     return found

@@ -13,7 +13,7 @@ from graphflow.errors import Place
 _OURS = str(Path(__file__).parents[1])
 _DEMOS = str(Path(_OURS, "demos"))
 """Where an installed graphflow has its nodes, which are as users would write them."""
-_NOT_THEIRS = ("graphflow", "builtins", "typing", "abc")
+_NOT_THEIRS = ("graphflow", "rclpy", "builtins", "typing", "abc")
 _PYTHONS = sysconfig.get_path("stdlib")
 
 

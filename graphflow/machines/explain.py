@@ -97,15 +97,20 @@ def group_of(activity: ActivityView, graph: WaitGraph) -> str:
     return next((graph.groups[g].name for g in activity.holds if g in graph.groups and graph.groups[g].name), "")
 
 
-def wanted(edge: Edge) -> str:
+def wanted(edge: Edge, graph: WaitGraph) -> str:
     """What an activity waits for."""
     match edge.via:
+        case Call(id=call) if call.startswith("tick:"):
+            return "the next tick of its rate"
+        case Call(name=name) if "/_action/" in name:
+            return f"the response of {offer(name)}"
         case Call(id=call, name=name):
             return f"the {'result of action' if call.startswith('goal:') else 'response of service'} {name}"
         case Opening(service=service):
             return offer(service)
         case Slot():
-            return "its slot, to return to its group"
+            is_thread = edge.group in graph.groups and graph.groups[edge.group].sort == "executor"
+            return "a thread, to go on" if is_thread else "its slot, to return to its group"
         case SetBy(what=what):
             return what
         case Free():
@@ -165,7 +170,7 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     [name], [edge] = deadlock.ring, deadlock.edges
     who = title(graph.activities[name])
     if isinstance(edge.via, Opening):
-        return [f"{who} waits for {wanted(edge)}, which opens when on_start has returned"]
+        return [f"{who} waits for {wanted(edge, graph)}, which opens when on_start has returned"]
     if not isinstance(edge.via, SetBy):
         return [f"{who} waits for itself"]
     what = edge.via.what
@@ -194,12 +199,22 @@ def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
 
 def _member(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
     group = group_of(activity, graph)
-    deeds = [f"holds group '{group}'"] if group else []
+    deeds = [_held(activity, graph)] if group else []
     deeds += ["blocks the event loop"] if edge.loop and edge.to == activity.id else []
     via = edge if not (isinstance(activity.wait, Call) and isinstance(edge.via, Call)) else Edge("", activity.wait)
-    waits = f"waits for {wanted(via)}"
+    waits = f"waits for {wanted(via, graph)}"
     doing = [f"{title(activity)} {', '.join(deeds)}", f"and {waits}"] if deeds else [f"{title(activity)} {waits}"]
     return filled("  ", [*doing, *_where(activity)])
+
+
+def _held(activity: ActivityView, graph: WaitGraph) -> str:
+    """What an activity holds, in words."""
+    own = [graph.groups[name] for name in activity.holds if name in graph.groups and graph.groups[name].name]
+    if not own[0].sort:
+        return f"holds group '{own[0].name}'"
+    held = [f"the {group.name}" for group in own if group.sort == "callback"]
+    held += ["a thread" if group.limit != 1 else "the only thread" for group in own if group.sort == "executor"]
+    return f"holds {' and '.join(held)}" if held else "runs"
 
 
 def _line(place: Place) -> Place:
@@ -230,6 +245,8 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
         deed, needs = deed.removesuffix("s"), "need"
     waiting, dropped = sum(q.waiting for q in queues), sum(q.dropped for q in queues)
     clauses = _needs(group, [other], f"{deed} it and {needs}")
+    if group.sort:
+        return [who, *clauses]
     return [who, *clauses[:-1], f"{clauses[-1]};", f"{waiting} queued, {dropped} dropped meanwhile"]
 
 
@@ -237,7 +254,18 @@ def _needs(group: GroupView, holders: Sequence[ActivityView], verb: str) -> list
     return [f"{verb} {_slot(group)},", f"which {' and '.join(title(a) for a in holders)} holds"]
 
 
+_SORTS = {
+    "callback": "the {name} of {node}",
+    "executor": "{threads} of the {name} of {node}",
+    "spinner": "a thread that spins {node}",
+}
+"""What acts as a group where code is rclpy's."""
+
+
 def _slot(group: GroupView) -> str:
+    if group.sort:
+        threads = "the thread" if group.limit == 1 else f"one of the {group.limit} threads"
+        return _SORTS[group.sort].format(name=group.name, node=group.node, threads=threads)
     if not group.name:
         return "its turn"
     if group.limit == 1:

@@ -40,7 +40,7 @@ def _kept_out(deadlock: Deadlock, graph: WaitGraph) -> Iterator[list[QueueView]]
     holders = {(graph.activities[name].node, graph.activities[name].handler) for name in deadlock.ring}
     for edge in deadlock.edges:
         group = graph.groups.get(edge.group)
-        if edge.loop or group is None or not group.name:
+        if edge.loop or group is None or not group.name or group.sort:
             continue
         queues = [queue for queue in queues_of(edge, graph) if not queue.label.startswith("reply ")]
         # One that holds a slot itself, since it waits for itself in the end, would wait for its own run there, too.

@@ -8,6 +8,7 @@ from pathlib import PurePath
 from graphflow.errors import Place
 from graphflow.machines.clauses import filled
 from graphflow.machines.moves import moves
+from graphflow.machines.rclpy_remedies import in_rclpys_words
 from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.rings import Deadlock, Edge
 from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, SetBy, WaitGraph
@@ -21,7 +22,10 @@ def remedies(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
         found += own_group(queues, graph)
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
         activity, wanted_of_it = graph.activities[name], graph.groups.get(deadlock.edges[i - 1].group)
-        found += [*_changes(edge, graph), *_release(activity, wanted_of_it)]
+        if edge.group and graph.groups[edge.group].sort:
+            found += in_rclpys_words(edge, deadlock.edges[(i + 1) % len(deadlock.edges)], graph)
+        else:
+            found += [*_changes(edge, graph), *_release(activity, wanted_of_it)]
     return _one_of_a_kind(found)
 
 
@@ -68,8 +72,9 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield _text(f"let on_start return: move the wait in {_line(graph.activities[edge.to])} into a @task")
         return
     if isinstance(edge.via, SetBy) and edge.via.is_held:
-        place = _line(graph.activities[edge.to])
-        yield _text(f"move the await in {place}", f"out of the `with {edge.via.what}` block around it")
+        holder = graph.activities[edge.to]
+        wait = "await" if holder.is_async else "wait"
+        yield _text(f"move the {wait} in {_line(holder)}", f"out of the `with {edge.via.what}` block around it")
     if queue is None or group is None:
         return
     if queue.label.startswith("reply "):
@@ -102,7 +107,7 @@ def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:
 
 def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
     """Releasing a slot helps where the previous activity in the ring wants it."""
-    if wanted is not None and wanted.name and activity.is_async:
+    if wanted is not None and wanted.name and not wanted.sort and activity.is_async:
         yield _text(
             f"release the slot while waiting, in {_line(activity)}:",
             "async with self.group.released(): ...",

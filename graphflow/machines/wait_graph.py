@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from graphflow.errors import Place
 from graphflow.machines.regrouping import Regrouping
@@ -144,6 +145,10 @@ class ActivityView:
         return method_of(self.label)
 
 
+Sort = Literal["", "callback", "executor", "spinner"]
+"""What acts as a group where code is rclpy's: a callback group, an executor's threads, or those that could spin."""
+
+
 @dataclass(frozen=True, slots=True)
 class GroupView:
     """A concurrency group of a node, or what acts as one: a handler's own queue, or `on_start`, which keeps all out."""
@@ -158,6 +163,8 @@ class GroupView:
     is_threaded: bool = False
     is_start: bool = False
     """Whether this is `on_start`: handlers begin, and services open, when it has returned."""
+    sort: Sort = ""
+    """Empty for what is graphflow's own."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,12 +22,13 @@ from graphflow.machines.wait_graph import (
     QueueView,
     SetBy,
     Slot,
+    Sort,
     WaitGraph,
 )
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 5
+VERSION = 6
 DEEPEST = 50
 """How deep conditions may be nested: what comes from the network must not exhaust the stack."""
 
@@ -104,9 +105,9 @@ def from_json(data: Mapping[str, object]) -> WaitGraph:
 
 
 def _read_group(row: list[object]) -> GroupView:
-    id_, name, node, limit, is_declared, is_threaded, is_start = row
+    id_, name, node, limit, is_declared, is_threaded, is_start, sort = row
     head = _text(id_), _text(name), _text(node), _limit(limit)
-    return GroupView(*head, _bool(is_declared), _bool(is_threaded), _bool(is_start))
+    return GroupView(*head, _bool(is_declared), _bool(is_threaded), _bool(is_start), _sort(sort))
 
 
 def _read_queue(row: list[object]) -> QueueView:
@@ -148,6 +149,14 @@ def _read_change(row: list[object]) -> GroupChange:
     return GroupChange(
         _texts(handlers), _limit(limit), _bool(sets_limit), full, None if thread is None else _bool(thread)
     )
+
+
+def _sort(data: object) -> Sort:
+    for known in get_args(Sort):
+        if data == known:
+            found: Sort = known
+            return found
+    raise ValueError(f"{data!r} is not what may act as a group")
 
 
 def _when_full(data: object) -> WhenFull:

@@ -11,7 +11,7 @@ from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from graphflow.deadlock.inspection import Inspection
-from graphflow.deadlock.protocols import Subject
+from graphflow.deadlock.protocols import Elsewhere, Subject
 from graphflow.deadlock.search import Search
 from graphflow.domain import domain_id
 from graphflow.errors import printable
@@ -75,6 +75,8 @@ class Context:
         self.call_timeout = call_timeout
         self.nodes: list[Subject] = []
         """The nodes that run here."""
+        self.elsewhere: list[Elsewhere] = []
+        """What else runs callbacks of this process, for the search for deadlocks."""
         self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
         self.search = Search(self, deadlock)

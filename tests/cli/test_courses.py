@@ -58,7 +58,7 @@ def typed(machine: Machine, place: Path, line: str) -> tuple[str, int]:
     return done.stdout, done.returncode
 
 
-# In this order: some lines change what later ones show.
+# Each stands for itself: they may be typed in any order, beside different turtlesims.
 SAID = [
     ("ros2 node list", "/turtlesim\n"),
     ("ros2 topic list", "/parameter_events\n/rosout\n/turtle1/cmd_vel\n/turtle1/color_sensor\n/turtle1/pose\n"),
@@ -82,11 +82,15 @@ SAID = [
         "response:\nturtlesim.srv.SetPen_Response()\n\n",
     ),
     ("ros2 param get /turtlesim background_g", "Integer value is: 86\n"),
-    ("ros2 param set /turtlesim background_r 150", "Set parameter successful\n"),
-    ("ros2 param get /turtlesim background_r", "Integer value is: 150\n"),
+    (
+        "ros2 param set /turtlesim background_r 150; ros2 param get /turtlesim background_r",
+        "Set parameter successful\nInteger value is: 150\n",
+    ),
     ("ros2 param dump /turtlesim | grep -A2 turtlesim", "/turtlesim:\n  ros__parameters:\n    background_b: 255\n"),
-    ("ros2 param load /turtlesim params.yaml", "Set parameter background_r successful\n"),
-    ("ros2 param get /turtlesim background_r", "Integer value is: 10\n"),
+    (
+        "ros2 param load /turtlesim params.yaml; ros2 param get /turtlesim background_r",
+        "Set parameter background_r successful\nInteger value is: 10\n",
+    ),
     ("ros2 action list", "/turtle1/rotate_absolute\n"),
     ("ros2 action list -t", "/turtle1/rotate_absolute [turtlesim/action/RotateAbsolute]\n"),
     (
@@ -94,12 +98,10 @@ SAID = [
         "Action: /turtle1/rotate_absolute\nAction clients: 0\nAction servers: 1\n    /turtlesim\n",
     ),
     (
-        "ros2 service call /spawn turtlesim/srv/Spawn \"{x: 2.0, y: 2.0, theta: 0.0, name: 'turtle2'}\"",
-        "requester: making request: turtlesim.srv.Spawn_Request(x=2.0, y=2.0, theta=0.0, name='turtle2')\n\n"
-        "response:\nturtlesim.srv.Spawn_Response(name='turtle2')\n\n",
-    ),
-    (
+        "ros2 service call /spawn turtlesim/srv/Spawn \"{x: 2.0, y: 2.0, theta: 0.0, name: 'turtle2'}\"; "
         "ros2 service call /kill turtlesim/srv/Kill \"{name: 'turtle2'}\"",
+        "requester: making request: turtlesim.srv.Spawn_Request(x=2.0, y=2.0, theta=0.0, name='turtle2')\n\n"
+        "response:\nturtlesim.srv.Spawn_Response(name='turtle2')\n\n"
         "requester: making request: turtlesim.srv.Kill_Request(name='turtle2')\n\n"
         "response:\nturtlesim.srv.Kill_Response()\n\n",
     ),
@@ -126,14 +128,17 @@ LIKE = [
         "ros2 topic echo /turtle1/cmd_vel --flow-style --timeout 0.2 --once",
         r"no message on /turtle1/cmd_vel within 0.2 s",
     ),
-    ("timeout -s INT 2.5 python -m graphflow topic hz /turtle1/pose", r"average rate: 6[0-9]\.\d{3}\n\tmin: 0\.0"),
+    (
+        "timeout -s INT 20 python -m graphflow topic hz /turtle1/pose | head -2",
+        r"average rate: \d+\.\d{3}\n\tmin: 0\.\d",
+    ),
     ("ros2 interface list --only-msgs", r"^Messages:\n    \w+/msg/"),
     ("ros2 interface package std_msgs", r"std_msgs/msg/String\n"),
     ("ros2 interface package", r"std_msgs\nstd_srvs\n"),
     ("ros2 interface info std_msgs/Header", r"string frame_id\n"),
     (
-        "timeout -s INT 2 python -m graphflow topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist "
-        "{linear: {x: 2.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 1.8}}",
+        "timeout -s INT 20 python -m graphflow topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist "
+        "'{linear: {x: 2.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 1.8}}' | head -2",
         r"publisher: beginning loop\npublishing #1: " + re.escape(TWIST + "(x=0.0, y=0.0, z=1.8))"),
     ),
     (
@@ -148,15 +153,16 @@ LIKE = [
         r"Goal finished with status: SUCCEEDED\n",
     ),
     (
-        "timeout 3 python -m graphflow run demo_nodes_cpp add_two_ints_server & sleep 1.5; "
-        'ros2 service call /add_two_ints example_interfaces/srv/AddTwoInts "{a: 2, b: 5}"; wait',
+        "timeout 60 python -m graphflow run demo_nodes_cpp add_two_ints_server & "
+        'ros2 service call /add_two_ints example_interfaces/srv/AddTwoInts "{a: 2, b: 5}"; kill %1; wait',
         r"AddTwoInts_Response\(sum=7\)",
     ),
     (
-        "timeout -s INT 2 python -m graphflow bag record /turtle1/pose -o my_bag; ros2 bag info my_bag",
-        r"Topic: /turtle1/pose \| Type: turtlesim/msg/Pose \| Count: \d+ \| Serialization Format: cdr",
+        "timeout -s INT 4 python -m graphflow bag record /turtle1/pose -o my_bag; ros2 bag info my_bag; "
+        "ros2 bag play my_bag --playback-duration 0.5",
+        r"Topic: /turtle1/pose \| Type: turtlesim/msg/Pose \| Count: \d+ \| Serialization Format: cdr(.*\n)*"
+        r"played \d+ messages in",
     ),
-    ("ros2 bag play my_bag --playback-duration 0.5", r"played \d+ messages in"),
     (
         "ros2 pkg create --build-type ament_python robots_are_awesome",
         r"going to create a new package\npackage ",

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
-from graphflow.deadlock.protocols import Unopened
+from graphflow.deadlock.protocols import Elsewhere, Unopened
 from graphflow.executor.groups import Groups, HandlerGroup
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerKind, RunnerSpec
@@ -53,6 +53,8 @@ class Stage:
         self.ledger = Ledger(self.loop)
         self.actors: list[Actor] = []
         self.requests: list[tuple[Runner, bytes, int]] = []
+
+    elsewhere: Sequence[Elsewhere] = ()
 
     @property
     def nodes(self) -> Sequence[Actor]:

@@ -29,7 +29,7 @@ async def test_what_the_runtime_has(graph: Graph) -> None:
     surroundings: Surroundings = node.context
 
     assert len(names_of(Subject)) == 11
-    assert len(names_of(Surroundings)) == 9
+    assert len(names_of(Surroundings)) == 10
     assert [name for name in names_of(Subject) if not hasattr(subject, name)] == []
     assert [name for name in names_of(Surroundings) if not hasattr(surroundings, name)] == []
     assert list(surroundings.nodes) == [subject]

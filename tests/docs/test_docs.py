@@ -77,6 +77,9 @@ ONLY_LOOKS = re.compile(
 )
 """Commands of which only the words matter: the README's are run as a reader runs them, others in this process."""
 
+SETTLED = 10.0
+"""Seconds that what was just started has to get to what a page shows."""
+
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
 
 
@@ -361,7 +364,10 @@ class Shell:
         if goes_on:
             self.end_living()
         if block.page.stem != "README" and ONLY_LOOKS.fullmatch(command):
-            self.code, text = self.machine.look_and_end(*shlex.split(command)[1:], cwd=self.project)
+            words, until = shlex.split(command)[1:], time.monotonic() + SETTLED
+            self.code, text = self.machine.look_and_end(*words, cwd=self.project)
+            while time.monotonic() < until and not matches(expected, text.rstrip("\n").split("\n")):
+                self.code, text = self.machine.look_and_end(*words, cwd=self.project)  # a reader types more slowly
             self._compare(command, expected, text, where)
             return
         program = self._start(command)

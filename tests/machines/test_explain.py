@@ -140,7 +140,7 @@ def test_headlines(deadlock: Deadlock, words: str) -> None:
 )
 def test_what_is_wanted(via: Condition, words: str) -> None:
     """Each kind of wait has its words."""
-    assert wanted(Edge("b", via)) == words
+    assert wanted(Edge("b", via), WaitGraph()) == words
 
 
 @pytest.mark.parametrize(

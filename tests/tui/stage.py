@@ -51,7 +51,7 @@ VERBS: dict[str, Any] = {
     "ps": {"help": "", "arguments": [], "options": {"--json": False}},
 }
 
-LIMIT = 10.0
+LIMIT = 30.0
 T = TypeVar("T")
 
 

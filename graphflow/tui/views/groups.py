@@ -161,7 +161,7 @@ class Groups(View):
             holds = f"holds group '{held}', " if held else ""
             where = f"   {_short(place)} in {activity.function}" if place else ""
             since = f"for {activity.age:.1f} s"
-            text = f"{holds}waits {since} for {wanted(edge)}"
+            text = f"{holds}waits {since} for {wanted(edge, graph)}"
             yield Row(Text.assemble(("   │    ", ink.bad), (text, ink.text), (where, ink.accent)), place)
             queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
             if queue is not None and group is not None and group.name:

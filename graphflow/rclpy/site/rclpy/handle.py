@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, Self
 
-from rclpy._rclpy_pybind11 import InvalidHandle
+from graphflow.errors import ClosedError
+from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 
 
 class Handle:
@@ -37,10 +39,25 @@ class Handle:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Nothing: what is in use is not counted."""
+        """Raise RCLError where the network was left meanwhile; what is in use is not counted."""
+        if isinstance(error, ClosedError):
+            raise _left(error) from None
 
     def destroy_when_not_in_use(self) -> None:
         """Destroy it. Twice is harmless."""
         withdraw, self._withdraw = self._withdraw, None
         if withdraw is not None:
             withdraw()
+
+
+@contextmanager
+def sending() -> Iterator[None]:
+    """Send something. Raises RCLError where the network was left meanwhile."""
+    try:
+        yield
+    except ClosedError as error:
+        raise _left(error) from None
+
+
+def _left(error: ClosedError) -> RCLError:
+    return RCLError(f"the context was shut down: {error}")

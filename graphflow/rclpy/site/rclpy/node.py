@@ -33,6 +33,7 @@ from rclpy.impl.inner import Holdings, Inner, none
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
 from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.impl.waiting import attend
 from rclpy.logging_service import LoggingService
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -118,6 +119,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         inner.parameters = NodeParameters(
             overrides, self._parameters_changed, allows_undeclared=allow_undeclared_parameters
         )
+        attend(life)
         self._open_parameters(start_parameter_services)
         if enable_logger_service:
             LoggingService(self)

@@ -14,6 +14,7 @@ from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
+from rclpy.handle import sending
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -205,7 +206,8 @@ class ActionClient(Waitable):
     def _send(self, client: Any, request: Any, made: Callable[[bytes], Any]) -> Future[Any]:
         future: Future[Any] = Future()
         with self._lock:
-            sequence = client.send(messages.encode(request))
+            with sending():
+                sequence = client.send(messages.encode(request))
             self._waiting[client, sequence] = (future, made)
         return future
 

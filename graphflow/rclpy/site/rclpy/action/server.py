@@ -20,6 +20,7 @@ from graphflow.rclpy.life import LOOP
 from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
+from rclpy.handle import sending
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.time import Time
@@ -186,7 +187,8 @@ class ActionServer(Waitable):
         self.register_cancel_callback(cancel_callback)
         self.register_execute_callback(execute_callback)
         check_for_type_support(action_type)
-        self._node, self._action_type, self._result_timeout = node, action_type, result_timeout
+        self._node, self._action_type, self._action_name = node, action_type, action_name
+        self._result_timeout = result_timeout
         self._lock = threading.RLock()
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._logger = node.get_logger().get_child("action_server")
@@ -254,7 +256,8 @@ class ActionServer(Waitable):
             except Exception as error:
                 self._logger.error(f"Error raised in goal callback: {error}")
                 traceback.print_exc()
-                self._goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
+                with sending():
+                    self._goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
                 raise
             if not isinstance(answer, GoalResponse):
                 self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
@@ -268,7 +271,8 @@ class ActionServer(Waitable):
             with self._lock:
                 self._goal_handles[key] = handle
             self.publish_status()
-        self._goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
+        with sending():
+            self._goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
         if handle is not None:
             await await_or_execute(self._handle_accepted_callback, handle)
 
@@ -329,7 +333,8 @@ class ActionServer(Waitable):
                 response.goals_canceling.append(GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
-        self._cancels.answer(asked, messages.encode(response))
+        with sending():
+            self._cancels.answer(asked, messages.encode(response))
 
     def _to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
         """The goals that a request means: one by its id, those up to a time, or all. Source: CancelGoal.srv."""
@@ -356,13 +361,15 @@ class ActionServer(Waitable):
         goal = self._goal_handles.get(bytes(request.goal_id.uuid))
         if goal is None:
             self._logger.debug("Sending result response for unknown goal ID")
-            self._results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
+            with sending():
+                self._results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
             return
         goal._result._when_done(partial(self._answer_result, asked, goal))
 
     def _answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
         if not self._is_destroyed:
-            self._results.answer(asked, messages.encode(goal._result.result()))
+            with sending():
+                self._results.answer(asked, messages.encode(goal._result.result()))
 
     def notify_goal_done(self) -> None:
         """A goal has ended: results are kept from then on for their time."""
@@ -382,7 +389,8 @@ class ActionServer(Waitable):
         ]
         if not self._is_destroyed:
             message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
-            self._status.put(messages.encode(message))
+            with sending():
+                self._status.put(messages.encode(message))
 
     def publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
         """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
@@ -390,7 +398,8 @@ class ActionServer(Waitable):
             raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}")
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
         if not self._is_destroyed:
-            self._feedback.put(messages.encode(message))
+            with sending():
+                self._feedback.put(messages.encode(message))
 
     # callbacks
 

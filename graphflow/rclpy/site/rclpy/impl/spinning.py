@@ -95,11 +95,12 @@ class Run(Task[Any]):
         self.node: Any = None
         self.group: CallbackGroup | None = None
         self.thread = 0
-        self.began_ns = self.stepped_ns = 0
+        self.stepped_ns = 0
+        self.work: Any = None
+        """What was taken from the entity."""
 
     def _step(self) -> None:
         self.thread = threading.get_ident()
-        self.began_ns = self.began_ns or time.monotonic_ns()
         try:
             super()._step()
         finally:
@@ -133,7 +134,7 @@ class Spinning:
         self.nodes: dict[Any, None] = {}
         self.is_shutdown = False
         self.running: dict[Run, None] = {}
-        """Runs of callbacks that have begun and not ended, suspended ones too."""
+        """Tasks, and runs of callbacks, that have not ended; suspended ones too."""
         self._runnable: deque[Run] = deque()
         self._polled: deque[Run] = deque()
         self._round: deque[tuple[Any, Any]] = deque()
@@ -145,7 +146,8 @@ class Spinning:
     # tasks
 
     def start(self, run: Run) -> None:
-        """Have a task begun in the next turn."""
+        """Have a task begun, or gone on with, in the next turn."""
+        self.running[run] = None
         self._runnable.append(run)
         self.wake.set()
 
@@ -247,7 +249,7 @@ class Spinning:
             group.ending_execution(entity)
             return None
         run = Run(self.executor, work)
-        run.entity, run.node, run.group = entity, node, group
+        run.entity, run.node, run.group, run.work = entity, node, group, work
         self.running[run] = None
         return run
 

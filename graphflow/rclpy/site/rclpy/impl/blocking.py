@@ -1,0 +1,174 @@
+"""What a callback, or a thread of a program's own, waits for: an answer, a future, an event, a lock."""
+
+from __future__ import annotations
+
+import ast
+import threading
+from collections.abc import Iterator
+from types import FrameType
+from typing import Any, NamedTuple
+
+from graphflow.deadlock.source import Unknown, source_of
+from graphflow.deadlock.syntax import first_line, syntax_of
+from graphflow.deadlock.user_code import is_users
+from rclpy.action.client import ActionClient
+from rclpy.client import Client
+from rclpy.executors import Executor
+from rclpy.impl.stacks import Level
+from rclpy.task import Future
+from rclpy.timer import Rate, Timer
+
+_FUTURES = (Client.call.__code__, ActionClient.block_on.__code__, Executor.spin_until_future_complete.__code__)
+"""Functions that block until a future is done, which they call `future`."""
+_SLEEP = Rate.sleep.__code__
+_SEARCHED = (*_FUTURES, _SLEEP)
+_LOCKS = (type(threading.Lock()), type(threading.RLock()))
+
+
+class Blocked(NamedTuple):
+    """What code waits for; one of these, or nothing that is known."""
+
+    future: Future[Any] | None = None
+    timer: Timer | None = None
+    lock: str = ""
+    """The attribute of the node that is a lock."""
+    timeout: float | None = None
+    """Seconds until it gives up, from when it began."""
+
+
+def blocked(level: Level) -> Blocked:
+    """What the code of a thread waits for."""
+    for frame in reversed(level.frames):
+        if frame.f_code in _SEARCHED:
+            names = frame.f_locals
+            timeout = names.get("timeout_sec")
+            limit = timeout if isinstance(timeout, (int, float)) and timeout >= 0 else None
+            if frame.f_code is _SLEEP:
+                return Blocked(timer=names["self"]._timer)
+            if names.get("future") is not None:
+                return Blocked(future=names["future"], timeout=limit)
+    users = level.innermost
+    if users is None:
+        return Blocked()
+    return Blocked(future=_polled(users), lock=_entering(users) if users is level.frames[-1] else "")
+
+
+# a loop that asks a future whether it is done
+
+
+def _polled(frame: FrameType) -> Future[Any] | None:
+    """The future that the innermost loop around a line asks, if that is all that ends the loop."""
+    try:
+        function = _function(frame)
+    except Unknown:
+        return None
+    loops = [n for n in ast.walk(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
+    if not loops:
+        return None
+    loop = loops[-1]
+    asked = [*_asked(loop.test)]
+    if asked:
+        return _value(asked[0], frame) if len(asked) == 1 and not _leaves(loop.body) else None
+    if not (isinstance(loop.test, ast.Constant) or ast.unparse(loop.test) in ("rclpy.ok()", "ok()")):
+        return None
+    choices = [n for n in loop.body if isinstance(n, ast.If) and [*_asked(n.test)]]
+    if len(choices) != 1 or _leaves([n for n in loop.body if n is not choices[0]]):
+        return None
+    return _value(next(_asked(choices[0].test)), frame)
+
+
+def _asked(test: ast.expr) -> Iterator[ast.expr]:
+    """What a condition asks whether it is done."""
+    for node in ast.walk(test):
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner, attr="done"), args=[]):
+                yield owner
+
+
+def _leaves(body: list[ast.stmt]) -> bool:
+    """Whether statements may leave the loop that they are in."""
+    return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
+
+
+def _value(expression: ast.expr, frame: FrameType) -> Future[Any] | None:
+    """The future that a name, or an attribute of one, is."""
+    found: Any = None
+    match expression:
+        case ast.Name(id=name):
+            found = frame.f_locals.get(name, frame.f_globals.get(name))
+        case ast.Attribute(value=ast.Name(id=owner), attr=name):
+            found = getattr(frame.f_locals.get(owner), "__dict__", {}).get(name)
+    return found if isinstance(found, Future) else None
+
+
+# locks
+
+
+def _entering(frame: FrameType) -> str:
+    """The attribute of `self` that is a lock and that a line waits to acquire; empty if it does not."""
+    own = frame.f_locals.get("self")
+    try:
+        function = _function(frame)
+    except Unknown:
+        return ""
+    for node in ast.walk(function):
+        for item in node.items if isinstance(node, ast.With) else ():
+            expression = item.context_expr
+            name = _own(expression)
+            is_here = expression.lineno <= frame.f_lineno <= (expression.end_lineno or 0)
+            if name and is_here and isinstance(vars(own).get(name), _LOCKS):
+                return name
+    return ""
+
+
+def holds(frame: FrameType, name: str, instance: object) -> bool:
+    """Whether the code of a frame is inside `with self.name`, with that instance for `self`."""
+    if frame.f_locals.get("self") is not instance or not is_users(frame.f_code.co_filename):
+        return False
+    try:
+        function = _function(frame)
+    except Unknown:
+        return False
+    return any(
+        _own(item.context_expr) == name and node.body[0].lineno <= frame.f_lineno <= (node.end_lineno or 0)
+        for node in ast.walk(function)
+        if isinstance(node, ast.With)
+        for item in node.items
+    )
+
+
+def is_only_entered(name: str, instance: object) -> bool:
+    """Whether a lock is made in the constructor, entered by `with`, and known to nobody else."""
+    try:
+        source = source_of(instance)
+        uses = source.uses(name)
+    except (Unknown, TypeError, ValueError):
+        return False
+    known = all(use.kind == "entered" or (use.kind == "assigned" and use.method == "__init__") for use in uses)
+    return known and not source.foreign(name)
+
+
+def _own(expression: ast.expr) -> str:
+    """`x` of `self.x`."""
+    match expression:
+        case ast.Attribute(value=ast.Name(id="self"), attr=name):
+            return name
+    return ""
+
+
+def _spans(node: ast.stmt, line: int) -> bool:
+    return node.lineno <= line <= (node.end_lineno or line)
+
+
+def _function(frame: FrameType) -> ast.AST:
+    """The source of the function, or module, of a frame. Raises Unknown if there is none."""
+    try:
+        syntax = syntax_of(frame.f_code.co_filename)
+    except (OSError, SyntaxError, ValueError):
+        raise Unknown from None
+    if frame.f_code.co_name == "<module>":
+        return syntax.module
+    for function in syntax.functions:
+        if first_line(function) == frame.f_code.co_firstlineno and function.name == frame.f_code.co_name:
+            return function
+    raise Unknown

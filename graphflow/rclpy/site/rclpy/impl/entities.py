@@ -1,0 +1,118 @@
+"""What the entities of nodes are, what has arrived for them, and what runs of their callbacks are for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any, NamedTuple
+
+from graphflow.errors import ClosedError
+from graphflow.machines.wait_graph import goal_id
+from graphflow.runtime.threaded import Asked, read_request
+from rclpy.action.client import ActionClient
+from rclpy.action.server import ActionServer, ServerGoalHandle
+from rclpy.client import Client
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.spinning import Run
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Rate, Timer
+
+
+class Role(NamedTuple):
+    """What an entity is: `timer tick`."""
+
+    kind: str
+    handler: str
+    """The name of its callback; of a client, that of its service or action."""
+    is_inner: bool = False
+    """Whether it is graphflow's own, not something that users made."""
+
+    @property
+    def label(self) -> str:
+        return f"{self.kind} {self.handler}"
+
+
+_KINDS = {Timer: "timer", Subscription: "subscription", Service: "service", GuardCondition: "guard_condition"}
+
+
+def role_of(entity: Any, node: Any) -> Role:
+    """What an entity of a node is."""
+    if isinstance(entity, Client):
+        return Role("reply", entity._endpoint.name)
+    if isinstance(entity, ActionClient):
+        return Role("reply", entity._goals.name.partition("/_action/")[0])
+    if isinstance(entity, ActionServer):
+        return Role("action", name_of(entity._execute_callback) or entity._action_name)
+    kind = next((word for cls, word in _KINDS.items() if isinstance(entity, cls)), "waitable")
+    callback = getattr(entity, "callback", None)
+    if isinstance(getattr(callback, "__self__", None), Rate):
+        return Role("timer", "rate", is_inner=True)
+    code = getattr(callback, "__code__", None)
+    is_inner = code is not None and "/graphflow/rclpy/" in code.co_filename
+    return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
+
+
+def name_of(callback: Any) -> str:
+    """What a function is called; empty for other things that can be called."""
+    return str(getattr(callback, "__name__", ""))
+
+
+def entities_of(node: Any) -> Iterator[Any]:
+    """What has callbacks."""
+    for kind in ("subscriptions", "clients", "services", "timers", "guards", "waitables"):
+        yield from list(getattr(node, kind))
+
+
+def arrived(entity: Any) -> tuple[tuple[str, ...], int]:
+    """The calls that have arrived for an entity, or whose answers have, and how much has in all."""
+    if isinstance(entity, Service):
+        return _requests(entity._endpoint)
+    if isinstance(entity, ActionServer):
+        parts = [_requests(endpoint) for endpoint in (entity._goals, entity._cancels, entity._results)]
+        return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
+    if isinstance(entity, Client):
+        return _answers(entity._endpoint)
+    if isinstance(entity, ActionClient):
+        parts = [_answers(endpoint) for endpoint in (entity._goals, entity._cancels, entity._results)]
+        return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
+    waiting = getattr(getattr(entity, "_endpoint", None), "waiting", 0)
+    return (), waiting if isinstance(waiting, int) else 0
+
+
+def _requests(endpoint: Any) -> tuple[tuple[str, ...], int]:
+    items = list(endpoint.inbox.items)
+    return tuple(asked.call for asked in map(read_request, items) if asked is not None), len(items)
+
+
+def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
+    items = list(endpoint.inbox.items)
+    try:
+        return tuple(endpoint.call_id(answered.sequence) for answered in items), len(items)
+    except ClosedError:
+        return (), len(items)
+
+
+def goal_of(run: Run) -> ServerGoalHandle | None:
+    """The goal whose body a run is."""
+    return next((a for a in run._args if isinstance(a, ServerGoalHandle)), None)
+
+
+def served(run: Run) -> str:
+    """The call or goal that a run answers."""
+    goal = goal_of(run)
+    if goal is not None:
+        return goal_id(bytes(goal.goal_id.uuid))
+    work = run.work
+    found = next((a for a in work.args if isinstance(a, Asked)), None) if isinstance(work, partial) else None
+    return "" if found is None else found.call
+
+
+def frames_of(run: Run) -> Iterator[Any]:
+    """The frames of a suspended run, the outermost first."""
+    coroutine = run._coroutine
+    while coroutine is not None:
+        frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
+        if frame is not None:
+            yield frame
+        coroutine = getattr(coroutine, "cr_await", None) or getattr(coroutine, "gi_yieldfrom", None)

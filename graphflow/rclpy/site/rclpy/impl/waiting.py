@@ -1,0 +1,464 @@
+"""Who waits for whom among the callbacks and threads of one process, for graphflow's search for deadlocks.
+
+An executor is a group with as many slots as it has threads, and a callback group is one with one slot; a callback that
+runs holds slots of both, and one that is suspended only that of its callback group. What has arrived waits in queues,
+one for each entity, that need both. What no executor runs needs a thread that spins: that could be any thread of the
+program's own. Nothing is recorded while callbacks run: all is read from stacks and entities when it is asked for.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import count
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+from graphflow.deadlock.asyncio_frames import know_futures
+from graphflow.deadlock.held import setters
+from graphflow.deadlock.user_code import called_in
+from graphflow.errors import ClosedError, Place
+from graphflow.machines.wait_graph import (
+    FREE,
+    ActivityView,
+    Call,
+    Condition,
+    GroupView,
+    Join,
+    QueueView,
+    SetBy,
+    Slot,
+    WaitGraph,
+)
+from graphflow.rclpy.life import LOOP
+from graphflow.times import to_ns
+from graphflow.wire.liveliness import Kind
+from rclpy.action.client import ActionClient
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.client import Client
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
+from rclpy.impl.blocking import Blocked, blocked, holds, is_only_entered
+from rclpy.impl.entities import Role, arrived, entities_of, frames_of, goal_of, name_of, role_of, served
+from rclpy.impl.spinning import Run
+from rclpy.impl.stacks import Level, Stack, stacks, standing
+from rclpy.task import Future
+from rclpy.timer import Timer
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+    from graphflow.runtime.context import Context
+
+LOOK_EVERY = 0.15
+"""Seconds between two looks whether some thread or callback stands still."""
+
+know_futures(Future)
+
+
+class Waiting:
+    """The waits of rclpy's callbacks in one context, read whenever somebody asks."""
+
+    def __init__(self, life: Life, context: Context) -> None:
+        self._life, self.context = life, context
+        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._count = count(1)
+        self._lock = threading.RLock()
+        self._stood: dict[int, tuple[int, float]] = {}
+        """Where each thread stands, and since when."""
+        LOOP.soon(self._look)
+
+    def number_of(self, thing: Any) -> int:
+        """A number that nothing else ever has."""
+        known = self._numbers.get(thing)
+        if known is None:
+            known = self._numbers[thing] = next(self._count)
+        return known
+
+    def stands_since(self, thread: int) -> float:
+        """Since when a thread has been in the innermost function of users' that it is in, by the monotonic clock."""
+        return self._stood.get(thread, (0, time.monotonic()))[1]
+
+    def waits(self) -> WaitGraph:
+        """Who waits for whom. What is seen differently by a second look goes on."""
+        with self._lock:
+            first, second = _Look(self).graph(), _Look(self).graph()
+        activities = {}
+        for name, now in second.activities.items():
+            then = first.activities.get(name)
+            is_same = then is not None and (then.wait, then.holds, then.serves) == (now.wait, now.holds, now.serves)
+            activities[name] = now if is_same else replace(now, wait=FREE)
+        return replace(second, activities=activities)
+
+    def groups(self) -> dict[str, list[dict[str, Any]]]:
+        """Its nodes' callback groups and executors, with what is in them, as plain data."""
+        with self._lock:
+            return _Look(self).plain()
+
+    def _look(self) -> None:
+        """Have deadlocks looked for if something stands still. On the loop."""
+        clock, now = self.context.clock, time.monotonic()
+        self._stood = {
+            thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
+            for thread, frame in standing().items()
+        }
+        runs: list[Run] = [run for executor in list(all_executors) for run in list(executor.spinning.running)]
+        are_old = any(now - since >= LOOK_EVERY for _, since in self._stood.values())
+        if are_old or any(now - run.stepped_ns / 1e9 >= LOOK_EVERY for run in runs if run.stepped_ns):
+            self.context.ledger.alert()
+        if self._life.is_ok:
+            clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
+
+
+class _Look:
+    """One look at all that is under way."""
+
+    def __init__(self, waiting: Waiting) -> None:
+        self._waiting, self._context = waiting, waiting.context
+        self._zid = self._context.session.zid
+        self._nodes: list[Any] = list(waiting._life.nodes)
+        self._roles = {entity: role_of(entity, node) for node in self._nodes for entity in entities_of(node)}
+        self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
+        self._groups: dict[str, GroupView] = {}
+        self._queues: dict[str, QueueView] = {}
+        self._activities: dict[str, ActivityView] = {}
+        self._stacks = list(stacks())
+        self._spun = {executor for stack in self._stacks for executor in stack.spins}
+        self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
+        runs = [run for e in list(all_executors) if self._is_here(e) for run in list(e.spinning.running)]
+        self._runs: dict[Run, None] = dict.fromkeys([*runs, *self._levels])
+        self._now = time.monotonic()
+
+    def _is_here(self, executor: Executor) -> bool:
+        return executor.context.life is self._waiting._life
+
+    def _id(self, thing: Any, prefix: str = "r") -> str:
+        return f"{self._zid}:{prefix}{self._waiting.number_of(thing)}"
+
+    def graph(self) -> WaitGraph:
+        for entity, node in self._owners.items():
+            self._add_queue(entity, node)
+        on_threads = set()
+        for stack in self._stacks:
+            on_threads |= {level.run for level in stack.levels}
+            self._add_stack(stack)
+        for run in self._runs:
+            if run not in on_threads and not run.ended():
+                self._add_suspended(run)
+        return WaitGraph(self._activities, self._groups, self._queues)
+
+    # groups
+
+    def _callback_group(self, group: Any, node: Any) -> tuple[str, ...]:
+        """The id of a callback group, if it keeps anything out."""
+        if not _is_exclusive(group):
+            return ()
+        name = self._id(group, "g")
+        called = "default callback group"
+        if node is None or group is not node.default_callback_group:
+            attribute = next((a for a, value in list(vars(node).items()) if value is group), "") if node else ""
+            called = f"callback group '{attribute}'" if attribute else "callback group"
+        self._groups[name] = GroupView(name, called, _name(node), 1, sort="callback")
+        return (name,)
+
+    def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
+        """The id of an executor, as a group of threads."""
+        limit = _threads_of(executor)
+        name = self._id(executor, "e")
+        self._groups.setdefault(name, GroupView(name, type(executor).__name__, _name(node), limit, sort="executor"))
+        return (name,)
+
+    def _spinner(self, node: Any) -> tuple[str, ...]:
+        """The id of what a node needs that nobody spins: one of the program's own threads."""
+        threads = [stack for stack in self._stacks if stack.is_users]
+        if not threads:
+            return ()
+        name = f"{self._zid}:spinner"
+        self._groups.setdefault(name, GroupView(name, "spinner", _name(node), len(threads), sort="spinner"))
+        return (name,)
+
+    def _needs(self, group: Any, node: Any) -> tuple[str, ...]:
+        """What the next callback of a group and node takes."""
+        own, executor = self._callback_group(group, node), node.executor
+        if executor is None or node not in executor.spinning.nodes:
+            return (*own, *self._spinner(node))
+        if executor not in self._spun and _threads_of(executor) is not None:
+            return (*own, *self._executor(executor, node), *self._spinner(node))
+        return (*own, *self._executor(executor, node))
+
+    # queues
+
+    def _add_queue(self, entity: Any, node: Any) -> None:
+        name, role = self._id(entity, "q"), self._roles[entity]
+        calls, waiting = arrived(entity)
+        if isinstance(entity, Timer):  # a rate's tick is asked for like an answer
+            calls = (self._tick(entity),)
+        needs = self._needs(entity.callback_group, node)
+        self._queues[name] = QueueView(
+            name, role.label, _name(node), needs, calls, waiting, process=self._zid, is_declared=False
+        )
+
+    def _tick(self, timer: Timer) -> str:
+        return f"tick:{self._id(timer, 'q')}"
+
+    # activities
+
+    def _add_stack(self, stack: Stack) -> None:
+        """The runs of a thread, each of which waits for the next; below them, the thread itself if it is a user's."""
+        runs = [level for level in stack.levels if level.run is not None]
+        held = (f"{self._zid}:spinner",) if stack.is_users and f"{self._zid}:spinner" in self._groups else ()
+        if not runs:
+            if held and not stack.is_idle:
+                self._add_thread(stack, stack.levels[0], held)
+            elif held:
+                self._add_idle(stack, held)
+            return
+        for place, level in enumerate(runs):
+            run = level.run
+            assert run is not None
+            inner = runs[place + 1] if place + 1 < len(runs) else None
+            group = self._callback_group(run.group, run.node) if run.group is not None else ()
+            spun = level.waiting or (inner.run.executor if inner is not None and inner.run is not None else None)
+            holding = [*group, *(() if spun is run.executor else self._executor(run.executor, self._node_of(run)))]
+            wait, left = self._wait(level, self._node_of(run), run)
+            if inner is not None:
+                wait, left = Join(self._id(inner.run)), None
+            self._add_run(run, level, (*holding, *(held if place == 0 else ())), wait, self._age(stack), left)
+
+    def _age(self, stack: Stack) -> float:
+        return self._now - self._waiting.stands_since(stack.thread.ident or 0)
+
+    def _add_run(
+        self, run: Run, level: Level, holding: tuple[str, ...], wait: Condition, age: float, left: float | None
+    ) -> None:
+        node, frame = self._node_of(run), level.innermost
+        name, role = self._id(run), self._role(run)
+        self._activities[name] = ActivityView(
+            name,
+            role.label,
+            _name(node),
+            holding,
+            wait,
+            served(run),
+            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
+            "" if frame is None else frame.f_code.co_name,
+            age,
+            left if left is None else max(0.0, left - age),
+            self._zid,
+            is_inner=role.is_inner,
+            is_async=run.thread == 0,
+            called=called_in(level.frames, node),
+        )
+
+    def _add_thread(self, stack: Stack, level: Level, holding: tuple[str, ...]) -> None:
+        wait, left = self._wait(level, self._nodes[0] if self._nodes else None, None)
+        frame, age, name = level.innermost, self._age(stack), self._id(stack.thread, "t")
+        self._activities[name] = ActivityView(
+            name,
+            f"thread {stack.thread.name}",
+            _name(self._nodes[0] if self._nodes else None),
+            holding,
+            wait,
+            "",
+            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
+            "" if frame is None else frame.f_code.co_name,
+            age,
+            left if left is None else max(0.0, left - age),
+            self._zid,
+            is_async=False,
+        )
+
+    def _add_idle(self, stack: Stack, holding: tuple[str, ...]) -> None:
+        name = self._id(stack.thread, "t")
+        node = _name(self._nodes[0] if self._nodes else None)
+        self._activities[name] = ActivityView(name, f"thread {stack.thread.name}", node, holding, process=self._zid)
+
+    def _add_suspended(self, run: Run) -> None:
+        """A run that no thread steps just now: it waits for a future, or for a thread."""
+        level = Level(run, list(frames_of(run)))
+        group = self._callback_group(run.group, run.node) if run.group is not None else ()
+        future = run._awaits
+        if future is None or future.done() or future.cancelled():
+            executor = self._executor(run.executor, self._node_of(run))
+            wait: Condition = Slot(executor[0], self._waiting.number_of(run))
+        else:
+            wait = self._of_future(future, level, self._node_of(run), run)
+        age = self._now - run.stepped_ns / 1e9 if run.stepped_ns else 0.0
+        self._add_run(run, level, group, wait, age, None)
+
+    def _node_of(self, run: Run) -> Any:
+        """The node whose callback a run is; of a task, one of its executor's."""
+        goal = goal_of(run)
+        if goal is not None:
+            return goal._action_server._node
+        return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
+
+    def _role(self, run: Run) -> Role:
+        goal = goal_of(run)
+        if goal is not None:
+            return Role("action", name_of(run._args[0]) or "execute")
+        known = self._roles.get(run.entity)
+        if known is None:
+            return Role("task", name_of(run._coroutine or run._handler) or "task")
+        return known
+
+    # conditions
+
+    def _wait(self, level: Level, node: Any, run: Run | None) -> tuple[Condition, float | None]:
+        """What code on a thread waits for, and for how many seconds at most from when it began to."""
+        found = blocked(level)
+        if found.future is not None:
+            return self._of_future(found.future, level, node, run), found.timeout
+        if found.timer is not None:
+            return Call(self._tick(found.timer), "rate"), None
+        if level.waiting is not None or node is None:
+            return FREE, None
+        if found.lock:
+            return self._of_lock(found, level, node, run), None
+        return self._closed_world(level, None, node, run), None
+
+    def _of_future(self, future: Future[Any], level: Level, node: Any, run: Run | None) -> Condition:
+        if future.done() or future.cancelled():
+            return FREE
+        if isinstance(future, Run):
+            return Join(self._id(future)) if future in self._runs else FREE
+        for entity in self._owners:
+            if isinstance(entity, Client):
+                sequence = next((n for n, f in list(entity._pending.items()) if f is future), None)
+                if sequence is not None:
+                    return self._of_call(entity._endpoint, sequence)
+            elif isinstance(entity, ActionClient):
+                found = next((key for key, (f, _) in list(entity._waiting.items()) if f is future), None)
+                if found is not None:
+                    return self._of_call(*found)
+        return self._closed_world(level, future, node, run)
+
+    def _of_call(self, endpoint: Any, sequence: int) -> Condition:
+        try:
+            call = Call(endpoint.call_id(sequence), endpoint.name)
+        except ClosedError:
+            return FREE
+        return call if self._servers[endpoint.name] < 2 else FREE  # another may answer
+
+    @property
+    def _servers(self) -> Counter[str]:
+        return Counter(entity.name for entity in list(self._context.cache) if entity.kind is Kind.SERVICE)
+
+    def _of_lock(self, found: Blocked, level: Level, node: Any, run: Run | None) -> Condition:
+        """A lock of the node's that others are inside of."""
+        if not is_only_entered(found.lock, node):
+            return FREE
+        inside = [
+            self._id(other)
+            for other, there in self._levels.items()
+            if other is not run and any(holds(frame, found.lock, node) for frame in there.frames)
+        ]
+        if run is not None and any(holds(frame, found.lock, node) for frame in level.frames[:-1]):
+            inside.append(self._id(run))  # it is inside itself
+        if len(inside) != 1:
+            return FREE
+        return SetBy(f"self.{found.lock}", (), tuple(inside), True, "releases")
+
+    def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
+        """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
+        subject = _Subject(node, [role for entity, role in self._roles.items() if self._owners[entity] is node])
+        found = setters(level.frames, future, subject)  # type: ignore[arg-type]
+        others = [_Subject(other, []) for other in self._nodes if other is not node]
+        if found is None or not found.handlers or found.lock is not None:
+            return FREE
+        if found.is_shared(subject, others):  # type: ignore[arg-type]
+            return FREE
+        queues = [
+            self._id(entity, "q")
+            for entity, role in self._roles.items()
+            if self._owners[entity] is node and role.handler in found.handlers
+        ]
+        runs = [self._id(r) for r in self._runs if r is not run and r.node is node]
+        active = [r for r in self._runs if r is not run and self._role(r).handler in found.handlers]
+        setting = tuple(sorted({self._id(r) for r in active} & {*runs}))
+        return SetBy(found.what, tuple(sorted(queues)), setting, deed=found.deed, gives_up=found.gives_up)
+
+    # for people
+
+    def plain(self) -> dict[str, list[dict[str, Any]]]:
+        """The callback groups of each node, with their callbacks."""
+        found: dict[str, list[dict[str, Any]]] = {}
+        for node in self._nodes:
+            rows: dict[Any, dict[str, Any]] = {}
+            for entity in entities_of(node):
+                role = self._roles[entity]
+                if role.is_inner:
+                    continue
+                row = rows.setdefault(entity.callback_group, self._plain_group(entity.callback_group, node))
+                running = sum(run.entity is entity for run in self._runs)
+                numbers = {"running": running, "waiting": arrived(entity)[1], "runs": None, "errors": 0}
+                row["handlers"].append({"handler": role.handler, "kind": role.kind, **numbers})
+            executor = node.executor
+            if executor is not None:
+                limit = _threads_of(executor)
+                name = f"{type(executor).__name__}{'' if executor in self._spun else ' (not spinning)'}"
+            else:
+                limit, name = 0, "no executor"
+            about = {"name": name, "limit": limit, "when_full": "wait", "thread": False, "sort": "executor"}
+            found[_name(node)] = [*rows.values(), {**about, "handlers": []}]
+        return found
+
+    def _plain_group(self, group: Any, node: Any) -> dict[str, Any]:
+        ids = self._callback_group(group, node)
+        attribute = next((a for a, value in list(vars(node).items()) if value is group), "")
+        name = self._groups[ids[0]].name if ids else f"{type(group).__name__} {attribute}".strip()
+        limit = 1 if ids else None
+        return {
+            "name": name,
+            "limit": limit,
+            "when_full": "wait",
+            "thread": False,
+            "sort": "callback",
+            "handlers": list[Any](),
+        }
+
+
+class _Subject:
+    """A node, as the reading of its source sees it."""
+
+    def __init__(self, node: Any, roles: Iterable[Role]) -> None:
+        self.instance, self.full_name = node, _name(node)
+        self.runners = [_Runner(role) for role in roles]
+        self.tasks: set[Any] = set()
+        self.starting = None
+        self.unopened: tuple[Any, ...] = ()
+        self.hooks: set[str] = set()
+
+
+class _Runner:
+    """What runs a callback, as the reading of a node's source sees it."""
+
+    def __init__(self, role: Role) -> None:
+        self.spec = role
+
+
+def _name(node: Any) -> str:
+    return "" if node is None else str(node.held.full_name)
+
+
+def _is_exclusive(group: Any) -> bool:
+    kind = MutuallyExclusiveCallbackGroup
+    return isinstance(group, kind) and type(group).beginning_execution is kind.beginning_execution
+
+
+def _threads_of(executor: Executor) -> int | None:
+    """The threads of an executor; None for one whose ways are its own."""
+    way = type(executor).spin_once
+    if isinstance(executor, SingleThreadedExecutor) and way is SingleThreadedExecutor.spin_once:
+        return 1
+    if isinstance(executor, MultiThreadedExecutor) and way is MultiThreadedExecutor.spin_once:
+        return executor._executor._max_workers
+    return None
+
+
+def attend(life: Life) -> None:
+    """Have deadlocks looked for among the callbacks of a context; they are from its first node on."""
+    context = life.network()
+    if not context.elsewhere:
+        context.elsewhere.append(Waiting(life, context))

@@ -1,0 +1,467 @@
+"""Programs for rclpy that cannot go on, as students write them, each with the change that its report asks for.
+
+The line in which each is stuck has a comment with the name of its class. `Fixed...` is the same, changed.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from typing import Any
+
+from example_interfaces.action import Fibonacci
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+import rclpy
+from rclpy.action import ActionClient, ActionServer
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.node import Node
+from rclpy.task import Future
+
+
+class Asker(Node):
+    """Asks its own service, once, as its children say."""
+
+    threads = 1
+    client_group: Any = None
+    service_group: Any = None
+
+    def __init__(self) -> None:
+        super().__init__("asker")
+        self.done = threading.Event()
+        self.fires = 0
+        self.client = self.create_client(Trigger, "answer", callback_group=self.made(self.client_group))
+        self.server = self.create_service(Trigger, "answer", self.answer, callback_group=self.made(self.service_group))
+        self.timer = self.create_timer(0.05, self.fire)
+
+    @staticmethod
+    def made(group: Any) -> Any:
+        return group() if group else None
+
+    def answer(self, request: Any, response: Any) -> Any:
+        response.success = True
+        return response
+
+    def fire(self) -> None:
+        self.timer.cancel()
+        self.tick()
+
+    def tick(self) -> None:
+        """What is tried."""
+
+
+class Calls(Asker):
+    def tick(self) -> None:
+        self.client.call(Trigger.Request())  # stuck: Calls
+        self.done.set()
+
+
+class FixedCalls(Calls):
+    def tick(self) -> None:
+        future = self.client.call_async(Trigger.Request())
+        future.add_done_callback(lambda _: self.done.set())
+
+
+class CallsWithGroups(Calls):
+    threads = 2
+    client_group = service_group = MutuallyExclusiveCallbackGroup
+
+
+class CallsWithThreads(Asker):
+    """Two threads, and one group for all."""
+
+    threads = 2
+
+    def tick(self) -> None:
+        self.client.call(Trigger.Request())  # stuck: CallsWithThreads
+        self.done.set()
+
+
+class CallsAcross(Asker):
+    """The server has a group of its own, and the answer has not."""
+
+    threads = 2
+    service_group = MutuallyExclusiveCallbackGroup
+
+    def tick(self) -> None:
+        self.client.call(Trigger.Request())  # stuck: CallsAcross
+        self.done.set()
+
+
+class FixedCallsAcross(CallsAcross):
+    client_group = MutuallyExclusiveCallbackGroup
+
+
+class CallsWithALimit(Asker):
+    def tick(self) -> None:
+        self.client.call(Trigger.Request(), timeout_sec=30.0)  # stuck: CallsWithALimit
+        self.done.set()
+
+
+class SpinsWithin(Asker):
+    def tick(self) -> None:
+        future = self.client.call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(self, future, self.executor)  # stuck: SpinsWithin
+        self.done.set()
+
+
+class FixedSpinsWithin(SpinsWithin):
+    client_group = service_group = MutuallyExclusiveCallbackGroup
+
+
+class SpinsOnceWithin(Asker):
+    def tick(self) -> None:
+        future = self.client.call_async(Trigger.Request())
+        while not future.done():
+            rclpy.spin_once(self, executor=self.executor)  # stuck: SpinsOnceWithin
+        self.done.set()
+
+
+class SpinsAndBreaks(Asker):
+    def tick(self) -> None:
+        future = self.client.call_async(Trigger.Request())
+        while rclpy.ok():
+            rclpy.spin_once(self, executor=self.executor, timeout_sec=0.2)  # stuck: SpinsAndBreaks
+            if future.done():
+                break
+        self.done.set()
+
+
+class PollsTheFuture(Asker):
+    threads = 2
+
+    def tick(self) -> None:
+        self.future = self.client.call_async(Trigger.Request())
+        while rclpy.ok() and not self.future.done():
+            time.sleep(0.02)  # stuck: PollsTheFuture
+        self.done.set()
+
+
+class FixedPollsTheFuture(PollsTheFuture):
+    client_group = service_group = MutuallyExclusiveCallbackGroup
+
+
+class Awaits(Asker):
+    """The group is held while it is awaited."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.timer.callback = self.look
+
+    async def look(self) -> None:
+        self.timer.cancel()
+        await self.client.call_async(Trigger.Request())  # stuck: Awaits
+        self.done.set()
+
+
+class FixedAwaits(Awaits):
+    client_group = service_group = ReentrantCallbackGroup
+
+
+class Sleeps(Asker):
+    def tick(self) -> None:
+        rate = self.create_rate(20.0)
+        rate.sleep()  # stuck: Sleeps
+        self.done.set()
+
+
+class FixedSleeps(Sleeps):
+    threads = 2
+
+
+class AllThreads(Asker):
+    """As many callbacks wait as there are threads."""
+
+    threads = 2
+    client_group = service_group = ReentrantCallbackGroup
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.other = self.create_timer(0.05, self.again, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def tick(self) -> None:
+        time.sleep(0.1)
+        self.client.call(Trigger.Request())  # stuck: AllThreads
+        self.done.set()
+
+    def again(self) -> None:
+        self.other.cancel()
+        time.sleep(0.1)
+        self.client.call(Trigger.Request())
+
+
+class FixedAllThreads(AllThreads):
+    threads = 3
+
+
+class ServesByCalling(Asker):
+    """A service that asks another of the same node."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.second = self.create_service(Trigger, "second", self.on_second)
+        self.starter = self.create_client(Trigger, "second", callback_group=ReentrantCallbackGroup())
+
+    def tick(self) -> None:
+        self.starter.call_async(Trigger.Request())
+
+    def on_second(self, request: Any, response: Any) -> Any:
+        self.client.call(Trigger.Request())  # stuck: ServesByCalling
+        self.done.set()
+        return response
+
+
+class FixedServesByCalling(Asker):
+    client_group = service_group = ReentrantCallbackGroup
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.second = self.create_service(Trigger, "second", self.on_second, callback_group=ReentrantCallbackGroup())
+        self.starter = self.create_client(Trigger, "second", callback_group=ReentrantCallbackGroup())
+
+    def tick(self) -> None:
+        self.starter.call_async(Trigger.Request())
+
+    async def on_second(self, request: Any, response: Any) -> Any:
+        await self.client.call_async(Trigger.Request())
+        self.done.set()
+        return response
+
+
+class Waits(Node):
+    """Waits for what another callback brings about."""
+
+    threads = 1
+    group: Any = None
+
+    def __init__(self) -> None:
+        super().__init__("waiter")
+        self.done = threading.Event()
+        self.arrived = threading.Event()
+        self.lock = threading.Lock()
+        self.flag = False
+        self.items: queue.Queue[int] = queue.Queue()
+        self.future: Future[int] = Future()
+        group = self.group() if self.group else None
+        self.timer = self.create_timer(0.05, self.fire)
+        self.other = self.create_timer(0.1, self.arrive, callback_group=group)
+        self.create_subscription(String, "news", self.on_news, 10)
+
+    def fire(self) -> None:
+        self.timer.cancel()
+        self.tick()
+
+    def tick(self) -> None:
+        """What is tried."""
+
+    def arrive(self) -> None:
+        """What the other does."""
+
+    def on_news(self, message: Any) -> None:
+        """Nothing has to do with it."""
+
+
+class WaitsForEvent(Waits):
+    def tick(self) -> None:
+        self.arrived.wait()  # stuck: WaitsForEvent
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.arrived.set()
+
+
+class FixedWaitsForEvent(WaitsForEvent):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class WaitsInAGroup(Waits):
+    threads = 3
+
+    def tick(self) -> None:
+        self.arrived.wait()  # stuck: WaitsInAGroup
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.arrived.set()
+
+
+class FixedWaitsInAGroup(WaitsInAGroup):
+    group = MutuallyExclusiveCallbackGroup
+
+
+class PollsAFlag(Waits):
+    def tick(self) -> None:
+        while not self.flag:
+            time.sleep(0.02)  # stuck: PollsAFlag
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.flag = True
+
+
+class FixedPollsAFlag(PollsAFlag):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class TakesFromAQueue(Waits):
+    def tick(self) -> None:
+        self.items.get()  # stuck: TakesFromAQueue
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.items.put(1)
+
+
+class AwaitsAFuture(Waits):
+    def __init__(self) -> None:
+        super().__init__()
+        self.timer.callback = self.look
+
+    async def look(self) -> None:
+        self.timer.cancel()
+        await self.future  # stuck: AwaitsAFuture
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.future.set_result(1)
+
+
+class FixedAwaitsAFuture(AwaitsAFuture):
+    group = ReentrantCallbackGroup
+
+
+class CallsInsideALock(Asker):
+    """It waits inside a lock for what needs the lock."""
+
+    threads = 3
+    client_group = service_group = MutuallyExclusiveCallbackGroup
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        super().__init__()
+
+    def tick(self) -> None:
+        with self.lock:
+            self.client.call(Trigger.Request())  # stuck: CallsInsideALock
+        self.done.set()
+
+    def answer(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            response.success = True
+        return response
+
+
+class FixedCallsInsideALock(CallsInsideALock):
+    def tick(self) -> None:
+        self.client.call(Trigger.Request())
+        with self.lock:
+            self.done.set()
+
+
+class SendsAGoal(Node):
+    """It waits for a goal that it executes itself."""
+
+    threads = 1
+
+    def __init__(self) -> None:
+        super().__init__("actor")
+        self.done = threading.Event()
+        self.server = ActionServer(self, Fibonacci, "count", self.execute)
+        self.client = ActionClient(self, Fibonacci, "count")
+        self.timer = self.create_timer(0.05, self.tick)
+
+    def execute(self, goal: Any) -> Any:
+        goal.succeed()
+        return Fibonacci.Result()
+
+    def tick(self) -> None:
+        self.timer.cancel()
+        self.client.send_goal(Fibonacci.Goal(order=3))  # stuck: SendsAGoal
+        self.done.set()
+
+
+class FixedSendsAGoal(SendsAGoal):
+    def tick(self) -> None:
+        self.timer.cancel()
+        self.client.send_goal_async(Fibonacci.Goal(order=3)).add_done_callback(self.answered)
+
+    def answered(self, future: Any) -> None:
+        future.result().get_result_async().add_done_callback(lambda _: self.done.set())
+
+
+class CallsInAGoal(Asker):
+    """The body of a goal asks a service in the only thread."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.actions = ActionServer(self, Fibonacci, "count", self.execute)
+        self.starter = ActionClient(self, Fibonacci, "count")
+
+    def tick(self) -> None:
+        self.starter.send_goal_async(Fibonacci.Goal(order=3))
+
+    def execute(self, goal: Any) -> Any:
+        self.client.call(Trigger.Request())  # stuck: CallsInAGoal
+        goal.succeed()
+        self.done.set()
+        return Fibonacci.Result()
+
+
+class FixedCallsInAGoal(CallsInAGoal):
+    threads = 2
+
+
+BOTH = "make answer and the client of /answer with callback_group=MutuallyExclusiveCallbackGroup() each"
+
+PLANTED: list[tuple[type[Any], type[Any], str]] = [
+    (Calls, FixedCalls, "future = client.call_async(request), then future.add_done_callback(...)"),
+    (
+        Calls,
+        CallsWithGroups,
+        BOTH,
+    ),
+    (
+        CallsWithThreads,
+        CallsWithGroups,
+        BOTH,
+    ),
+    (CallsAcross, FixedCallsAcross, "make the client of /answer with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (CallsWithALimit, FixedCalls, "then future.add_done_callback(...)"),
+    (
+        SpinsWithin,
+        FixedSpinsWithin,
+        BOTH,
+    ),
+    (
+        SpinsOnceWithin,
+        FixedSpinsWithin,
+        BOTH,
+    ),
+    (
+        SpinsAndBreaks,
+        FixedSpinsWithin,
+        BOTH,
+    ),
+    (
+        PollsTheFuture,
+        FixedPollsTheFuture,
+        BOTH,
+    ),
+    (Awaits, FixedAwaits, "callback_group=ReentrantCallbackGroup()"),
+    (Sleeps, FixedSleeps, "spin with MultiThreadedExecutor(num_threads=2)"),
+    (AllThreads, FixedAllThreads, "spin with MultiThreadedExecutor(num_threads=3)"),
+    (ServesByCalling, FixedServesByCalling, "make on_second async def, and await client.call_async(request),"),
+    (WaitsForEvent, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
+    (WaitsInAGroup, FixedWaitsInAGroup, "make arrive with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
+    (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
+    (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),
+    (CallsInsideALock, FixedCallsInsideALock, "out of the `with self.lock` block"),
+    (SendsAGoal, FixedSendsAGoal, "future = client.send_goal_async(goal), then future.add_done_callback(...)"),
+    (CallsInAGoal, FixedCallsInAGoal, "spin with MultiThreadedExecutor(num_threads=2)"),
+]
+"""What is stuck, the same with the change applied, and how the report words that change."""

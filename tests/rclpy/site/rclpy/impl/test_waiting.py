@@ -1,0 +1,128 @@
+"""Programs that are stuck, and programs that merely wait, in threads of their own on a network in memory."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rclpy
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from tests.cases import sample
+from tests.flat import flat
+from tests.rclpy import planted, waiting_programs
+
+LIMIT = 20.0
+
+
+def reports(caplog: pytest.LogCaptureFixture) -> list[str]:
+    """What was said of deadlocks."""
+    return [r.getMessage() for r in caplog.records if "DEADLOCK" in r.getMessage() or "IN VAIN" in r.getMessage()]
+
+
+def until(condition: Callable[[], Any], what: str) -> None:
+    """Wait until a condition holds."""
+    end = time.monotonic() + LIMIT
+    while not condition():
+        assert time.monotonic() < end, f"not within {LIMIT} s: {what}"
+        time.sleep(0.01)
+
+
+class Program:
+    """A program of one node that spins in a thread."""
+
+    def __init__(self, cls: type[Any]) -> None:
+        rclpy.init()
+        self.node = cls()
+        self.executor: Executor = SingleThreadedExecutor()
+        if cls.threads > 1:
+            self.executor = MultiThreadedExecutor(cls.threads)
+        self.thread = threading.Thread(target=self._spin)
+        self.executor.add_node(self.node)
+        self.thread.start()
+
+    def _spin(self) -> None:
+        try:
+            self.executor.spin()
+        except Exception as error:  # as the context ends; a test that needs to know looks at what the node has done
+            logging.getLogger("tests").debug("%r", error)
+
+    def end(self) -> None:
+        """Let go of whatever blocks."""
+        rclpy.try_shutdown()
+        for value in vars(self.node).values():
+            if isinstance(value, threading.Event):
+                value.set()
+        if hasattr(self.node, "items"):
+            self.node.items.put(None)
+        if hasattr(self.node, "flag"):
+            self.node.flag = True
+        self.thread.join(LIMIT)
+        assert not self.thread.is_alive()
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[[type[Any]], Program]]:
+    """Start programs."""
+    programs: list[Program] = []
+
+    def begin(cls: type[Any]) -> Program:
+        programs.append(Program(cls))
+        return programs[-1]
+
+    yield begin
+    for program in programs:
+        program.end()
+
+
+def line_of(cls: type[Any]) -> int:
+    """The line that is marked."""
+    lines = Path(planted.__file__).read_text("utf-8").splitlines()
+    return next(n for n, line in enumerate(lines, 1) if line.endswith(f"# stuck: {cls.__name__}"))
+
+
+@pytest.mark.parametrize(
+    ("cls", "words"),
+    [pytest.param(cls, words, id=f"{cls.__name__}-{n}") for n, (cls, _, words) in enumerate(planted.PLANTED)],
+)
+def test_what_is_stuck_is_told(
+    start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture, cls: type[Any], words: str
+) -> None:
+    """With the line, and what to do about it."""
+    start(cls)
+    until(lambda: reports(caplog), cls.__name__)
+    told = flat(reports(caplog)[0])
+    assert f"planted.py:{line_of(cls)} in " in told
+    assert words in told
+
+
+@pytest.mark.parametrize("cls", dict.fromkeys(fixed for _, fixed, _ in planted.PLANTED), ids=lambda c: c.__name__)
+def test_what_the_report_asks_for_ends_it(
+    start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture, cls: type[Any]
+) -> None:
+    """The same program with the change comes to its end."""
+    program = start(cls)
+    assert program.node.done.wait(LIMIT)
+    assert not reports(caplog)
+
+
+RIGHT = [(way, a) for way in waiting_programs.WAYS for a in waiting_programs.ARRANGEMENTS]
+RIGHT += [(way, a) for way in waiting_programs.AWAITS for a in waiting_programs.ARRANGEMENTS[:3]]
+
+
+@pytest.mark.parametrize(("way", "arrangement"), sample(RIGHT), ids="-".join)
+def test_who_merely_waits_is_not_called_stuck(
+    caplog: pytest.LogCaptureFixture, network: object, way: str, arrangement: str
+) -> None:
+    """However it is done, while something else goes on that ends it."""
+    running = waiting_programs.Running(way, arrangement)
+    try:
+        assert running.node.done.wait(LIMIT)
+    finally:
+        running.end()
+    assert not [r.getMessage() for r in caplog.records if r.name == "graphflow" and r.levelno >= logging.WARNING]
