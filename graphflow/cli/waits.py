@@ -110,10 +110,9 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
         elif group["handlers"]:
             output.data("  in no group  (each queues behind itself only)")
         for handler in group["handlers"]:
-            numbers = f"{handler['runs']} runs"
-            for word in ("running", "waiting", "errors"):
-                numbers += f", {handler[word]} {word}" if handler[word] else ""
-            output.data(f"    {handler['handler']}  {handler['kind']}  {numbers}")
+            counts = [] if handler["runs"] is None else [f"{handler['runs']} runs"]  # rclpy's are not counted
+            counts += [f"{handler[word]} {word}" for word in ("running", "waiting", "errors") if handler[word]]
+            output.data(f"    {handler['handler']}  {handler['kind']}  {', '.join(counts)}".rstrip())
 
 
 @groups.command()

@@ -136,6 +136,10 @@ class Inspection:
         node = next((n for n in self._process.nodes if n.full_name == node_name), None)
         if node is None:
             raise InvalidName(f"there is no node {node_name} in this process")
+        if any(node_name in other.groups() for other in self._process.elsewhere):
+            raise InvalidName(
+                f"{node_name} is written for rclpy: its groups are those that its code gives, callback_group=..."
+            )
         mine = [r for r in _handlers(node) if r.spec.handler == handler]
         if not mine:
             known = sorted({r.spec.handler for r in _handlers(node)})

@@ -30,7 +30,7 @@ def in_rclpys_words(edge: Edge, holder_edge: Edge, graph: WaitGraph) -> Iterator
         return
     yield from _without_waiting(holder, holder_edge, graph)
     if queue is not None:
-        yield from _apart(queue, _reply_queue(edge, graph), graph)
+        yield from _apart(queue, _reply_queue(holder, holder_edge, graph), graph)
     else:
         yield _text(f"use more threads: MultiThreadedExecutor(num_threads={_held(graph, edge.group) + 1})")
 
@@ -78,11 +78,11 @@ def _asynchronous(call: Call) -> str:
     return names.get(part, "cancel_goal_async()") if part else "call_async(request)"
 
 
-def _reply_queue(edge: Edge, graph: WaitGraph) -> QueueView | None:
+def _reply_queue(holder: ActivityView, edge: Edge, graph: WaitGraph) -> QueueView | None:
     """Where the answer to a call of the holder's own will be waiting."""
     if not isinstance(edge.via, Call):
         return None
-    node, label = graph.activities[edge.to].node, f"reply {edge.via.name.partition('/_action/')[0]}"
+    node, label = holder.node, f"reply {edge.via.name.partition('/_action/')[0]}"
     return next((q for q in graph.queues.values() if (q.node, q.label) == (node, label)), None)
 
 
@@ -94,7 +94,7 @@ def _apart(queue: QueueView, reply: QueueView | None, graph: WaitGraph) -> Itera
             is_reply = one.label.startswith("reply ")
             kept.append(f"the client of {one.handler}" if is_reply else one.handler)
     if kept:
-        who = " and ".join(dict.fromkeys(kept))
+        who = f"{' and '.join(dict.fromkeys(kept))} of {queue.node}"
         clauses.append(f"make {who} with {_EXCLUSIVE}{' each' if len({*kept}) > 1 else ''}")
     executor = next((group for group in _full(queue, graph) if group.sort == "executor"), None)
     if executor is not None:

@@ -294,20 +294,30 @@ class ThreadedClient(Endpoint):
             self._sequence += 1
             sequence = self._sequence
         beside = attachment.pack(sequence, self.host.context.clock.time_ns(), gid)
-        caller.call(payload, beside, lambda answer: self._arrived(sequence, answer))
+        is_over = False
+
+        def arrived(answer: Answer | None) -> None:
+            nonlocal is_over
+            is_over = is_over or self._arrived(sequence, answer)  # the end of the call comes after its answer
+
+        caller.call(payload, beside, arrived)
         return sequence
 
     def call_id(self, sequence: int) -> str:
         """The id of a call in the wait-for graphs of all processes."""
         return call_id(self._announced().gid, sequence)
 
-    def _arrived(self, sequence: int, answer: Answer | None) -> None:
+    def _arrived(self, sequence: int, answer: Answer | None) -> bool:
+        """Whether that is what the call has waited for."""
         if answer is None:
             self.inbox.put(Answered(sequence, error=ServerLost(f"the server of {self.name} did not answer")))
         elif answer.is_error:
             self.inbox.put(Answered(sequence, error=error_of(answer.payload, self.name)))
         elif sequence_of(answer) == sequence:
             self.inbox.put(Answered(sequence, answer.payload))
+        else:
+            return False
+        return True
 
     def tell(self, event: ServiceEvent, sequence: int, payload: bytes) -> None:
         """The same as `ThreadedService.tell`."""

@@ -38,7 +38,7 @@ def test_a_call_in_a_callback() -> None:
     """Another way to call, or groups and threads for the server and for the answer."""
     assert told(Edge("a", CALL, "q", "g"), TICK) == [
         "do not block in arm.py:12: future = client.call_async(request), then future.add_done_callback(...)",
-        "make add and the client of /add with callback_group=MutuallyExclusiveCallbackGroup() each, "
+        "make add and the client of /add of /arm with callback_group=MutuallyExclusiveCallbackGroup() each, "
         "and spin with MultiThreadedExecutor(num_threads=2)",
     ]
 
@@ -47,7 +47,7 @@ def test_only_what_is_full_is_changed() -> None:
     """Here, the answer has a group of its own already."""
     [_, apart] = told(Edge("a", CALL, "q", "g"), TICK, queues=(ADD, replace(REPLY, needs=("o", "e"))))
     assert apart == (
-        "make add with callback_group=MutuallyExclusiveCallbackGroup(), "
+        "make add of /arm with callback_group=MutuallyExclusiveCallbackGroup(), "
         "and spin with MultiThreadedExecutor(num_threads=2)"
     )
 
@@ -68,7 +68,7 @@ def test_a_coroutine_gives_back_its_thread_but_not_its_group() -> None:
         "let others run while tick awaits in arm.py:12: "
         "callback_group=ReentrantCallbackGroup() where tick and what it awaits are made"
     )
-    assert apart == "make add and the client of /add with callback_group=MutuallyExclusiveCallbackGroup() each"
+    assert apart == "make add and the client of /add of /arm with callback_group=MutuallyExclusiveCallbackGroup() each"
 
 
 @pytest.mark.parametrize(

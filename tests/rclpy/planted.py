@@ -415,7 +415,7 @@ class FixedCallsInAGoal(CallsInAGoal):
     threads = 2
 
 
-BOTH = "make answer and the client of /answer with callback_group=MutuallyExclusiveCallbackGroup() each"
+BOTH = "make answer and the client of /answer of /asker with callback_group=MutuallyExclusiveCallbackGroup() each"
 
 PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (Calls, FixedCalls, "future = client.call_async(request), then future.add_done_callback(...)"),
@@ -429,7 +429,11 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
         CallsWithGroups,
         BOTH,
     ),
-    (CallsAcross, FixedCallsAcross, "make the client of /answer with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (
+        CallsAcross,
+        FixedCallsAcross,
+        "make the client of /answer of /asker with callback_group=MutuallyExclusiveCallbackGroup()",
+    ),
     (CallsWithALimit, FixedCalls, "then future.add_done_callback(...)"),
     (
         SpinsWithin,
@@ -456,7 +460,7 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (AllThreads, FixedAllThreads, "spin with MultiThreadedExecutor(num_threads=3)"),
     (ServesByCalling, FixedServesByCalling, "make on_second async def, and await client.call_async(request),"),
     (WaitsForEvent, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
-    (WaitsInAGroup, FixedWaitsInAGroup, "make arrive with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (WaitsInAGroup, FixedWaitsInAGroup, "make arrive of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
     (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),

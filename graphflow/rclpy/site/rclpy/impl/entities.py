@@ -50,6 +50,7 @@ def role_of(entity: Any, node: Any) -> Role:
         return Role("timer", "rate", is_inner=True)
     code = getattr(callback, "__code__", None)
     is_inner = code is not None and "/graphflow/rclpy/" in code.co_filename
+    is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 

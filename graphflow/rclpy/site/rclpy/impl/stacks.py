@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
+import rclpy
 from graphflow.deadlock.user_code import is_users
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.spinning import Run, Spinning
@@ -20,6 +21,7 @@ _SPINS = (
     MultiThreadedExecutor._do_one.__code__,
     Executor.spin_until_future_complete.__code__,
 )
+_FOR_EVER = (rclpy.spin.__code__, Executor.spin.__code__)
 _OURS = ("graphflow-", "executor-")
 """How the names of threads begin that run no code of users', or only an executor's."""
 
@@ -49,6 +51,8 @@ class Stack:
     """The outermost first; each but the first is one run of a callback."""
     spins: list[Executor]
     """The executors that it spins."""
+    is_given: bool
+    """Whether it spins for as long as the context lasts."""
 
     @property
     def is_idle(self) -> bool:
@@ -57,8 +61,13 @@ class Stack:
 
     @property
     def is_users(self) -> bool:
-        """Whether it is a thread that could be told to spin: no thread of a pool."""
+        """Whether it is a thread of the program's own: none of a pool."""
         return not self.thread.name.startswith(_OURS)
+
+    @property
+    def may_spin(self) -> bool:
+        """Whether the program's own code may yet have it spin what nobody spins."""
+        return self.is_users and not (self.is_idle and self.is_given)
 
 
 def stacks() -> Iterator[Stack]:
@@ -69,7 +78,7 @@ def stacks() -> Iterator[Stack]:
         frame = frames.get(thread.ident or 0)
         if frame is None or thread.ident == me or thread.name.startswith("graphflow-"):
             continue
-        if isinstance(thread, threading._DummyThread):  # one of Zenoh's
+        if isinstance(thread, threading._DummyThread) or thread.name.endswith("(pyo3-closure)"):  # Zenoh's
             continue
         stack = _read(thread, frame)
         if stack.is_users or len(stack.levels) > 1:
@@ -82,16 +91,18 @@ def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
     while frame is not None:
         frames.append(frame)
         frame = frame.f_back
-    levels, spins = [Level(None)], list[Executor]()
+    levels, spins, is_given = [Level(None)], list[Executor](), False
     for frame in reversed(frames):
         if frame.f_code is _STEP:
             levels.append(Level(frame.f_locals["self"]))
         elif frame.f_code in _SPINS:
             spins.append(frame.f_locals["self"])
+        elif frame.f_code in _FOR_EVER:
+            is_given = True
         levels[-1].frames.append(frame)
         if frame.f_code is _NEXT:
             levels[-1].waiting = frame.f_locals["self"].executor
-    return Stack(thread, levels, spins)
+    return Stack(thread, levels, spins, is_given)
 
 
 def standing() -> dict[int, int]:

@@ -171,7 +171,7 @@ class _Look:
 
     def _spinner(self, node: Any) -> tuple[str, ...]:
         """The id of what a node needs that nobody spins: one of the program's own threads."""
-        threads = [stack for stack in self._stacks if stack.is_users]
+        threads = [stack for stack in self._stacks if stack.may_spin]
         if not threads:
             return ()
         name = f"{self._zid}:spinner"
@@ -207,7 +207,7 @@ class _Look:
     def _add_stack(self, stack: Stack) -> None:
         """The runs of a thread, each of which waits for the next; below them, the thread itself if it is a user's."""
         runs = [level for level in stack.levels if level.run is not None]
-        held = (f"{self._zid}:spinner",) if stack.is_users and f"{self._zid}:spinner" in self._groups else ()
+        held = (f"{self._zid}:spinner",) if stack.may_spin and f"{self._zid}:spinner" in self._groups else ()
         if not runs:
             if held and not stack.is_idle:
                 self._add_thread(stack, stack.levels[0], held)

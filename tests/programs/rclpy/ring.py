@@ -1,0 +1,86 @@
+"""One process of a ring: node NAME, whose callback asks node ASKED.
+
+    python -m graphflow run ring.py NAME ASKED HOW [starts]
+
+Asked, it asks on. What starts asks first, from a timer. HOW is `calls` (and blocks), `awaits` (in the default group),
+`pools` (blocks, in a pool of threads), `acts` (sends a goal and blocks); `later` is `calls` with its report's remedy.
+"""
+
+import sys
+
+from example_interfaces.action import Fibonacci
+from std_srvs.srv import Trigger
+
+import rclpy
+from rclpy.action import ActionClient, ActionServer
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class Member(Node):
+    def __init__(self, name, asked, how, starts):
+        super().__init__(name)
+        self.how = how
+        group = ReentrantCallbackGroup() if how == "later" else None
+        on = {"awaits": self.on_ask_async, "later": self.on_ask_async}.get(how, self.on_ask)
+        self.service = self.create_service(Trigger, f"/{name}/ask", on, callback_group=group)
+        self.action = ActionServer(self, Fibonacci, f"/{name}/act", self.on_goal)
+        self.client = self.create_client(Trigger, f"/{asked}/ask", callback_group=group)
+        self.goals = ActionClient(self, Fibonacci, f"/{asked}/act")
+        if starts:
+            wanted = self.goals.wait_for_server if how == "acts" else self.client.wait_for_service
+            wanted()
+            self.timer = self.create_timer(0.3, {"awaits": self.on_timer_async}.get(how, self.on_timer))
+            if how == "later":
+                self.timer.callback = self.on_timer_later
+
+    def on_timer(self):
+        self.timer.cancel()
+        if self.how == "acts":
+            self.goals.send_goal(Fibonacci.Goal())  # goal
+        else:
+            self.client.call(Trigger.Request())  # timer
+        self.get_logger().info("all the way round")
+
+    async def on_timer_async(self):
+        self.timer.cancel()
+        await self.client.call_async(Trigger.Request())  # async timer
+        self.get_logger().info("all the way round")
+
+    def on_timer_later(self):
+        self.timer.cancel()
+        future = self.client.call_async(Trigger.Request())
+        future.add_done_callback(lambda _: self.get_logger().info("all the way round"))
+
+    def on_ask(self, request, response):
+        self.client.call(Trigger.Request())  # ask
+        return response
+
+    async def on_ask_async(self, request, response):
+        if self.how == "awaits":
+            await self.client.call_async(Trigger.Request())  # async ask
+        return response
+
+    def on_goal(self, goal):
+        self.client.call(Trigger.Request())  # act
+        goal.succeed()
+        return Fibonacci.Result()
+
+
+def main():
+    name, asked, how = sys.argv[1:4]
+    rclpy.init()
+    node = Member(name, asked, how, starts=len(sys.argv) > 4)
+    executor = MultiThreadedExecutor(4) if how == "pools" else SingleThreadedExecutor()
+    executor.add_node(node)
+    print("up", flush=True)
+    try:
+        executor.spin()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+main()
