@@ -105,22 +105,22 @@ def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
     return Stack(thread, levels, spins, is_given)
 
 
-def standing() -> dict[int, int]:
-    """Where threads stand that run code of users': the identity of the innermost frame of it, by thread.
+def standing() -> dict[int, tuple[int, int]]:
+    """Where threads stand that run code of users': the identity of the innermost frame of it, and the line, by thread.
 
     It costs a walk along the end of each stack. Threads that only wait for something to do are left out.
     """
-    found: dict[int, int] = {}
+    found: dict[int, tuple[int, int]] = {}
     for thread, innermost in sys._current_frames().items():
         frame: FrameType | None = innermost
         while frame is not None and frame.f_code is not _NEXT:
             if is_users(frame.f_code.co_filename):
-                found[thread] = id(frame)
+                found[thread] = id(frame), frame.f_lineno
                 break
             frame = frame.f_back
         else:
             if frame is not None and _is_in_run(frame):  # it spins within a callback
-                found[thread] = id(frame)
+                found[thread] = id(frame), 0
     return found
 
 

@@ -67,6 +67,8 @@ class Waiting:
         self._lock = threading.RLock()
         self._stood: dict[int, tuple[int, float]] = {}
         """Where each thread stands, and since when."""
+        self._known: set[tuple[int, int]] = set()
+        """What stands still and has been looked into: a frame and a line, or a run and its step."""
         LOOP.soon(self._look)
 
     def number_of(self, thing: Any) -> int:
@@ -98,15 +100,18 @@ class Waiting:
 
     def _look(self) -> None:
         """Have deadlocks looked for if something stands still. On the loop."""
-        clock, now = self.context.clock, time.monotonic()
+        clock, now, places = self.context.clock, time.monotonic(), standing()
         self._stood = {
             thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
-            for thread, frame in standing().items()
+            for thread, (frame, _) in places.items()
         }
         runs: list[Run] = [run for executor in list(all_executors) for run in list(executor.spinning.running)]
-        are_old = any(now - since >= LOOK_EVERY for _, since in self._stood.values())
-        if are_old or any(now - run.stepped_ns / 1e9 >= LOOK_EVERY for run in runs if run.stepped_ns):
+        still = {places[thread] for thread, (_, since) in self._stood.items() if now - since >= 0.9 * LOOK_EVERY}
+        still |= {(id(run), run.stepped_ns) for run in runs if 0 < run.stepped_ns < (now - LOOK_EVERY) * 1e9}
+        if not still <= self._known:
             self.context.ledger.alert()
+        lasting = {thing for thing, _ in still}  # a loop that polls has several lines
+        self._known = still | {known for known in self._known if known[0] in lasting}
         if self._life.is_ok:
             clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
 
