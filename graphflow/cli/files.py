@@ -41,6 +41,7 @@ def find_graph(text: str) -> Path:
 
 
 _graph = click.argument("graph", metavar="GRAPH.yaml")
+_graph_or_source = click.argument("graph", metavar="GRAPH.yaml|FILE.py|FOLDER")
 _args = click.argument("args", nargs=-1, metavar="[NAME:=VALUE]...")
 _json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
@@ -73,15 +74,23 @@ def _difference(one: Plan, other: Plan) -> Iterator[str]:
 
 
 @click.command()
-@_graph
+@_graph_or_source
 @_args
 @_json
 def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
-    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE.
+    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. Of a
+    Python file or a folder, the nodes that are written for rclpy are read, and nothing is imported.
     """
-    path = find_graph(graph)
+    if graph.endswith(".py"):
+        return _check_rclpy(Path(graph), as_json=as_json)
+    try:
+        path = find_graph(graph)
+    except UsageFault:
+        if not Path(graph).is_dir():
+            raise
+        return _check_rclpy(Path(graph), as_json=as_json)
     from graphflow.errors import GraphFileError
     from graphflow.graph.static import findings
 
@@ -106,6 +115,24 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
     more = f"no mistakes, {', '.join(told)}" if told else "no problems"
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
+    return exits.FAILED if certain else exits.OK
+
+
+def _check_rclpy(path: Path, *, as_json: bool) -> int:
+    """Report deadlocks that the source of rclpy nodes shows."""
+    from graphflow.graph.rclpy_source import findings_in
+
+    if not path.exists():
+        raise UsageFault(f"there is no file {path}")
+    ways = findings_in(path)
+    certain = [way for way in ways if way.grade == "CERTAIN"]
+    if as_json:
+        deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
+        output.as_json({"problems": [], "deadlocks": deadlocks})
+    else:
+        output.lines(str(way) for way in ways)
+        count = _count(ways, "deadlock")
+        output.data(f"{path}: {f'{count} in the source' if ways else 'no deadlocks to be seen in the source'}")
     return exits.FAILED if certain else exits.OK
 
 

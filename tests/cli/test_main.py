@@ -96,7 +96,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["topic", "pub", "/x"], "the topic's type comes before the values: graphflow topic pub /x TYPE ..."),
         (["topic", "pub", "-r", "0", "/x", "std_msgs/msg/String"], "Invalid value for '-r' / '--rate'"),
         (["--domain", "-1", "ps"], "Invalid value for '--domain'"),
-        (["check"], "Missing argument 'GRAPH.yaml'"),
+        (["check"], "Missing argument 'GRAPH.yaml|FILE.py|FOLDER'"),
         (["check", "nothing.yaml"], "error: nothing.yaml: there is no such file"),
         (["check", "turtlesm"], "error: turtlesm: there is no such file; did you mean 'turtlesim'?"),
         (["run", "nodes.talker.Talker"], "error: 'nodes.talker.Talker': write MODULE:CLASS, nodes.talker:Talker"),

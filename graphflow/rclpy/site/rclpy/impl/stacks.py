@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
-import rclpy
-from graphflow.deadlock.user_code import is_users
+from graphflow.deadlock.user_code import is_ours, is_users
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.spinning import Run, Spinning
 
@@ -21,7 +20,6 @@ _SPINS = (
     MultiThreadedExecutor._do_one.__code__,
     Executor.spin_until_future_complete.__code__,
 )
-_FOR_EVER = (rclpy.spin.__code__, Executor.spin.__code__)
 _OURS = ("graphflow-", "executor-")
 """How the names of threads begin that run no code of users', or only an executor's."""
 
@@ -97,7 +95,7 @@ def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
             levels.append(Level(frame.f_locals["self"]))
         elif frame.f_code in _SPINS:
             spins.append(frame.f_locals["self"])
-        elif frame.f_code in _FOR_EVER:
+        elif frame.f_code.co_name == "spin" and is_ours(frame.f_code.co_filename):
             is_given = True
         levels[-1].frames.append(frame)
         if frame.f_code is _NEXT:

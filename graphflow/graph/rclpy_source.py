@@ -1,0 +1,297 @@
+"""Deadlocks that the source of rclpy nodes shows before anything runs: callbacks that wait for what they keep out.
+
+Read is one file at a time, and none is run. What a class registers by `create_timer` and the like are its callbacks; a
+callback group is known where it is made or named in the same class. What is not plain to see is passed over.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from graphflow.errors import Place
+from graphflow.graph.static import Finding, Grade
+
+FILES_BOUND = 2000
+"""Files that are read below a folder."""
+_LEFT_OUT = {"build", "install", "log", "node_modules", "venv", "site-packages", "__pycache__"}
+_BASES = {"Node", "LifecycleNode"}
+_CALLBACK_AT = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
+"""Where the callback is among the arguments of what registers it."""
+_GROUP_AT = {"create_timer": 2}
+_KINDS = {"create_timer": "timer", "create_subscription": "subscription", "create_service": "service"}
+_BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.ExceptHandler)
+_NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+_SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
+_LATER = "use call_async(request) and add_done_callback(...)"
+_OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
+_POOL = "spin with MultiThreadedExecutor()"
+
+
+class _Group(NamedTuple):
+    """A callback group."""
+
+    name: str
+    is_exclusive: bool
+
+    def __str__(self) -> str:
+        return self.name or "a callback group"
+
+
+_DEFAULT = _Group("the default callback group", True)
+
+
+class _Callback(NamedTuple):
+    """A method that an executor calls."""
+
+    method: str
+    kind: str
+    group: _Group | None
+    """None where it is in none, or in one that is not known."""
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.method}"
+
+
+class _Wait(NamedTuple):
+    """Something that a method waits for."""
+
+    what: str
+    """In words: `self.client.call`."""
+    syntax: ast.AST
+    client: str
+    """The attribute that is the client whose answer it is; empty for the tick of a rate."""
+    holds_thread: bool
+    spins: bool
+    is_certain: bool
+
+
+@dataclass
+class _Class:
+    """A node's class."""
+
+    file: str
+    is_single: bool
+    """Whether one thread spins it."""
+    methods: dict[str, ast.FunctionDef | ast.AsyncFunctionDef] = field(default_factory=dict)
+    groups: dict[str, _Group] = field(default_factory=dict)
+    clients: dict[str, _Group | None] = field(default_factory=dict)
+    callbacks: list[_Callback] = field(default_factory=list)
+
+    def findings(self) -> Iterator[Finding]:
+        seen: set[tuple[int, str]] = set()
+        for callback in self.callbacks:
+            for wait in self._waits(callback.method, True, set()):
+                text = self._fault(callback, wait)
+                line = getattr(wait.syntax, "lineno", 0)
+                if text and (line, callback.method) not in seen:
+                    seen.add((line, callback.method))
+                    yield Finding(_grade(wait), Place(self.file, line), text)
+        for wait in self._waits("__init__", True, set()):
+            if wait.holds_thread and not wait.spins:
+                line = getattr(wait.syntax, "lineno", 0)
+                text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {_LATER}"
+                yield Finding(_grade(wait), Place(self.file, line), text)
+
+    def _fault(self, callback: _Callback, wait: _Wait) -> str:
+        """Why a wait never ends; empty if it may."""
+        group = self.clients.get(wait.client) if wait.client else None
+        who = f"{callback} waits in {wait.what}"
+        if group is not None and group == callback.group and group.is_exclusive:
+            needs = f"{who}, whose answer needs {group}, which {callback.method} holds until it returns"
+            if not wait.holds_thread:
+                return f"{needs}: make the client with callback_group=ReentrantCallbackGroup()"
+            pool = "" if wait.spins else f" and {_POOL}"
+            return f"{needs}: {_LATER}; or make the client with {_OWN}{pool}"
+        if self.is_single and wait.holds_thread and not wait.spins:
+            needs = f"{who}, which needs a thread that spins, and the only one is in {callback.method}"
+            return f"{needs}: {_LATER if wait.client else 'let a timer call back at that rate'}; or {_POOL}"
+        return ""
+
+    def _waits(self, method: str, is_certain: bool, seen: set[str]) -> Iterator[_Wait]:
+        """What a method waits for, and those that it calls."""
+        function = self.methods.get(method)
+        if function is None or method in seen:
+            return
+        seen.add(method)
+        futures, rates = _futures(function, self.clients), _rates(function)
+        for node, parents in _walk(function):
+            is_sure = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
+            match node:
+                case ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)):
+                    if name in self.clients and verb in ("call", "send_goal"):
+                        yield _Wait(f"self.{name}.{verb}", node, name, True, False, is_sure)
+                    elif name in rates and verb == "sleep":
+                        yield _Wait(f"self.{name}.sleep", node, "", True, False, is_sure)
+                    elif name in self.clients and verb == "call_async" and isinstance(parents[-1], ast.Await):
+                        yield _Wait(f"await self.{name}.call_async", node, name, False, False, is_sure)
+                case ast.Call(func=ast.Attribute(value=ast.Name("self"), attr=name)) if name in self.methods:
+                    if not isinstance(self.methods[name], ast.AsyncFunctionDef) or isinstance(parents[-1], ast.Await):
+                        yield from self._waits(name, is_sure, seen)
+                case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="sleep")) if name in rates:
+                    yield _Wait(f"{name}.sleep", node, "", True, False, is_sure)
+                case ast.Call(func=function_) if ast.unparse(function_) in _SPINS:
+                    asked = next((_word(argument) for argument in node.args if _word(argument) in futures), "")
+                    yield _Wait(ast.unparse(function_), node, futures.get(asked, ""), True, True, is_sure)
+                case ast.While(test=test):
+                    asked = next((_word(owner) for owner in _asked(test) if _word(owner) in futures), "")
+                    if asked:
+                        spins = any(_calls(inner) in _SPINS for inner in ast.walk(node))
+                        around = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
+                        yield _Wait(f"`while not {asked}.done()`", node, futures[asked], True, spins, around)
+                case ast.Await(value=awaited) if _word(awaited) in futures:
+                    name = futures[_word(awaited)]
+                    yield _Wait(f"await {_word(awaited)}", node, name, False, False, is_sure)
+
+
+def _grade(wait: _Wait) -> Grade:
+    return "CERTAIN" if wait.is_certain else "IF THIS BRANCH RUNS"
+
+
+def findings_in(path: Path) -> list[Finding]:
+    """What the source of a Python file, or of all below a folder, shows. Nothing where it cannot be read."""
+    found: list[Finding] = []
+    for file in _files(path):
+        try:
+            tree = ast.parse(file.read_text(encoding="utf-8"))
+        except (OSError, SyntaxError, ValueError):
+            continue
+        for cls in _classes(tree, str(file)):
+            found += cls.findings()
+    return sorted(dict.fromkeys(found), key=lambda f: f.place)
+
+
+def _files(path: Path) -> Iterator[Path]:
+    if path.is_file():
+        yield path
+        return
+    number = 0
+    for file in sorted(path.rglob("*.py")):
+        parts = file.relative_to(path).parts
+        if not any(part in _LEFT_OUT or part.startswith(".") for part in parts):
+            yield file
+            number += 1
+        if number >= FILES_BOUND:
+            return
+
+
+def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
+    """The node classes of a file, each with what it registers."""
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    is_single = "MultiThreadedExecutor" not in names and bool({"spin", "SingleThreadedExecutor"} & names)
+    known: dict[str, _Class] = {base: _Class(file, is_single) for base in _BASES}
+    for definition in tree.body:
+        if isinstance(definition, ast.ClassDef):
+            parent = next((known[name] for name in map(_last, definition.bases) if name in known), None)
+            if parent is not None:
+                known[definition.name] = _read(definition, parent)
+                yield known[definition.name]
+
+
+def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
+    """A class, with what it has from a parent in the same file."""
+    own = dict(parent.methods), dict(parent.groups), dict(parent.clients), list(parent.callbacks)
+    found = _Class(parent.file, parent.is_single, *own)
+    for item in definition.body:
+        if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            found.methods[item.name] = item
+    assigned = [n for n in ast.walk(definition) if isinstance(n, ast.Assign) and len(n.targets) == 1]
+    for node in assigned:
+        group = _made(node.value, _word(node.targets[0]))
+        if group is not None:
+            found.groups[_word(node.targets[0])] = group
+    for node in assigned:
+        if isinstance(node.value, ast.Call) and _last(node.value.func) in ("create_client", "ActionClient"):
+            found.clients[_word(node.targets[0]).removeprefix("self.")] = _group_of(node.value, found.groups)
+    for call in ast.walk(definition):
+        if not isinstance(call, ast.Call) or _last(call.func) not in _CALLBACK_AT:
+            continue
+        maker = _last(call.func)
+        callback = _argument(call, _CALLBACK_AT[maker], "callback", "execute_callback")
+        method = _word(callback).removeprefix("self.") if callback is not None else ""
+        if method in found.methods:
+            group = None if maker == "ActionServer" else _group_of(call, found.groups)  # bodies of goals are in none
+            found.callbacks.append(_Callback(method, _KINDS.get(maker, "action"), group))
+    return found
+
+
+def _group_of(call: ast.Call, groups: dict[str, _Group]) -> _Group | None:
+    given = _argument(call, _GROUP_AT.get(_last(call.func), 99), "callback_group")
+    if given is None or (isinstance(given, ast.Constant) and given.value is None):
+        return _DEFAULT
+    return groups.get(_word(given)) or _made(given, f"line {call.lineno}")
+
+
+def _made(value: ast.expr, name: str) -> _Group | None:
+    """The group that an expression makes."""
+    if not isinstance(value, ast.Call):
+        return None
+    kind = _last(value.func)
+    if kind not in ("MutuallyExclusiveCallbackGroup", "ReentrantCallbackGroup"):
+        return None
+    return _Group(f"callback group {name}", kind == "MutuallyExclusiveCallbackGroup")
+
+
+def _argument(call: ast.Call, at: int, *names: str) -> ast.expr | None:
+    named = next((keyword.value for keyword in call.keywords if keyword.arg in names), None)
+    return named if named is not None else call.args[at] if at < len(call.args) else None
+
+
+def _futures(function: ast.AST, clients: dict[str, _Group | None]) -> dict[str, str]:
+    """The names of futures that a function gets from clients, each with the client."""
+    found = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(
+                targets=[target],
+                value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
+            ) if name in clients and verb in ("call_async", "send_goal_async"):
+                found[_word(target)] = name
+    return found
+
+
+def _rates(function: ast.AST) -> set[str]:
+    """The names of rates that a function makes, and of attributes that may be some."""
+    found = {"rate", "_rate", "loop_rate"}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(targets=[target], value=ast.Call(func=made)) if _last(made) == "create_rate":
+                found.add(_word(target).removeprefix("self."))
+    return found
+
+
+def _walk(top: ast.AST) -> Iterator[tuple[ast.AST, Sequence[ast.AST]]]:
+    """What a function does itself, with what encloses it; not what functions inside it do."""
+    todo: list[tuple[ast.AST, tuple[ast.AST, ...]]] = [(top, ())]
+    while todo:
+        node, parents = todo.pop()
+        if parents:
+            yield node, parents
+        if not parents or not isinstance(node, _NESTED):
+            todo += [(child, (*parents, node)) for child in reversed([*ast.iter_child_nodes(node)])]
+
+
+def _asked(test: ast.expr) -> Iterator[ast.expr]:
+    """What a condition asks whether it is done."""
+    for node in ast.walk(test):
+        match node:
+            case ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=owner, attr="done"))):
+                yield owner
+
+
+def _calls(node: ast.AST) -> str:
+    return ast.unparse(node.func) if isinstance(node, ast.Call) else ""
+
+
+def _word(expression: ast.expr) -> str:
+    """A name, or an attribute of one, as it is written; empty for anything else."""
+    return ast.unparse(expression) if isinstance(expression, (ast.Name, ast.Attribute)) else ""
+
+
+def _last(expression: ast.expr) -> str:
+    """`spin` of `rclpy.spin`."""
+    return _word(expression).rpartition(".")[2]
