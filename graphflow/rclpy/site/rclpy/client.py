@@ -12,6 +12,7 @@ from graphflow.rclpy import messages
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.service_events import ServiceEvent
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
 
@@ -175,3 +176,7 @@ def configure_introspection(life: Life, endpoint: Any, qos: QoSProfile, state: S
     from rclpy.qos import to_graphflow
 
     life.on_loop(partial(endpoint.configure_introspection, state.name.lower(), to_graphflow(qos)))
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

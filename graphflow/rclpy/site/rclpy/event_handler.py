@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import rclpy.logging
 from graphflow.runtime.events import QosEvent
 from rclpy._rclpy_pybind11 import UnsupportedEventTypeError
+from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSPolicyKind, qos_policy_name_from_kind
 from rclpy.waitable import Waitable
 
@@ -322,3 +323,7 @@ def _warn_type(topic: str, info: IncompatibleTypeInfo) -> None:
     rclpy.logging._root_logger.get_child("event").warn(
         f"Incompatible type on topic '{topic}', no messages will be sent"
     )
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -13,6 +13,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Self
 from weakref import WeakSet
 
+from rclpy.impl.passing import passed_on
 from rclpy.impl.spinning import (
     POLL,
     ConditionReachedException,
@@ -331,3 +332,7 @@ class MultiThreadedExecutor(Executor):
     ) -> None:
         future._when_done(self.wake)
         self._do_one(timeout_sec, lambda: future.done() or future.cancelled())
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

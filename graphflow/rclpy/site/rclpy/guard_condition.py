@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
     from graphflow.rclpy.held import NodeBell
@@ -53,3 +54,7 @@ class GuardCondition:
 
 def _nothing() -> None:
     """Nothing is held."""
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.passing import passed_on
 from rclpy.logging import get_logger_level, set_logger_level
 
 
@@ -36,3 +37,7 @@ class LoggingService:
             reason = "" if is_level else "Failed reason: Invalid logger level."
             response.results.append(SetLoggerLevelsResult(successful=is_level, reason=reason))
         return response
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -32,6 +32,7 @@ from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.inner import Holdings, Inner, none
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
+from rclpy.impl.passing import passed_on
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.impl.waiting import attend
 from rclpy.logging_service import LoggingService
@@ -486,3 +487,7 @@ def _close(life: Life, node: HeldNode) -> None:
 def _remove(life: Life, endpoint: Any) -> None:
     if life.is_ok and endpoint.is_open:
         held.remove(endpoint)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

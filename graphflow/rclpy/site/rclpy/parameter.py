@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from graphflow.errors import GraphflowError
 from graphflow.graph import params_file
 from graphflow.graph.source import parse_value
+from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -213,3 +214,7 @@ def parameter_dict_from_yaml_file(
         )
     prefix = f"{namespace}{PARAMETER_SEPARATOR_STRING}" if namespace else ""
     return {prefix + name: Parameter(prefix + name, None, value).to_parameter_msg() for name, value in found.items()}
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

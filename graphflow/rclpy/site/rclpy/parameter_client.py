@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from graphflow.rclpy.wake import Wake
+from rclpy.impl.passing import passed_on
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
 from rclpy.task import Future
@@ -150,3 +151,7 @@ def on_parameter_event(node: Any, callback: Callable[..., Any], qos_profile: QoS
 
 def _messages(parameters: Sequence[Any]) -> list[Any]:
     return [p.to_parameter_msg() if isinstance(p, Parameter) else p for p in parameters]
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

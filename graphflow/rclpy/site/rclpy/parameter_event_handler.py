@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from rclpy.impl.passing import passed_on
 from rclpy.parameter_client import on_parameter_event
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 
@@ -133,3 +134,7 @@ class ParameterEventHandler:
             return node_path
         namespace = self.node.get_namespace().strip("/")
         return "/" + "/".join(part for part in (namespace, node_path) if part)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -8,6 +8,7 @@ from graphflow.rclpy import messages
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
@@ -94,3 +95,7 @@ class Publisher:
 
     def __exit__(self, *_: object) -> None:
         self.destroy()
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

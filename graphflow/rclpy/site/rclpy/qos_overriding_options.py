@@ -9,6 +9,7 @@ from rcl_interfaces.msg import SetParametersResult as QosCallbackResult
 
 from rclpy.duration import Duration
 from rclpy.exceptions import ParameterAlreadyDeclaredException
+from rclpy.impl.passing import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
 
@@ -114,3 +115,7 @@ def _override(qos: QoSProfile, policy: str, parameter: Parameter[Any]) -> None:
     elif isinstance(former, Duration):
         value = Duration(nanoseconds=value)
     setattr(qos, policy, value)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -12,6 +12,7 @@ from graphflow.rclpy import messages
 from graphflow.runtime.service_events import ServiceEvent
 from rclpy.client import configure_introspection
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 from rclpy.service_introspection import ServiceIntrospectionState
 
 if TYPE_CHECKING:
@@ -124,3 +125,7 @@ class Service:
 
     def __exit__(self, *_: object) -> None:
         self.destroy()
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 from graphflow.errors import DecodeError
 from graphflow.rclpy import messages
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 
 if TYPE_CHECKING:
     from graphflow.runtime.threaded import Taken, ThreadedSubscription
@@ -165,3 +166,7 @@ def _type_of(callback: Callable[..., Any]) -> Subscription.CallbackType:
             "Subscription.__init__(): callback should be either be callable with one argument"
             "(to get only the message) or two (to get message and message info)"
         ) from None
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

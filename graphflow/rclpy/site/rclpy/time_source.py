@@ -17,6 +17,7 @@ from graphflow.runtime.threaded import ThreadedSubscription
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
+from rclpy.impl.passing import passed_on
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy, to_graphflow
 from rclpy.time import Time
@@ -172,3 +173,7 @@ class _Hearing:
 
 def _nothing() -> None:
     """The thread takes all there is."""
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -14,6 +14,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.handle import Handle
+from rclpy.impl.passing import passed_on
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
 
@@ -221,3 +222,7 @@ class Rate:
 
 def _nothing() -> None:
     """Nothing is held."""
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -8,6 +8,7 @@ from graphflow.rclpy import held
 from graphflow.rclpy.held import NodeBell
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.threaded import ThreadedSubscription
+from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, to_graphflow, validated
 from rclpy.serialization import deserialize_message
 from rclpy.type_support import check_is_valid_msg_type
@@ -58,3 +59,7 @@ def wait_for_message(
 
 def _nothing() -> None:
     """The waiting thread takes what there is."""
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -15,6 +15,7 @@ from graphflow.rclpy import held, messages
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
 from rclpy.handle import sending
+from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -326,3 +327,7 @@ class ActionClient(Waitable):
         if self._node.context.ok():
             for endpoint in (self._goals, self._cancels, self._results, self._feedback, self._status):
                 held.remove(endpoint)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

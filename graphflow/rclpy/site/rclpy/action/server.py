@@ -21,6 +21,7 @@ from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
+from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
 from rclpy.time import Time
@@ -431,3 +432,7 @@ class ActionServer(Waitable):
         if self._node.context.ok():
             for endpoint in (self._goals, self._results, self._cancels, self._feedback, self._status):
                 held.remove(endpoint)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

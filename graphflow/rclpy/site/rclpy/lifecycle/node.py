@@ -17,6 +17,7 @@ from graphflow.machines.lifecycle import (
 from graphflow.machines.lifecycle import LifecycleState as State
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
+from rclpy.impl.passing import passed_on
 from rclpy.lifecycle.managed_entity import ManagedEntity
 from rclpy.lifecycle.publisher import LifecyclePublisher
 from rclpy.node import Node
@@ -270,3 +271,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
     def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
         Node.__init__(self, node_name, **kwargs)
         LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rclpy.impl.passing import passed_on
 from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.publisher import Publisher
 
@@ -19,3 +20,7 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
     def publish(self, msg: Any) -> None:
         """Send a message, while the node is active."""
         Publisher.publish(self, msg)
+
+
+def __getattr__(name: str) -> Any:
+    return passed_on(__name__, name)
