@@ -55,10 +55,11 @@ def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) ->
     """Show exactly what a graph file would run and where each setting comes from. Imports nothing."""
     path = find_graph(graph)
     from graphflow.graph.resolve import load
+    from graphflow.supervisor.launch_python import described
 
-    resolved = load(path, args)
+    resolved = load(path, args, describe=described)
     if other is not None:
-        output.lines(_difference(resolved, load(find_graph(other), args)))
+        output.lines(_difference(resolved, load(find_graph(other), args, describe=described)))
     elif as_json:
         output.as_json(resolved.to_json())
     else:
@@ -81,14 +82,15 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
     Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. Of a
-    Python file or a folder, the nodes that are written for rclpy are read, and nothing is imported.
+    Python file or a folder, the nodes that are written for rclpy are read, and nothing is imported. A launch file in
+    Python is run, in a process of its own.
     """
-    if graph.endswith(".py"):
+    if graph.endswith(".py") and not _is_launch_file(Path(graph)):
         return _check_rclpy(Path(graph), as_json=as_json)
     try:
         path = find_graph(graph)
     except UsageFault:
-        if not Path(graph).is_dir():
+        if not Path(graph).is_dir() or not _has_rclpy(Path(graph)):
             raise
         return _check_rclpy(Path(graph), as_json=as_json)
     from graphflow.errors import GraphFileError
@@ -116,6 +118,19 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     more = f"no mistakes, {', '.join(told)}" if told else "no problems"
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
+
+
+def _is_launch_file(file: Path) -> bool:
+    """Whether a Python file is a launch file of ROS's."""
+    return file.is_file() and b"def generate_launch_description" in file.read_bytes()
+
+
+def _has_rclpy(folder: Path) -> bool:
+    """Whether some code below a folder is written for rclpy."""
+    from graphflow.graph.rclpy_source import files_in
+    from graphflow.graph.workspace import uses_rclpy
+
+    return any(map(uses_rclpy, files_in(folder)))
 
 
 def _check_rclpy(path: Path, *, as_json: bool) -> int:
@@ -147,9 +162,10 @@ def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:
     from graphflow.graph.project import add_interfaces
     from graphflow.graph.resolve import load
     from graphflow.supervisor.classes import read_interfaces
+    from graphflow.supervisor.launch_python import described
     from graphflow.supervisor.probe import probe
 
-    resolved = load(path, args)
+    resolved = load(path, args, describe=described)
     add_interfaces(Path(resolved.root))
     found = read_interfaces(probe(resolved.classes(), resolved.root))
     problems = check_plan(resolved, found)

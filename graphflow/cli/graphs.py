@@ -136,9 +136,10 @@ def _show_args(path: Path) -> int:
     from graphflow.graph.faults import Problems
     from graphflow.graph.project import shown
     from graphflow.graph.reading import read
+    from graphflow.supervisor.launch_python import described
 
     problems = Problems()
-    top = read(path, shown(path), problems.add)
+    top = read(path, shown(path), problems.add, describe=described)
     problems.raise_any()
     args = top.entries.get("args") if isinstance(top.value, dict) else None
     declared: Any = None if args is None or not isinstance(args.value, dict) else args.plain()

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +15,6 @@ from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.graph.tree import Item
-
-PYTHON_LIMIT = 20.0
-"""Seconds that a launch file in Python may take to describe itself."""
 
 
 class _Verbs(Verbs):
@@ -94,6 +88,7 @@ def convert(file: Path, target: Path | None) -> int:
     """
     from graphflow.graph.project import shown
     from graphflow.graph.reading import read
+    from graphflow.supervisor.launch_python import described
 
     problems: list[Problem] = []
 
@@ -102,7 +97,7 @@ def convert(file: Path, target: Path | None) -> int:
 
     if target is not None and target.exists():
         raise UsageFault(f"{target} is there already; remove it, or name another file")
-    top = _python(file, problems) if file.suffix == ".py" else read(file, shown(file), complain, complain)
+    top = read(file, shown(file), complain, complain, described)
     text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top)}"
     if target is None:
         output.lines(text.rstrip("\n").split("\n"))
@@ -112,30 +107,6 @@ def convert(file: Path, target: Path | None) -> int:
     for problem in sorted(set(problems)):
         output.talk(str(problem))
     return exits.FAILED if problems else exits.OK
-
-
-def _python(file: Path, problems: list[Problem]) -> Item:
-    from graphflow.errors import GraphFileError, Place
-    from graphflow.graph import ros_launch
-    from graphflow.graph.project import project_root, shown
-
-    name = shown(file)
-    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
-    try:
-        ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
-    except subprocess.TimeoutExpired:
-        raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
-    try:
-        told = json.loads(ran.stdout)
-    except ValueError:
-        words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None
-    problems += [Problem(Place(name, p["line"], 1), p["message"]) for p in told["problems"]]
-
-    def complain(place: Any, message: str) -> None:
-        problems.append(Problem(place, message))
-
-    return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(file), complain, complain)
 
 
 def _yaml(top: Item) -> str:

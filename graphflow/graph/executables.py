@@ -101,11 +101,14 @@ def project_packages(root: Path) -> list[str]:
 
 
 def package_folder(package: str, root: Path) -> Path | None:
-    """The folder of a project's package: one with a `package.xml` of that name, or the project itself."""
+    """The folder of a package: one with a `package.xml` in the project or its workspace, or the project itself."""
     found = next((folder for name, folder in _described_packages(root) if name == package), None)
     if found is not None:
         return found
-    return root if package in (root.name, _project_name(root)) else None
+    if package in (root.name, _project_name(root)):
+        return root
+    beside = find_workspace(root).packages.get(package)
+    return None if beside is None else beside.folder
 
 
 def _described_packages(root: Path) -> Iterator[tuple[str, Path]]:

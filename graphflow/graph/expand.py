@@ -191,7 +191,7 @@ class Expansion:
             raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
-        top = read(path, shown(path), self._problems.add)
+        top = read(path, shown(path), self._problems.add, describe=self._outside.describe)
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None

@@ -154,7 +154,7 @@ def _grade(wait: _Wait) -> Grade:
 def findings_in(path: Path) -> list[Finding]:
     """What the source of a Python file, or of all below a folder, shows. Nothing where it cannot be read."""
     found: list[Finding] = []
-    for file in _files(path):
+    for file in files_in(path):
         try:
             tree = ast.parse(file.read_text(encoding="utf-8"))
         except (OSError, SyntaxError, ValueError):
@@ -164,7 +164,8 @@ def findings_in(path: Path) -> list[Finding]:
     return sorted(dict.fromkeys(found), key=lambda f: f.place)
 
 
-def _files(path: Path) -> Iterator[Path]:
+def files_in(path: Path) -> Iterator[Path]:
+    """A file, or the Python files below a folder, but for what is built or hidden; a bounded number."""
     if path.is_file():
         yield path
         return

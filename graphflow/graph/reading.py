@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import ros_launch, source, xml_source
@@ -11,21 +13,30 @@ from graphflow.graph.ros_commands import Complain
 from graphflow.graph.ros_launch import ignore
 from graphflow.graph.tree import Item, tree
 
+Describe = Callable[[Path, str], dict[str, Any]]
+"""Runs a launch file in Python and returns what it describes; the second argument is the file as messages show it."""
 
-def read(path: Path, name: str, complain: Complain, note: Complain = ignore) -> Item:
-    """A graph file, or a launch file in YAML or XML.
+
+def read(path: Path, name: str, complain: Complain, note: Complain = ignore, describe: Describe | None = None) -> Item:
+    """A graph file, or a launch file in YAML, XML or Python.
 
     Args:
         name: The file as messages show it.
         complain: Called with what a launch file says that a graph file cannot.
         note: Called with what the reader of a converted launch file should know of.
+        describe: For those in Python.
 
     Raises:
         GraphFileError: It cannot be read; why, and where.
     """
     if path.suffix == ".py":
-        text = f"a launch file in Python is converted first: graphflow launch convert {name} -o {path.stem}.yaml"
-        raise GraphFileError([Problem(Place(name), text)])
+        if describe is None:
+            text = f"a launch file in Python is converted first: graphflow launch convert {name} -o {path.stem}.yaml"
+            raise GraphFileError([Problem(Place(name), text)])
+        told = describe(path, name)
+        for problem in told["problems"]:
+            complain(Place(name, problem["line"], 1), problem["message"])
+        return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note)
     top = xml_source.read_file(path, name) if path.suffix == ".xml" else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):
         return ros_launch.native(top, project_root(path), complain, note)

@@ -19,7 +19,7 @@ from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
 from graphflow.graph.project import project_root, shown
-from graphflow.graph.reading import read
+from graphflow.graph.reading import Describe, read
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import Outside, Run
 from graphflow.graph.tree import Item, source_of, tree
@@ -29,7 +29,12 @@ from graphflow.names import Resolver, check_references, did_you_mean, expand, sp
 
 
 def load(
-    path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None, *, run: Run | None = None
+    path: Path,
+    given: Sequence[str] = (),
+    env: Mapping[str, str] | None = None,
+    *,
+    run: Run | None = None,
+    describe: Describe | None = None,
 ) -> Plan:
     """Read and resolve a graph file.
 
@@ -38,12 +43,14 @@ def load(
         given: Arguments from the command line, `name:=value`.
         env: The environment; the process's own if None.
         run: What `$(command ...)` is carried out by; it stays as it is written without.
+        describe: What launch files in Python are run by; they are refused without.
 
     Raises:
         GraphFileError: Every mistake that could be found.
     """
     problems = Problems()
-    return _resolve(read(path, shown(path), problems.add), path, given, env, problems, run=run)
+    top = read(path, shown(path), problems.add, describe=describe)
+    return _resolve(top, path, given, env, problems, run=run, describe=describe)
 
 
 def resolve(src: Source, path: Path, given: Sequence[str] = (), env: Mapping[str, str] | None = None) -> Plan:
@@ -59,6 +66,7 @@ def _resolve(
     problems: Problems,
     *,
     run: Run | None = None,
+    describe: Describe | None = None,
 ) -> Plan:
     if not isinstance(top.value, dict):
         what = "the file is empty; " if top.value is None else ""
@@ -67,7 +75,7 @@ def _resolve(
     root, name = project_root(path), path.stem.removesuffix(".launch")
     given_name = top.entries.get("name")
     logs = newest_logs(name if given_name is None else str(given_name.value))
-    outside = Outside(os.environ if env is None else env, root, logs, run)
+    outside = Outside(os.environ if env is None else env, root, logs, run, describe)
     expansion = Expansion(given, outside, problems)
     expansion.file(top, path)
     if not problems and not top.entries.keys() & {*BLOCKS}:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Sequence
 
 from graphflow.errors import GraphFileError, Place
@@ -9,6 +10,20 @@ from graphflow.graph import source
 from graphflow.graph.tree import Item, located, tree
 
 Complain = Callable[[Place, str], None]
+OUR_ROS2 = 'command -v ros2 >/dev/null || ros2() { graphflow "$@"; }; '
+"""What comes before a line of a shell's in which there is `ros2`."""
+
+
+def plain_words(line: str) -> list[str]:
+    """The words of a line for a shell, if it needs none: no pipes and the like; else no words."""
+    reader = shlex.shlex(line, posix=True, punctuation_chars=";|&<>")
+    reader.whitespace_split = True
+    reader.commenters = ""
+    try:
+        words = list(reader)
+    except ValueError:
+        return []
+    return [] if any(word and not word.strip(";|&<>") for word in words) else words
 
 
 def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str, Item] | None:

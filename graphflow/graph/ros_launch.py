@@ -24,7 +24,7 @@ from graphflow.errors import Place
 from graphflow.graph import executables
 from graphflow.graph.ros_attributes import children, items, says
 from graphflow.graph.ros_attributes import words as words_of
-from graphflow.graph.ros_commands import Complain, step_of, typed
+from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.tree import Item, located
 from graphflow.graph.workspace import find_workspace
@@ -255,9 +255,6 @@ class _Translation:
 
     def _include(self, item: Item) -> Item:
         entries: dict[str, Item] = {k: item.entries[k] for k in ("file", "if", "unless") if k in item.entries}
-        file = entries.get("file")
-        if file is not None and str(file.value).endswith(".py"):
-            self._complain(file.place, f"{file.value} is in Python: convert it too, and name the result here")
         args = [arg for key in ("arg", "let") for arg in items(item.entries.get(key))]
         if args:
             pairs = [self._pair(arg, "name", "value", is_typed=True) for arg in args]
@@ -391,14 +388,18 @@ class _Translation:
         except ValueError as error:
             self._complain(command.place, f"cmd: {error}")
             return
+        is_shells = says(item, "shell", "true", "1")
+        line = " ".join(words) if isinstance(command.value, list) else str(command.value)
+        if is_shells and plain_words(line)[:1] == ["ros2"]:
+            words, is_shells = plain_words(line), False
         step = step_of(words, command, self._complain)
         if step is not None:
             name = f"{words[2]}_{self._next('step')}"
             before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
             _put(body, "steps", name, item._replace(value={**step, **before}))
             return
-        if says(item, "shell", "true", "1"):
-            words = ["sh", "-c", " ".join(words) if isinstance(command.value, list) else str(command.value)]
+        if is_shells:
+            words = ["sh", "-c", f"{OUR_ROS2}{line}" if "ros2 " in line else line]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
         if words[:1] == ["ros2"]:

@@ -44,6 +44,8 @@ class Outside(NamedTuple):
     """The folder of the logs."""
     run: Run | None = None
     """What `$(command ...)` is carried out by; it stays as it is written without."""
+    describe: Callable[[Path, str], dict[str, Any]] | None = None
+    """What launch files in Python are run by."""
 
 
 class Substitutions:
@@ -61,7 +63,7 @@ class Substitutions:
     ) -> None:
         self._args = args
         self._file = file
-        self._env, self._root, self._logs, self._run = outside
+        self._env, self._root, self._logs, self._run, _ = outside
         self._params = params or {}
 
     def apply(self, value: Any) -> Any:

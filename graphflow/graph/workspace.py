@@ -28,6 +28,7 @@ _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
+_MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
 
 
@@ -44,6 +45,13 @@ class Package:
 
     name: str
     folder: Path
+
+    @property
+    def has_modules(self) -> bool:
+        """Whether Python imports from it: a folder of its name, or one that CMake installs as a package of modules."""
+        text = _without_comments(_text(self.folder / "CMakeLists.txt"))
+        names = {self.name, *(n.replace("${PROJECT_NAME}", self.name) for n in _MODULES.findall(text))}
+        return any(next((self.folder / name).glob("*.py"), None) is not None for name in names)
 
     @property
     def has_interfaces(self) -> bool:
@@ -106,7 +114,7 @@ class Workspace:
     @property
     def import_roots(self) -> list[Path]:
         """The folders of packages from which Python imports."""
-        return [p.folder for p in self.packages.values() if next((p.folder / p.name).glob("*.py"), None) is not None]
+        return [p.folder for p in self.packages.values() if p.has_modules]
 
     @property
     def interfaces(self) -> dict[str, Path]:
@@ -174,6 +182,10 @@ def _text(file: Path) -> str:
         return ""
 
 
+def _without_comments(cmake: str) -> str:
+    return re.sub(r"#.*", "", cmake)
+
+
 def _of_setup_cfg(file: Path) -> dict[str, EntryPoint]:
     parser = configparser.ConfigParser()
     try:
@@ -231,7 +243,7 @@ def _constant(node: ast.AST, known: Mapping[str, str]) -> str | None:
 
 def _of_cmake(folder: Path) -> Iterator[tuple[str, Path]]:
     """The programs that `CMakeLists.txt` installs below `lib/`."""
-    text = re.sub(r"#.*", "", _text(folder / "CMakeLists.txt"))
+    text = _without_comments(_text(folder / "CMakeLists.txt"))
     for installed in _INSTALL.findall(text):
         words = installed.replace('"', " ").split()
         upper = [word.upper() for word in words]

@@ -95,12 +95,12 @@ def _apart(queue: QueueView, reply: QueueView | None, graph: WaitGraph) -> Itera
             kept.append(f"the client of {one.handler}" if is_reply else one.handler)
     if kept:
         who = f"{' and '.join(dict.fromkeys(kept))} of {queue.node}"
-        clauses.append(f"make {who} with {_EXCLUSIVE}{' each' if len({*kept}) > 1 else ''}")
+        clauses += [f"make {who}", f"with {_EXCLUSIVE}{' each' if len({*kept}) > 1 else ''}"]
     executor = next((group for group in _full(queue, graph) if group.sort == "executor"), None)
     if executor is not None:
         number = _held(graph, executor.id) + 1
         more = f"spin with MultiThreadedExecutor(num_threads={number})"
-        clauses = [f"{clauses[0]},", f"and {more}"] if clauses else [more]
+        clauses = [*clauses[:-1], f"{clauses[-1]},", f"and {more}"] if clauses else [more]
     if clauses:
         yield _text(*clauses)
 

@@ -244,9 +244,10 @@ class _Launch:
         from graphflow.graph.resolve import load
         from graphflow.supervisor.classes import read_interfaces
         from graphflow.supervisor.debugging import debugged
+        from graphflow.supervisor.launch_python import described
         from graphflow.supervisor.printed import printed
 
-        plan = load(self._file, self._given, run=printed)
+        plan = load(self._file, self._given, run=printed, describe=described)
         if self._only:
             plan = plan.only(self._only)
         if self._debug:

@@ -24,7 +24,6 @@ def test_python(machine: Machine, tmp_path: Path) -> None:
     told = machine.look("launch", "convert", str(ROBOT), "-o", str(target), code=1)
     assert f"{target}: written; try it with: graphflow check {target}" in told
     assert "rviz2 rviz2: no node of that name is here; ros2 runs it, which must be installed" in told
-    assert "b.launch.py is in Python: convert it too, and name the result here" in told
     assert "SetParametersFromFile has no words in a graph file" in told
     text = target.read_text()
     assert text.startswith("# From robot.launch.py, by graphflow launch convert.\n")
@@ -72,6 +71,21 @@ def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
 LAUNCH = "launch:\n- arg: {name: rate, default: '2'}\n- node: {pkg: demo_nodes_py, exec: talker}\n"
 
 
+PYTHON = """
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import ThisLaunchFileDir
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("loud", default_value="1"),
+        Node(package="demo_nodes_py", executable="listener"),
+        IncludeLaunchDescription([ThisLaunchFileDir(), "/talk.launch.yaml"]),
+    ])
+"""
+
+
 def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     """Of a file, or of a file of a package; with ROS 2's options."""
     folder = tmp_path / "my_robot"
@@ -85,4 +99,10 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
         assert "/talker" in machine.look("launch", "-p", *words, "rate:=3", cwd=tmp_path)
     told = machine.look("launch", "my_robot", "talk.launch.yml", cwd=tmp_path, code=2)
     assert "my_robot has no file 'talk.launch.yml'; did you mean 'talk.launch.yaml'?" in told
+    (folder / "launch" / "all.launch.py").write_text(PYTHON)
+    told = machine.look("launch", "-p", "my_robot", "all.launch.py", "loud:=2", cwd=tmp_path)
+    assert "/listener" in told
+    assert "/talker" in told  # of the file that it includes
+    assert "'loud':" in machine.look("launch", "-s", "my_robot", "all.launch.py", cwd=tmp_path)
+    assert "2 nodes" in machine.look("check", "my_robot/launch/all.launch.py", cwd=tmp_path)
     assert "[PACKAGE] FILE" in machine.look("launch", "--help")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph.ros_commands import step_of, typed
+from graphflow.graph.ros_commands import plain_words, step_of, typed
 from graphflow.graph.tree import Item
 
 CALL = {"call": "/a", "type": "b/srv/C"}
@@ -71,3 +71,19 @@ def test_texts_as_values(text: str, value: object) -> None:
     assert typed(Item("", HERE)).plain() == ""
     assert typed(Item("[", HERE)).plain() == "["
     assert typed(Item(7, HERE)).plain() == 7
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("ros2 topic list", ["ros2", "topic", "list"]),
+        ("ros2 call /a \"{x: '1', y: $(var y)}\"", ["ros2", "call", "/a", "{x: '1', y: $(var y)}"]),
+        ("ros2 topic list | cat", []),
+        ("sleep 1 && ros2 topic list", []),
+        ("ros2 topic list > file", []),
+        ("ros2 'open", []),
+    ],
+)
+def test_lines_that_need_no_shell(line: str, words: list[str]) -> None:
+    """Those without pipes and the like."""
+    assert plain_words(line) == words

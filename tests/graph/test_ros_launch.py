@@ -10,6 +10,7 @@ import pytest
 from graphflow.errors import GraphFileError
 from graphflow.graph import ros_launch, source
 from graphflow.graph.resolve import load
+from graphflow.graph.ros_commands import OUR_ROS2
 from graphflow.graph.tree import tree
 
 CANONICAL = """\
@@ -132,6 +133,14 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
             },
         ),
         (
+            "[{executable: {cmd: ['ros2 service call /a b/srv/C \"{x: 1}\"'], shell: 'true'}}, "
+            "{executable: {cmd: 'sleep 1; ros2 topic list', shell: 'true'}}]",
+            {
+                "steps": {"call_1": {"call": "/a", "type": "b/srv/C", "request": {"x": 1}}},
+                "nodes": {"sh_1": {"command": ["sh", "-c", f"{OUR_ROS2}sleep 1; ros2 topic list"]}},
+            },
+        ),
+        (
             "[{executable: {cmd: \"ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, name: leo}'\"}}, "
             "{executable: {cmd: ros2 param set /sim background_r 150}}, "
             "{executable: {cmd: \"ros2 action send_goal /turn turtlesim/action/RotateAbsolute '{theta: 1.5}' -f\"}}]",
@@ -242,7 +251,6 @@ def test_lifecycle_nodes() -> None:
         ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
         ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
         ("timer: {children: []}", "f.yaml:1:11: timer: the attribute 'period' is missing"),
-        ("include: {file: a.launch.py}", "f.yaml:1:27: a.launch.py is in Python: convert it too, and name the result"),
         (
             "node: {pkg: turtlesim, exec: turtlesim_node, args: --fast}",
             "f.yaml:1:56: args: a node is given no words; write params: and remap: in a graph file",

@@ -92,6 +92,34 @@ def test_a_workspace_is_found_from_anywhere_in_it(tmp_path: Path, inside: str) -
     assert workspace.interfaces == {"arm_interfaces": tmp_path / "ws/src/arm_interfaces"}
 
 
+def test_modules_that_cmake_installs_are_imported_from_their_package(tmp_path: Path) -> None:
+    """By whatever name; and where nobody installs any, from nowhere."""
+    cmake = "# ament_python_install_package(never)\nament_python_install_package(python_lib)"
+    one = package(tmp_path / "src" / "one", "one", CMakeLists_dot_txt=cmake, python_lib__a_dot_py="")
+    package(tmp_path / "src" / "two", "two", never__a_dot_py="")
+    three = package(
+        tmp_path / "src" / "three",
+        "three",
+        CMakeLists_dot_txt="ament_python_install_package(${PROJECT_NAME})",
+        three__a_dot_py="",
+    )
+    assert set(find_workspace(tmp_path).import_roots) == {one, three}
+
+
+def test_a_shell_may_stand_where_there_are_more_folders_than_are_looked_into(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The nearest are."""
+    monkeypatch.setattr("graphflow.graph.workspace.FOLDERS_BOUND", 4)
+    for name in "abcdef":
+        (tmp_path / name / "deep").mkdir(parents=True)
+    package(tmp_path / "a" / "near", "near")
+    package(tmp_path / "f" / "far", "far")
+    assert set(find_workspace(tmp_path).packages) == set()
+    monkeypatch.setattr("graphflow.graph.workspace.FOLDERS_BOUND", 9)
+    assert set(find_workspace(tmp_path).packages) == {"near"}
+
+
 def test_packages_side_by_side_are_a_workspace_too(tmp_path: Path) -> None:
     """As in a repository; where nothing is, there is none."""
     for name in ("one", "two"):

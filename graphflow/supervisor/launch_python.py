@@ -1,0 +1,36 @@
+"""Launch files in Python: each describes itself in a process of its own, to stand-ins for ROS's launch packages."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from graphflow.errors import GraphFileError, Place, Problem
+
+PYTHON_LIMIT = 20.0
+"""Seconds that a launch file may take to describe itself."""
+
+
+def described(file: Path, name: str) -> dict[str, Any]:
+    """What a launch file says: its `actions`, and `problems` with what the stand-ins do not know. It is run.
+
+    Args:
+        name: The file as messages show it.
+
+    Raises:
+        GraphFileError: It failed, or took too long.
+    """
+    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    try:
+        ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
+    except subprocess.TimeoutExpired:
+        raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
+    try:
+        told: dict[str, Any] = json.loads(ran.stdout)
+    except ValueError:
+        words = ran.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise GraphFileError([Problem(Place(name), f"it ended before it had described itself: {words}")]) from None
+    return told
