@@ -6,6 +6,7 @@ import click
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError
+from graphflow.rclpy import enabling
 
 
 @click.group()
@@ -16,8 +17,6 @@ def rclpy() -> None:
 @rclpy.command()
 def enable() -> None:
     """Let this Python import rclpy, also outside graphflow's commands."""
-    from graphflow.rclpy import enabling
-
     try:
         file = enabling.enable()
     except OSError as error:
@@ -31,8 +30,6 @@ def enable() -> None:
 @rclpy.command()
 def disable() -> None:
     """Take back what `enable` did."""
-    from graphflow.rclpy import enabling
-
     try:
         was_enabled = enabling.disable()
     except OSError as error:
@@ -44,8 +41,6 @@ def disable() -> None:
 @rclpy.command()
 def status() -> None:
     """Say what `import rclpy` means here."""
-    from graphflow.rclpy import enabling
-
     other = enabling.elsewhere()
     if other is not None:
         output.data(f"a ROS 2 is sourced: rclpy is {other}")
@@ -56,8 +51,6 @@ def status() -> None:
 
 
 def _say_who_wins() -> None:
-    from graphflow.rclpy import enabling
-
     other = enabling.elsewhere()
     if other is not None:
         output.talk(f"but in this shell a ROS 2 is sourced, and wins: {other}")

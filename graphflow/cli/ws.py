@@ -18,7 +18,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     The workspace is the one that the current folder is in. What is wrong in its packages is told, and the exit code is
     then 1.
     """
-    from graphflow.errors import InterfaceError
+    from graphflow.errors import InterfaceError, UnknownInterface
     from graphflow.graph.workspace import KINDS, find_workspace
     from graphflow.msgs import registry
 
@@ -33,13 +33,15 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     faults = [fault for package in found.packages.values() for fault in package.faults]
     rows = []
     for package in found.packages.values():
-        types = [f"{package.name}/{kind}/{name}" for kind in KINDS for name in registry.names_in(package.name, kind)]
-        for name in types if package.has_interfaces else []:
+        kinds = KINDS if package.has_interfaces else ()
+        shown = [f"{kind}/{name}" for kind in kinds for name in registry.names_in(package.name, kind)]
+        for name in shown:
             try:
-                registry.interface(name)
+                registry.hash_of(f"{package.name}/{name}")  # which reads the types of its fields, too
+            except UnknownInterface as error:
+                faults.append(f"{registry.definition_file(f'{package.name}/{name}')}: {error}")
             except InterfaceError as error:
                 faults.append(str(error))
-        shown = [name.removeprefix(f"{package.name}/") for name in types] if package.has_interfaces else []
         rows.append((package, shown))
     if as_json:
         known = [

@@ -48,6 +48,10 @@ def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
     shown = machine.look("ws", cwd=workspace, code=1)
     assert "lamp is lamp.node:main, and there is no" in shown
     assert "Broken.msg" in shown
+    (workspace / "src/lamp_interfaces/msg/Broken.msg").write_text("lamp_interfaces/LampLigt light\n")
+    shown = machine.look("ws", cwd=workspace, code=1)
+    assert "Broken.msg: " in shown
+    assert "did you mean 'LampLight'?" in shown
 
 
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:

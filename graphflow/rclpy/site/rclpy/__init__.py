@@ -90,7 +90,7 @@ def init(
     install_signal_handlers(signal_handler_options)
     try:
         chosen.init(args, domain_id=domain_id)
-    except BaseException:
+    except BaseException:  # Ctrl-C included: signals must do what they did before
         if context is None:
             uninstall_signal_handlers()
         raise
