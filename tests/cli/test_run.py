@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.runtime.run import SAME_SIGNAL
-from tests.cases import slow
+from tests.cases import sample, slow
 from tests.conftest import PROGRAMS, Machine
 
 pytestmark = pytest.mark.real
@@ -59,17 +59,19 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
 
 @pytest.mark.parametrize(
     ("words", "code", "expected"),
-    [
-        (["nodes.talker.Talker"], 2, "write MODULE:CLASS, nodes.talker:Talker"),
-        (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
-        (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
-        (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
-        (["nodes.talker:Talker", "-p", "rate:=fast"], 2, "parameter 'rate' is of type double, 'fast' is not"),
-        (["nodes.talker:Talker", "-p", "rate:=-1.0"], 2, "out of range"),
-        (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
-        (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
-        (["nodes.talker:Talker", "--log-level", "loud"], 2, "is not a log level"),
-    ],
+    sample(
+        [
+            (["nodes.talker.Talker"], 2, "write MODULE:CLASS, nodes.talker:Talker"),
+            (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
+            (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
+            (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
+            (["nodes.talker:Talker", "-p", "rate:=fast"], 2, "parameter 'rate' is of type double, 'fast' is not"),
+            (["nodes.talker:Talker", "-p", "rate:=-1.0"], 2, "out of range"),
+            (["nodes.talker:Talker", "-r", "___ns:=/turtle1"], 2, "did you mean '__ns'?"),
+            (["nodes.talker:Talker", "--ros-args", "-r"], 2, "needs a value"),
+            (["nodes.talker:Talker", "--log-level", "loud"], 2, "is not a log level"),
+        ]
+    ),
 )
 def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], code: int, expected: str) -> None:
     """One sentence that helps, and no traceback."""

@@ -7,6 +7,7 @@ import pytest
 from graphflow.tui.command import CommandLine
 from graphflow.tui.panes import Content
 from graphflow.tui.views.prompt import Prompt
+from tests.cases import sample
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -14,15 +15,17 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 @pytest.mark.parametrize(
     ("text", "opens"),
-    [
-        ("echo /pose", "echo /pose"),
-        ("topics", "topics"),
-        ("graphflow topic list", "prompt topic list"),
-        ("gf ps", "prompt ps"),
-        ("groups move /a b c", "prompt groups move /a b c"),
-        ("groups", "groups"),
-        ("param set /a x '1 2'", "prompt param set /a x '1 2'"),
-    ],
+    sample(
+        [
+            ("echo /pose", "echo /pose"),
+            ("topics", "topics"),
+            ("graphflow topic list", "prompt topic list"),
+            ("gf ps", "prompt ps"),
+            ("groups move /a b c", "prompt groups move /a b c"),
+            ("groups", "groups"),
+            ("param set /a x '1 2'", "prompt param set /a x '1 2'"),
+        ]
+    ),
 )
 async def test_what_is_typed(text: str, opens: str) -> None:
     """A view, or a verb."""

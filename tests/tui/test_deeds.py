@@ -8,7 +8,7 @@ from graphflow.testing import Graph
 from graphflow.tui.actions import CONSOLE, console_actions
 from graphflow.tui.dialogs import AskToStop, Note, Pick
 from graphflow.tui.panes import Content
-from tests.cases import slow, some
+from tests.cases import sample, slow, some
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
@@ -18,16 +18,18 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 @pytest.mark.parametrize("view", some(["nodes", "prompt"], "prompt"))
 @pytest.mark.parametrize(
     ("key", "screen"),
-    [
-        ("question_mark", Note),
-        ("colon", "CommandLine"),
-        ("s", Pick),
-        ("f", Pick),
-        ("v", Pick),
-        ("D", Pick),
-        ("S", AskToStop),
-        ("tilde", Note),
-    ],
+    sample(
+        [
+            ("question_mark", Note),
+            ("colon", "CommandLine"),
+            ("s", Pick),
+            ("f", Pick),
+            ("v", Pick),
+            ("D", Pick),
+            ("S", AskToStop),
+            ("tilde", Note),
+        ]
+    ),
 )
 async def test_keys_that_ask(view: str, key: str, screen: object) -> None:
     """They open what their line says, and escape takes it away again."""
