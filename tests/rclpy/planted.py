@@ -111,6 +111,28 @@ class FixedSpinsWithin(SpinsWithin):
     client_group = service_group = MutuallyExclusiveCallbackGroup
 
 
+class SpinsIntoACall(Asker):
+    """What it spins blocks, and waits for the group that it holds itself."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.inner = self.create_timer(0.2, self.ask, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def tick(self) -> None:
+        rclpy.spin_once(self, executor=self.executor, timeout_sec=60.0)
+        self.done.set()
+
+    def ask(self) -> None:
+        self.inner.cancel()
+        self.client.call(Trigger.Request())  # stuck: SpinsIntoACall
+
+
+class FixedSpinsIntoACall(SpinsIntoACall):
+    def ask(self) -> None:
+        self.inner.cancel()
+        self.client.call_async(Trigger.Request())
+
+
 class SpinsOnceWithin(Asker):
     def tick(self) -> None:
         future = self.client.call_async(Trigger.Request())
@@ -419,42 +441,19 @@ BOTH = "make answer and the client of /answer of /asker with callback_group=Mutu
 
 PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (Calls, FixedCalls, "future = client.call_async(request), then future.add_done_callback(...)"),
-    (
-        Calls,
-        CallsWithGroups,
-        BOTH,
-    ),
-    (
-        CallsWithThreads,
-        CallsWithGroups,
-        BOTH,
-    ),
+    (Calls, CallsWithGroups, BOTH),
+    (CallsWithThreads, CallsWithGroups, BOTH),
     (
         CallsAcross,
         FixedCallsAcross,
         "make the client of /answer of /asker with callback_group=MutuallyExclusiveCallbackGroup()",
     ),
     (CallsWithALimit, FixedCalls, "then future.add_done_callback(...)"),
-    (
-        SpinsWithin,
-        FixedSpinsWithin,
-        BOTH,
-    ),
-    (
-        SpinsOnceWithin,
-        FixedSpinsWithin,
-        BOTH,
-    ),
-    (
-        SpinsAndBreaks,
-        FixedSpinsWithin,
-        BOTH,
-    ),
-    (
-        PollsTheFuture,
-        FixedPollsTheFuture,
-        BOTH,
-    ),
+    (SpinsWithin, FixedSpinsWithin, BOTH),
+    (SpinsIntoACall, FixedSpinsIntoACall, "future = client.call_async(request), then future.add_done_callback(...)"),
+    (SpinsOnceWithin, FixedSpinsWithin, BOTH),
+    (SpinsAndBreaks, FixedSpinsWithin, BOTH),
+    (PollsTheFuture, FixedPollsTheFuture, BOTH),
     (Awaits, FixedAwaits, "callback_group=ReentrantCallbackGroup()"),
     (Sleeps, FixedSleeps, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AllThreads, FixedAllThreads, "spin with MultiThreadedExecutor(num_threads=3)"),

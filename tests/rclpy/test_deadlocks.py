@@ -109,7 +109,7 @@ def test_nobody_spins(machine: Machine, case: tuple[str, str]) -> None:
     told([machine.start("run", "nobody.py", how, cwd=PROGRAMS)], line("nobody.py", how), remedy)
 
 
-@pytest.mark.parametrize("how", some(["later", "spins"]))
+@pytest.mark.parametrize("how", some(["after", "later", "spins"], "after"))
 def test_somebody_spins_in_the_end(machine: Machine, how: str) -> None:
     """Nothing is told while another thread may still begin to."""
     program = machine.start("run", "nobody.py", how, cwd=PROGRAMS)

@@ -10,6 +10,7 @@ import time
 from std_srvs.srv import Trigger
 
 import rclpy
+import rclpy.task
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
@@ -22,6 +23,19 @@ def main():
     other.create_service(Trigger, "answer", lambda request, response: response)
     client = node.create_client(Trigger, "answer")
     client.wait_for_service()
+    if how == "after":
+        threading.Thread(target=client.call, args=(Trigger.Request(),)).start()
+        done = rclpy.task.Future()
+        other.create_timer(1.5, lambda: done.set_result(1))
+        rclpy.spin_until_future_complete(other, done)
+        future = client.call_async(Trigger.Request())
+        both = SingleThreadedExecutor()
+        both.add_node(node)
+        both.add_node(other)
+        both.spin_until_future_complete(future)
+        print("done", flush=True)
+        rclpy.shutdown()
+        return
     executor = SingleThreadedExecutor()
     executor.add_node(other)
     threading.Thread(target=executor.spin, daemon=True).start()

@@ -6,13 +6,17 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
+from std_srvs.srv import Trigger
 
 import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
 from tests.cases import sample
 from tests.flat import flat
 from tests.rclpy import planted, waiting_programs
@@ -37,7 +41,8 @@ class Program:
     """A program of one node that spins in a thread."""
 
     def __init__(self, cls: type[Any]) -> None:
-        rclpy.init()
+        if not rclpy.ok():
+            rclpy.init()
         self.node = cls()
         self.executor: Executor = SingleThreadedExecutor()
         if cls.threads > 1:
@@ -126,3 +131,42 @@ def test_who_merely_waits_is_not_called_stuck(
     finally:
         running.end()
     assert not [r.getMessage() for r in caplog.records if r.name == "graphflow" and r.levelno >= logging.WARNING]
+
+
+class TwoServers(planted.Asker):
+    """Its own server is kept out, and another answers in time."""
+
+    threads = 2
+    client_group = MutuallyExclusiveCallbackGroup
+
+    def tick(self) -> None:
+        self.client.call(Trigger.Request())
+        self.done.set()
+
+
+def test_of_two_servers_another_may_answer(
+    start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture
+) -> None:
+    """So a call that one of them cannot take is no deadlock."""
+    rclpy.init()
+    other, executor = Node("other"), SingleThreadedExecutor()
+
+    def slowly(request: Any, response: Any) -> Any:
+        time.sleep(1.0)
+        return response
+
+    other.create_service(Trigger, "answer", slowly)
+    executor.add_node(other)
+    thread = threading.Thread(target=spin, args=(executor,))
+    thread.start()
+    program = start(TwoServers)
+    assert program.node.done.wait(LIMIT)
+    assert not reports(caplog)
+    rclpy.try_shutdown()
+    thread.join(LIMIT)
+
+
+def spin(executor: Executor) -> None:
+    """Spin until the context ends."""
+    with suppress(Exception):
+        executor.spin()
