@@ -80,6 +80,8 @@ class _Class:
     groups: dict[str, _Group] = field(default_factory=dict)
     clients: dict[str, _Group | None] = field(default_factory=dict)
     callbacks: list[_Callback] = field(default_factory=list)
+    rates: set[str] = field(default_factory=set)
+    """Attributes, with their `self.`."""
 
     def findings(self) -> Iterator[Finding]:
         seen: set[tuple[int, str]] = set()
@@ -117,14 +119,14 @@ class _Class:
         if function is None or method in seen:
             return
         seen.add(method)
-        futures, rates = _futures(function, self.clients), _rates(function)
+        futures, rates = _futures(function, self.clients), _rates(function) | self.rates
         for node, parents in _walk(function):
             is_sure = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
             match node:
                 case ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)):
                     if name in self.clients and verb in ("call", "send_goal"):
                         yield _Wait(f"self.{name}.{verb}", node, name, True, False, is_sure)
-                    elif name in rates and verb == "sleep":
+                    elif f"self.{name}" in rates and verb == "sleep":
                         yield _Wait(f"self.{name}.sleep", node, "", True, False, is_sure)
                     elif name in self.clients and verb == "call_async" and isinstance(parents[-1], ast.Await):
                         yield _Wait(f"await self.{name}.call_async", node, name, False, False, is_sure)
@@ -196,7 +198,8 @@ def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
 def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
     """A class, with what it has from a parent in the same file."""
     own = dict(parent.methods), dict(parent.groups), dict(parent.clients), list(parent.callbacks)
-    found = _Class(parent.file, parent.is_single, *own)
+    rates = {name for name in _rates(definition) if name.startswith("self.")}
+    found = _Class(parent.file, parent.is_single, *own, parent.rates | rates)
     for item in definition.body:
         if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
             found.methods[item.name] = item
@@ -255,13 +258,13 @@ def _futures(function: ast.AST, clients: dict[str, _Group | None]) -> dict[str, 
     return found
 
 
-def _rates(function: ast.AST) -> set[str]:
-    """The names of rates that a function makes, and of attributes that may be some."""
-    found = {"rate", "_rate", "loop_rate"}
-    for node in ast.walk(function):
+def _rates(tree: ast.AST) -> set[str]:
+    """What is made to be a rate: names, and attributes with their `self.`."""
+    found = set()
+    for node in ast.walk(tree):
         match node:
             case ast.Assign(targets=[target], value=ast.Call(func=made)) if _last(made) == "create_rate":
-                found.add(_word(target).removeprefix("self."))
+                found.add(_word(target))
     return found
 
 

@@ -111,6 +111,9 @@ def test_a_rate_in_a_callback(tmp_path: Path) -> None:
     body = "rate = self.create_rate(10)\n        rate.sleep()"
     assert found(tmp_path, tick=TICK + body) == [("CERTAIN", "rate.sleep()")]
     assert found(tmp_path, tick=TICK + body, spin=POOL) == []
+    made = "self.pace = self.create_rate(10)"
+    assert found(tmp_path, init=made, tick=TICK + "self.pace.sleep()") == [("CERTAIN", "self.pace.sleep()")]
+    assert found(tmp_path, tick=TICK + "self.rate.sleep()") == []  # whatever that is
 
 
 def test_bodies_of_goals_are_in_no_group(tmp_path: Path) -> None:

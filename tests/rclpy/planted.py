@@ -285,6 +285,14 @@ class Waits(Node):
         """Nothing has to do with it."""
 
 
+class Sleeper(Waits):
+    """Stands in one line until somebody from elsewhere ends that."""
+
+    def tick(self) -> None:
+        self.arrived.wait()
+        self.done.set()
+
+
 class WaitsForEvent(Waits):
     def tick(self) -> None:
         self.arrived.wait()  # stuck: WaitsForEvent

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.user_code import is_ours
 from graphflow.errors import ClosedError
 from graphflow.machines.wait_graph import goal_id
 from graphflow.runtime.threaded import Asked, read_request
@@ -36,8 +37,8 @@ class Role(NamedTuple):
 _KINDS = {Timer: "timer", Subscription: "subscription", Service: "service", GuardCondition: "guard_condition"}
 
 
-def role_of(entity: Any, node: Any) -> Role:
-    """What an entity of a node is."""
+def role_of(entity: Any) -> Role:
+    """What an entity is."""
     if isinstance(entity, Client):
         return Role("reply", entity._endpoint.name)
     if isinstance(entity, ActionClient):
@@ -49,7 +50,7 @@ def role_of(entity: Any, node: Any) -> Role:
     if isinstance(getattr(callback, "__self__", None), Rate):
         return Role("timer", "rate", is_inner=True)
     code = getattr(callback, "__code__", None)
-    is_inner = code is not None and "/graphflow/rclpy/" in code.co_filename
+    is_inner = code is not None and is_ours(code.co_filename)
     is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 

@@ -13,6 +13,7 @@ import time
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import cached_property
 from itertools import count
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -53,6 +54,10 @@ if TYPE_CHECKING:
 
 LOOK_EVERY = 0.15
 """Seconds between two looks whether some thread or callback stands still."""
+AGAIN_AFTER = 0.5
+"""Seconds after which what stands still is looked into again."""
+ATTEMPTS = 5
+"""How often things are looked at that other threads change meanwhile."""
 
 know_futures(Future)
 
@@ -67,8 +72,8 @@ class Waiting:
         self._lock = threading.RLock()
         self._stood: dict[int, tuple[int, float]] = {}
         """Where each thread stands, and since when."""
-        self._known: set[tuple[int, int]] = set()
-        """What stands still and has been looked into: a frame and a line, or a run and its step."""
+        self._known: dict[tuple[int, int], float] = {}
+        """When what stands still was last looked into: a frame and a line, or a run and its step."""
         LOOP.soon(self._look)
 
     def number_of(self, thing: Any) -> int:
@@ -96,24 +101,33 @@ class Waiting:
     def groups(self) -> dict[str, list[dict[str, Any]]]:
         """Its nodes' callback groups and executors, with what is in them, as plain data."""
         with self._lock:
-            return _Look(self).plain()
+            for _ in range(ATTEMPTS):
+                try:
+                    return _Look(self).plain()
+                except RuntimeError:  # something changed its size meanwhile
+                    continue
+        return {}
 
     def _look(self) -> None:
-        """Have deadlocks looked for if something stands still. On the loop."""
-        clock, now, places = self.context.clock, time.monotonic(), standing()
+        """Have deadlocks looked for if something stands still, and look again. On the loop."""
+        if not self._life.is_ok:
+            return
+        clock = self.context.clock
+        clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
+        now, places = time.monotonic(), standing()
         self._stood = {
             thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
             for thread, (frame, _) in places.items()
         }
-        runs: list[Run] = [run for executor in list(all_executors) for run in list(executor.spinning.running)]
+        runs: list[Run] = [run for executor in executors() for run in list(executor.spinning.running)]
         still = {places[thread] for thread, (_, since) in self._stood.items() if now - since >= 0.9 * LOOK_EVERY}
         still |= {(id(run), run.stepped_ns) for run in runs if 0 < run.stepped_ns < (now - LOOK_EVERY) * 1e9}
-        if not still <= self._known:
-            self.context.ledger.alert()
         lasting = {thing for thing, _ in still}  # a loop that polls has several lines
-        self._known = still | {known for known in self._known if known[0] in lasting}
-        if self._life.is_ok:
-            clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
+        self._known = {known: when for known, when in self._known.items() if known[0] in lasting}
+        # The same line may wait again, for something else: a loop that calls and calls.
+        if any(now - self._known.get(thing, -AGAIN_AFTER) >= AGAIN_AFTER for thing in still):
+            self._known |= dict.fromkeys(still, now)
+            self.context.ledger.alert()
 
 
 class _Look:
@@ -123,20 +137,18 @@ class _Look:
         self._waiting, self._context = waiting, waiting.context
         self._zid = self._context.session.zid
         self._nodes: list[Any] = list(waiting._life.nodes)
-        self._roles = {entity: role_of(entity, node) for node in self._nodes for entity in entities_of(node)}
         self._owners = {entity: node for node in self._nodes for entity in entities_of(node)}
+        self._roles = {entity: role_of(entity) for entity in self._owners}
         self._groups: dict[str, GroupView] = {}
         self._queues: dict[str, QueueView] = {}
         self._activities: dict[str, ActivityView] = {}
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
         self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
-        runs = [run for e in list(all_executors) if self._is_here(e) for run in list(e.spinning.running)]
+        mine = [executor for executor in executors() if executor.context.life is waiting._life]
+        runs = [run for executor in mine for run in list(executor.spinning.running)]
         self._runs: dict[Run, None] = dict.fromkeys([*runs, *self._levels])
         self._now = time.monotonic()
-
-    def _is_here(self, executor: Executor) -> bool:
-        return executor.context.life is self._waiting._life
 
     def _id(self, thing: Any, prefix: str = "r") -> str:
         return f"{self._zid}:{prefix}{self._waiting.number_of(thing)}"
@@ -160,11 +172,7 @@ class _Look:
         if not _is_exclusive(group):
             return ()
         name = self._id(group, "g")
-        called = "default callback group"
-        if node is None or group is not node.default_callback_group:
-            attribute = next((a for a, value in list(vars(node).items()) if value is group), "") if node else ""
-            called = f"callback group '{attribute}'" if attribute else "callback group"
-        self._groups[name] = GroupView(name, called, _name(node), 1, sort="callback")
+        self._groups[name] = GroupView(name, _called(group, node), _name(node), 1, sort="callback")
         return (name,)
 
     def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
@@ -346,8 +354,9 @@ class _Look:
             return FREE
         return call if self._servers[endpoint.name] < 2 else FREE  # another may answer
 
-    @property
+    @cached_property
     def _servers(self) -> Counter[str]:
+        """How many servers there are, by service."""
         return Counter(entity.name for entity in list(self._context.cache) if entity.kind is Kind.SERVICE)
 
     def _of_lock(self, found: Blocked, level: Level, node: Any, run: Run | None) -> Condition:
@@ -379,10 +388,9 @@ class _Look:
             for entity, role in self._roles.items()
             if self._owners[entity] is node and role.handler in found.handlers
         ]
-        runs = [self._id(r) for r in self._runs if r is not run and r.node is node]
-        active = [r for r in self._runs if r is not run and self._role(r).handler in found.handlers]
-        setting = tuple(sorted({self._id(r) for r in active} & {*runs}))
-        return SetBy(found.what, tuple(sorted(queues)), setting, deed=found.deed, gives_up=found.gives_up)
+        others_runs = [r for r in self._runs if r is not run and r.node is node]
+        active = sorted(self._id(r) for r in others_runs if self._role(r).handler in found.handlers)
+        return SetBy(found.what, tuple(sorted(queues)), tuple(active), deed=found.deed, gives_up=found.gives_up)
 
     # for people
 
@@ -395,7 +403,7 @@ class _Look:
                 role = self._roles[entity]
                 if role.is_inner:
                     continue
-                row = rows.setdefault(entity.callback_group, self._plain_group(entity.callback_group, node))
+                row = rows.setdefault(entity.callback_group, _plain(entity.callback_group, node))
                 running = sum(run.entity is entity for run in self._runs)
                 numbers = {"running": running, "waiting": arrived(entity)[1], "runs": None, "errors": 0}
                 row["handlers"].append({"handler": role.handler, "kind": role.kind, **numbers})
@@ -409,19 +417,11 @@ class _Look:
             found[_name(node)] = [*rows.values(), {**about, "handlers": []}]
         return found
 
-    def _plain_group(self, group: Any, node: Any) -> dict[str, Any]:
-        ids = self._callback_group(group, node)
-        attribute = next((a for a, value in list(vars(node).items()) if value is group), "")
-        name = self._groups[ids[0]].name if ids else f"{type(group).__name__} {attribute}".strip()
-        limit = 1 if ids else None
-        return {
-            "name": name,
-            "limit": limit,
-            "when_full": "wait",
-            "thread": False,
-            "sort": "callback",
-            "handlers": list[Any](),
-        }
+
+def _plain(group: Any, node: Any) -> dict[str, Any]:
+    """A callback group as plain data, with nothing in it yet."""
+    about = {"name": _called(group, node), "limit": 1 if _is_exclusive(group) else None, "when_full": "wait"}
+    return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}
 
 
 class _Subject:
@@ -443,11 +443,31 @@ class _Runner:
         self.spec = role
 
 
+def executors() -> list[Executor]:
+    """Those of this process; more may be made meanwhile."""
+    for _ in range(ATTEMPTS):
+        try:
+            return list(all_executors)
+        except RuntimeError:  # one was, in another thread
+            continue
+    return []
+
+
 def _name(node: Any) -> str:
     return "" if node is None else str(node.held.full_name)
 
 
+def _called(group: Any, node: Any) -> str:
+    """What a callback group is called: by the attribute of its node."""
+    if node is not None and group is node.default_callback_group:
+        return "default callback group"
+    attribute = next((a for a, value in list(vars(node).items()) if value is group), "") if node is not None else ""
+    kind = "callback group" if _is_exclusive(group) else type(group).__name__
+    return f"{kind} '{attribute}'" if attribute else kind
+
+
 def _is_exclusive(group: Any) -> bool:
+    """Whether one callback of a group runs at a time: for groups whose ways are their own that is not known."""
     kind = MutuallyExclusiveCallbackGroup
     return isinstance(group, kind) and type(group).beginning_execution is kind.beginning_execution
 

@@ -28,5 +28,5 @@ def test_each_is_called_by_its_callback(node: Node) -> None:
         (ActionClient(node, Fibonacci, "count"), "reply /count"),
         (rate._timer, "timer rate"),
     ]
-    assert [role_of(entity, node).label for entity, _ in made] == [label for _, label in made]
-    assert [role_of(entity, node).is_inner for entity, _ in made] == [False] * 7 + [True]
+    assert [role_of(entity).label for entity, _ in made] == [label for _, label in made]
+    assert [role_of(entity).is_inner for entity, _ in made] == [False] * 7 + [True]

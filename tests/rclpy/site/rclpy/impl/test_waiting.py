@@ -16,6 +16,7 @@ from std_srvs.srv import Trigger
 import rclpy
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl import stacks, waiting
 from rclpy.node import Node
 from tests.cases import sample
 from tests.flat import flat
@@ -170,3 +171,36 @@ def spin(executor: Executor) -> None:
     """Spin until the context ends."""
     with suppress(Exception):
         executor.spin()
+
+
+def test_what_stands_still_is_looked_into_again(start: Callable[[type[Any]], Program]) -> None:
+    """The same line may wait for something else by then."""
+    program = start(planted.Sleeper)
+    life = program.node.context.life
+    alerts: list[int] = []
+    life.network().ledger.alert = lambda: alerts.append(1)
+    until(lambda: len(alerts) >= 4, "looks")
+    program.node.arrived.set()
+    assert program.node.done.wait(LIMIT)
+
+
+def test_a_look_that_fails_is_not_the_last(
+    start: Callable[[type[Any]], Program], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Something may change its size while it is looked at."""
+    fails, real = [1, 1], stacks.standing
+
+    def standing() -> dict[int, tuple[int, int]]:
+        if fails:
+            fails.pop()
+            raise RuntimeError("dictionary changed size during iteration")
+        return real()
+
+    program = start(planted.Sleeper)
+    alerts: list[int] = []
+    program.node.context.life.network().ledger.alert = lambda: alerts.append(1)
+    monkeypatch.setattr(waiting, "standing", standing)
+    until(lambda: not fails, "it has failed twice")
+    count = len(alerts)
+    until(lambda: len(alerts) > count, "it looks again")
+    program.node.arrived.set()
