@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import PurePath
 
-from graphflow.errors import Place
 from graphflow.machines.clauses import filled
 from graphflow.machines.moves import queues_of
 from graphflow.machines.remedies import own_group, remedies, remedies_of
@@ -66,7 +64,7 @@ def stall(
     Args:
         dropped: How many items each queue had dropped before.
     """
-    who = " and ".join(title(a) + (f" ({_line(a.place)} in {a.function})" if a.place.file else "") for a in holders)
+    who = " and ".join(title(a) + (f" ({a.line} in {a.function})" if a.place.file else "") for a in holders)
     slots = f"have held all {len(holders)} slots of group '{group.name}' of {group.node}"
     kept = slots if len(holders) > 1 else f"has held {_slot(group)}"
     lines = filled("", [f"STALL: {who}", f"{kept} for more than {seconds:.1f} s"])
@@ -127,7 +125,7 @@ def offer(service: str) -> str:
 
 def where(activity: ActivityView) -> str:
     """Where an activity waits, and for how long."""
-    words = [f"{_line(activity.place)} in {activity.function}"] if activity.place.file else []
+    words = [f"{activity.line} in {activity.function}"] if activity.place.file else []
     words += [f"called in {activity.called}"] if activity.called else []
     words += [f"for {activity.age:.2f} s"]
     words += [] if activity.left is None else [f"times out in {max(0.0, activity.left):.1f} s"]
@@ -215,11 +213,6 @@ def _held(activity: ActivityView, graph: WaitGraph) -> str:
     held = [f"the {group.name}" for group in own if group.sort == "callback"]
     held += ["a thread" if group.limit != 1 else "the only thread" for group in own if group.sort == "executor"]
     return f"holds {' and '.join(held)}" if held else "runs"
-
-
-def _line(place: Place) -> Place:
-    """A place by its file's name alone."""
-    return Place(PurePath(place.file).name, place.line)
 
 
 def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:

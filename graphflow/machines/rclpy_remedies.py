@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import PurePath
 
-from graphflow.errors import Place
 from graphflow.machines.clauses import filled
 from graphflow.machines.rings import Edge
 from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, SetBy, WaitGraph
@@ -37,7 +35,7 @@ def in_rclpys_words(edge: Edge, holder_edge: Edge, graph: WaitGraph) -> Iterator
 
 def _spun(holder: ActivityView, holder_edge: Edge, needs: list[GroupView]) -> Iterator[str]:
     """Have somebody spin while a thread waits."""
-    place = _line(holder)
+    place = holder.line
     if isinstance(holder_edge.via, Call) and not holder_edge.via.id.startswith("tick:"):
         spin = "rclpy.spin_until_future_complete(node, future)"
         yield _text(f"spin while waiting, in {place}:", f"future = client.{_asynchronous(holder_edge.via)},", spin)
@@ -48,7 +46,7 @@ def _spun(holder: ActivityView, holder_edge: Edge, needs: list[GroupView]) -> It
 
 def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> Iterator[str]:
     """The same work by a callback that does not keep what others need."""
-    place, handler = _line(holder), holder.handler
+    place, handler = holder.line, holder.handler
     match edge.via:
         case Call(id=call) if call.startswith("tick:"):
             yield _text(f"do not sleep in {place}:", "create_timer(period, callback) calls back at a rate")
@@ -112,10 +110,6 @@ def _full(queue: QueueView, graph: WaitGraph) -> list[GroupView]:
 
 def _held(graph: WaitGraph, group: str) -> int:
     return sum(group in activity.holds for activity in graph.activities.values())
-
-
-def _line(activity: ActivityView) -> Place:
-    return Place(PurePath(activity.place.file).name, activity.place.line)
 
 
 def _text(*clauses: str) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import PurePath
 
-from graphflow.errors import Place
 from graphflow.machines.clauses import filled
 from graphflow.machines.moves import moves
 from graphflow.machines.rclpy_remedies import in_rclpys_words
@@ -69,12 +67,12 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         return
     queue, group = graph.queues.get(edge.queue), graph.groups.get(edge.group)
     if group is not None and group.is_start:
-        yield _text(f"let on_start return: move the wait in {_line(graph.activities[edge.to])} into a @task")
+        yield _text(f"let on_start return: move the wait in {graph.activities[edge.to].line} into a @task")
         return
     if isinstance(edge.via, SetBy) and edge.via.is_held:
         holder = graph.activities[edge.to]
         wait = "await" if holder.is_async else "wait"
-        yield _text(f"move the {wait} in {_line(holder)}", f"out of the `with {edge.via.what}` block around it")
+        yield _text(f"move the {wait} in {holder.line}", f"out of the `with {edge.via.what}` block around it")
     if queue is None or group is None:
         return
     if queue.label.startswith("reply "):
@@ -94,7 +92,7 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
 def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:
     blocker = graph.activities[edge.to]
     wait = "await the call" if isinstance(edge.via, Call) else "await, as in `await self.clock.sleep(0.05)`,"
-    yield _text(f"{wait} in {_line(blocker)}")
+    yield _text(f"{wait} in {blocker.line}")
     handler = blocker.handler
     regrouping = graph.regrouping(blocker.node).moved([handler], "blocking", thread=True)
     yield _text(
@@ -109,7 +107,7 @@ def _release(activity: ActivityView, wanted: GroupView | None) -> Iterator[str]:
     """Releasing a slot helps where the previous activity in the ring wants it."""
     if wanted is not None and wanted.name and not wanted.sort and activity.is_async:
         yield _text(
-            f"release the slot while waiting, in {_line(activity)}:",
+            f"release the slot while waiting, in {activity.line}:",
             "async with self.group.released(): ...",
             "(self.group is the group of the running handler)",
         )
@@ -123,10 +121,6 @@ def _larger(group: GroupView, limit: int, graph: WaitGraph) -> str:
     regrouping: Regrouping = graph.regrouping(group.node).limited(group.name, limit)
     yaml = regrouping.lines(group.node, "      ")
     return _text(f"{text},", regrouping.where, yaml=yaml, instead=(f"or in the class: {group.name} = {made}",))
-
-
-def _line(activity: ActivityView) -> Place:
-    return Place(PurePath(activity.place.file).name, activity.place.line)
 
 
 def _text(*clauses: str, yaml: Sequence[str] = (), instead: Sequence[str] = ()) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import PurePath
 from typing import Literal
 
 from graphflow.errors import Place
@@ -143,6 +144,11 @@ class ActivityView:
     def handler(self) -> str:
         """The method that runs: `tick` of `timer tick`."""
         return method_of(self.label)
+
+    @property
+    def line(self) -> Place:
+        """Where the activity waits, with the file's name alone: `arm.py:12`."""
+        return Place(PurePath(self.place.file).name, self.place.line)
 
 
 Sort = Literal["", "callback", "executor", "spinner"]

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import re
 
-from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
+from rclpy.validate_topic_name import raise_fault
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     """Whether a name is a full one: True, else InvalidTopicNameException or InvalidServiceNameException is raised."""
-    fault = _fault(name)
-    if fault is not None:
-        text, index = fault
-        if is_service:
-            raise InvalidServiceNameException(name, text.replace("topic", "service", 1), index)
-        raise InvalidTopicNameException(name, text, index)
-    return True
+    return raise_fault(name, _fault(name), is_service=is_service)
 
 
 def _fault(name: str) -> tuple[str, int] | None:

@@ -40,10 +40,14 @@ def fault_of(name: str) -> tuple[str, int] | None:
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     """Whether a name will do: True, or else InvalidTopicNameException or InvalidServiceNameException is raised."""
-    fault = fault_of(name)
-    if fault is not None:
-        text, index = fault
-        if is_service:
-            raise InvalidServiceNameException(name, text.replace("topic", "service", 1), index)
-        raise InvalidTopicNameException(name, text, index)
-    return True
+    return raise_fault(name, fault_of(name), is_service=is_service)
+
+
+def raise_fault(name: str, fault: tuple[str, int] | None, *, is_service: bool) -> bool:
+    """Raise an error for a fault: what is wrong with a topic's name, and where. True if there is none."""
+    if fault is None:
+        return True
+    text, index = fault
+    if is_service:
+        raise InvalidServiceNameException(name, text.replace("topic", "service", 1), index)
+    raise InvalidTopicNameException(name, text, index)
