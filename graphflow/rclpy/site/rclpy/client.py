@@ -13,22 +13,22 @@ from graphflow.rclpy.wake import Wake
 from graphflow.runtime.service_events import ServiceEvent
 from rclpy.handle import Handle
 from rclpy.impl.passing import passed_on
-from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.impl.service_end import ServiceEnd
 from rclpy.task import Future
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
     from graphflow.runtime.threaded import Answered, ThreadedClient
     from rclpy.callback_groups import CallbackGroup
-    from rclpy.clock import Clock
     from rclpy.context import Context
     from rclpy.qos import QoSProfile
 
 
-class Client:
+class Client(ServiceEnd):
     """A client of a service. Make it by `Node.create_client`."""
 
     turn = 3
+    _endpoint: ThreadedClient
 
     def __init__(
         self,
@@ -125,12 +125,6 @@ class Client:
             self._changed.pop(wake, None)
         return self.service_is_ready()
 
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
-        configure_introspection(self._life, self._endpoint, service_event_qos_profile, introspection_state)
-
     def has_work(self) -> bool:
         return bool(self._endpoint.inbox.items)
 
@@ -149,33 +143,6 @@ class Client:
             future.set_result(response)
         elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
             future.set_exception(answered.error)
-
-    @property
-    def handle(self) -> Handle:
-        return self._handle
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        with self._handle:
-            return self._endpoint.name
-
-    def destroy(self) -> None:
-        """Withdraw it. `Node.destroy_client` is what to call."""
-        self._handle.destroy_when_not_in_use()
-
-    def __enter__(self) -> Client:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
-
-
-def configure_introspection(life: Life, endpoint: Any, qos: QoSProfile, state: ServiceIntrospectionState) -> None:
-    """Have a client or server publish its calls."""
-    from rclpy.qos import to_graphflow
-
-    life.on_loop(partial(endpoint.configure_introspection, state.name.lower(), to_graphflow(qos)))
 
 
 def __getattr__(name: str) -> Any:

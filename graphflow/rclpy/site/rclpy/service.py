@@ -10,16 +10,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from graphflow.errors import DecodeError
 from graphflow.rclpy import messages
 from graphflow.runtime.service_events import ServiceEvent
-from rclpy.client import configure_introspection
 from rclpy.handle import Handle
 from rclpy.impl.passing import passed_on
-from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.impl.service_end import ServiceEnd
 
 if TYPE_CHECKING:
     from graphflow.rclpy.life import Life
     from graphflow.runtime.threaded import Asked, ThreadedService
     from rclpy.callback_groups import CallbackGroup
-    from rclpy.clock import Clock
     from rclpy.qos import QoSProfile
 
 
@@ -37,10 +35,11 @@ class RequestHeader(NamedTuple):
         return self.asked.source_ns
 
 
-class Service:
+class Service(ServiceEnd):
     """A server of a service. Make it by `Node.create_service`."""
 
     turn = 4
+    _endpoint: ThreadedService
 
     def __init__(
         self,
@@ -67,12 +66,6 @@ class Service:
             payload = messages.encode(response)
             self._endpoint.answer(header.asked, payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_SENT, header.asked, payload)
-
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
-        configure_introspection(self._life, self._endpoint, service_event_qos_profile, introspection_state)
 
     def has_work(self) -> bool:
         return bool(self._endpoint.inbox.items)
@@ -105,26 +98,6 @@ class Service:
     def _take_request(self, request_type: Any) -> tuple[Any, RequestHeader | None]:
         asked = self._endpoint.take()
         return (None, None) if asked is None else (messages.decode(request_type, asked.payload), RequestHeader(asked))
-
-    @property
-    def handle(self) -> Handle:
-        return self._handle
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        with self._handle:
-            return self._endpoint.name
-
-    def destroy(self) -> None:
-        """Withdraw it. `Node.destroy_service` is what to call."""
-        self._handle.destroy_when_not_in_use()
-
-    def __enter__(self) -> Service:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.destroy()
 
 
 def __getattr__(name: str) -> Any:

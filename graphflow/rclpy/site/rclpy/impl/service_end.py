@@ -1,0 +1,51 @@
+"""What clients and servers of services have in common."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.handle import Handle
+from rclpy.qos import to_graphflow
+
+if TYPE_CHECKING:
+    from graphflow.rclpy.life import Life
+    from rclpy.clock import Clock
+    from rclpy.qos import QoSProfile
+    from rclpy.service_introspection import ServiceIntrospectionState
+
+
+class ServiceEnd:
+    """A client or server of a service."""
+
+    _endpoint: Any
+    _life: Life
+    _handle: Handle
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Publish its calls on `<service>/_service_event`: nothing, their metadata, or their contents too."""
+        level, qos = introspection_state.name.lower(), to_graphflow(service_event_qos_profile)
+        self._life.on_loop(partial(self._endpoint.configure_introspection, level, qos))
+
+    @property
+    def handle(self) -> Handle:
+        return self._handle
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        with self._handle:
+            name: str = self._endpoint.name
+            return name
+
+    def destroy(self) -> None:
+        """Withdraw it. `Node.destroy_client` and `Node.destroy_service` are what to call."""
+        self._handle.destroy_when_not_in_use()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
