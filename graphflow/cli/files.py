@@ -52,7 +52,10 @@ _json = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @_json
 @click.option("--diff", "other", metavar="OTHER.yaml", help="Show what would be different in another file.")
 def plan(graph: str, args: tuple[str, ...], as_json: bool, other: str | None) -> None:
-    """Show exactly what a graph file would run and where each setting comes from. Imports nothing."""
+    """Show exactly what a graph file would run and where each setting comes from. Imports nothing.
+
+    A launch file in Python is run for that, in a process of its own.
+    """
     path = find_graph(graph)
     from graphflow.graph.resolve import load
     from graphflow.supervisor.launch_python import described
