@@ -44,6 +44,17 @@ class Server(Node):
         return Fibonacci.Result()
 
 
+class Store:
+    """Has a lock of the same name as the node's."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+
+    def fill(self) -> None:
+        with self.lock:
+            time.sleep(LONG)
+
+
 class Waiter(Node):
     """Waits in the way of that name."""
 
@@ -54,6 +65,7 @@ class Waiter(Node):
         self.lock, self.condition = threading.Lock(), threading.Condition()
         self.items: queue.Queue[int] = queue.Queue()
         self.flag = False
+        self.store = Store()
         self.future: Future[int] = Future()
         self.promise: concurrent.futures.Future[int] = concurrent.futures.Future()
         self.client = self.create_client(Trigger, "answer", callback_group=group())
@@ -143,6 +155,14 @@ class Waiter(Node):
         time.sleep(0.1)
         with self.lock:
             self.flag = True
+
+    def lock_of_another(self) -> None:
+        thread = threading.Thread(target=self.store.fill)
+        thread.start()
+        time.sleep(0.1)
+        with self.lock:  # while it waits in a lock of the other's
+            self.store.fill()
+        thread.join()
 
     def sleep(self) -> None:
         time.sleep(LONG)

@@ -31,7 +31,7 @@ class Blocked(NamedTuple):
     future: Future[Any] | None = None
     timer: Timer | None = None
     lock: str = ""
-    """The attribute of the node that is a lock."""
+    """The attribute of `self` in the innermost frame that is a lock."""
     timeout: float | None = None
     """Seconds until it gives up, from when it began."""
 
@@ -111,11 +111,11 @@ def _entering(frame: FrameType) -> str:
         function = _function(frame)
     except Unknown:
         return ""
-    for node in ast.walk(function):
-        for item in node.items if isinstance(node, ast.With) else ():
+    for node in (n for n in ast.walk(function) if isinstance(n, ast.With)):
+        for item in node.items:
             expression = item.context_expr
             name = _own(expression)
-            is_here = expression.lineno <= frame.f_lineno <= (expression.end_lineno or 0)
+            is_here = expression.lineno <= frame.f_lineno < node.body[0].lineno  # on one line, it may be inside
             if name and is_here and isinstance(vars(own).get(name), _LOCKS):
                 return name
     return ""

@@ -265,12 +265,15 @@ class _Look:
         )
 
     def _add_thread(self, stack: Stack, level: Level, holding: tuple[str, ...]) -> None:
-        wait, left = self._wait(level, self._nodes[0] if self._nodes else None, None)
+        first = self._nodes[0] if self._nodes else None
+        selves = [frame.f_locals.get("self") for frame in level.frames]
+        node = next((n for n in self._nodes if any(own is n for own in selves)), first)
+        wait, left = self._wait(level, node, None)
         frame, age, name = level.innermost, self._age(stack), self._id(stack.thread, "t")
         self._activities[name] = ActivityView(
             name,
             f"thread {stack.thread.name}",
-            _name(self._nodes[0] if self._nodes else None),
+            _name(node),
             holding,
             wait,
             "",
@@ -361,7 +364,8 @@ class _Look:
 
     def _of_lock(self, found: Blocked, level: Level, node: Any, run: Run | None) -> Condition:
         """A lock of the node's that others are inside of."""
-        if not is_only_entered(found.lock, node):
+        users = level.innermost
+        if users is None or users.f_locals.get("self") is not node or not is_only_entered(found.lock, node):
             return FREE
         inside = [
             self._id(other)

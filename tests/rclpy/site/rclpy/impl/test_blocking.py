@@ -58,6 +58,11 @@ class Own:
             yield sys._getframe()
         yield sys._getframe()
 
+    def is_inside_on_one_line(self) -> Any:
+        # fmt: off
+        with self.lock: yield sys._getframe()  # noqa: E701 - that is the case
+        # fmt: on
+
     def takes(self) -> None:
         self.other.acquire()
 
@@ -82,6 +87,11 @@ def test_a_loop_with_more_ends_than_one_waits_for_nothing_known(node: Node, way:
     own = Own()
     found = getattr(own, way)()
     assert wait_of(found if way == "polls" else next(found)).future is None
+
+
+def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
+    """So it is nobody who waits."""
+    assert wait_of(next(Own().is_inside_on_one_line())).lock == ""
 
 
 def test_who_is_inside_a_lock() -> None:
