@@ -52,7 +52,7 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         _become([*before, sys.executable, "-m", "graphflow", *command])
     program = find_program(what, words, Path.cwd())
     if program is not None:
-        _become([sys.executable, "-m", "graphflow.rclpy", *command[1:]])
+        _become([sys.executable, "-P", "-m", "graphflow.rclpy", *command[1:]])
     cls, rest = find_class(what, words)
     try:
         ros = parse_ros_args(rest)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
+from graphflow.graph.executables import without_ros
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
 from graphflow.interface import COMMON_PARAMETERS, EndpointKind, GroupInfo, Interface, may_make
 from graphflow.msgs.base import Message
@@ -21,7 +23,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     """Every problem of a plan, in the order of its file."""
     problems: list[Problem] = []
     for node in plan.nodes:
-        problems += _check_program(node) if node.command else _check_node(node, interfaces)
+        problems += _check_program(node, plan.root) if node.command else _check_node(node, interfaces)
     problems += _check_lifecycle(plan, interfaces)
     problems += _check_optional(plan, interfaces)
     problems += _check_shared_rules(plan, interfaces)
@@ -31,9 +33,15 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     return problems
 
 
-def _check_program(node: PlannedNode) -> Iterator[Problem]:
+def _check_program(node: PlannedNode, root: str) -> Iterator[Problem]:
     program = node.command[0]
-    if shutil.which(program, path=node.env.get("PATH")) is None:
+    if program == "graphflow":
+        return
+    if shutil.which(program, path=node.env.get("PATH")) is not None:
+        return
+    if node.executable:
+        yield Problem(node.class_place, without_ros(node.command[2], Path(root)))
+    else:
         where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
 
@@ -109,6 +117,8 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     """Parameters written for many nodes at once that no node of the graph has."""
     known = set(COMMON_PARAMETERS)
+    if any(node.executable for node in plan.nodes):  # only they know what they have
+        return
     for interface in interfaces.values():
         if isinstance(interface, Problem) or interface.dynamic_names is True:
             return
@@ -125,7 +135,7 @@ def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]
     shared: dict[Place, tuple[str, list[str]]] = {}
     for node in plan.nodes:
         interface = None if node.command else interfaces[node.class_path]
-        if isinstance(interface, Problem):
+        if isinstance(interface, Problem) or node.executable:  # only a program knows what names it has
             return
         for rule in node.remaps if interface is not None else ():
             if rule.is_optional and interface is not None:

@@ -13,7 +13,9 @@ from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
-from graphflow.graph.workspace import find_workspace
+from graphflow.graph.tree import Item
+from graphflow.graph.workspace import Workspace, find_workspace, uses_rclpy
+from graphflow.names import did_you_mean
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
@@ -61,8 +63,59 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     if module is None and package in (root.name, _project_name(root)):
         module = f"nodes.{executable}"
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
-    classes = _classes(file) if file is not None and file.is_file() else []
+    classes = _classes(file) if file is not None and file.is_file() and not uses_rclpy(file) else []
     return Executable(f"{module}:{classes[0]}", executable) if len(classes) == 1 else None
+
+
+def as_class(node: Item, root: Path) -> Item:
+    """A node of a graph file; one whose `pkg` and `exec` are a class that is here has that class instead.
+
+    Args:
+        root: The folder of the project.
+    """
+    package, name = node.entries.get("pkg"), node.entries.get("exec")
+    if package is None or name is None or not isinstance(package.value, str) or not isinstance(name.value, str):
+        return node
+    found = find(package.value, name.value, root)
+    if found is None:
+        return node
+    return node._replace(
+        value={"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").value}
+    )
+
+
+def command_of(package: str, name: str, workspace: Workspace) -> tuple[str, ...]:
+    """The words that run an executable which is no class: of a workspace, or else of a ROS 2.
+
+    Raises:
+        LookupError: The package has none of that name; the text says which it has.
+    """
+    own = workspace.packages.get(package)
+    if own is None:
+        with_us = [known for at, known in EXECUTABLES if at == package]
+        if with_us:
+            near = did_you_mean(name, with_us) or f"; there is {', '.join(with_us)}"
+            raise LookupError(f"graphflow has no executable {name!r} of the package {package!r}{near}")
+        return ("ros2", "run", package, name)
+    known = own.known_as(name)
+    if known is None:
+        near = did_you_mean(name, own.executables) or f"; there is {', '.join(own.executables) or 'none'}"
+        raise LookupError(f"the package {package!r} has no executable {name!r}{near}")
+    fault = own.fault_of(known)
+    if fault is not None:
+        raise LookupError(fault)
+    return ("graphflow", "run", str(own.folder), known)
+
+
+def without_ros(package: str, root: Path) -> str:
+    """What to say of a package that only a ROS 2 may have, where there is none.
+
+    Args:
+        root: The folder of the project.
+    """
+    workspace = find_workspace(root)
+    near = did_you_mean(package, [*workspace.packages, *(known for known, _ in EXECUTABLES)])
+    return f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
 
 
 class Listed(NamedTuple):

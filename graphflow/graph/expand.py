@@ -12,12 +12,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
+from graphflow.graph import executables
 from graphflow.graph.arguments import Arguments
 from graphflow.graph.faults import Problems, example, unknown_key, validated
 from graphflow.graph.model import (
@@ -319,13 +321,15 @@ class Expansion:
         if self._is_left_out(item, scope):
             self.left_out[name] = item.at
             return
+        if name in self.nodes and "keep_names" in item.entries:  # the name is that of the process alone
+            name = next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
         if self._is_taken(name, item, self.nodes, "nodes"):
             return
         item = self._substituted(item.without("if", "unless", "template", "namespace"), scope)
         if own is not None and not isinstance(own.value, str):
             item = item._replace(value={**item.entries, "namespace": own})
         if isinstance(item.value, dict):
-            item = self._with_groups(item, scope)
+            item = self._with_groups(executables.as_class(item, self._outside.root), scope)
         self.nodes[name] = item
         self.written[name] = (key, scope.namespace)
 

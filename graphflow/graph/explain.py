@@ -38,7 +38,7 @@ def names(plan: Plan, interfaces: Interfaces) -> dict[str, list[str]]:
 
 
 def _of_node(node: PlannedNode) -> Iterator[str]:
-    what = f"the program {node.command[0]}" if node.command else f"a node of class {node.class_path}"
+    what = f"the program {node.executable or node.command[0]}" if node.command else f"a node of class {node.class_path}"
     yield f"{what}, named at {node.place}"
     for name, setting in node.params.items():
         yield f"  its parameter {name} is {setting.value!r} ({setting.place})"

@@ -55,7 +55,8 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
     for path, fault in faults:
         if fault["type"] == "missing":
             if not _misspelt(model, str(path[-1]), path[:-1], faults):
-                problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing")
+                others = "; a program has pkg: and exec:, or command:" if path[-1] == "class" else ""
+                problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing{others}")
         elif fault["type"] == "extra_forbidden":
             problems.add(src.key_place(path), unknown_key(str(path[-1]), _known_keys(model, path)))
         elif fault["type"] == "value_error":
@@ -77,7 +78,8 @@ def _written_path(src: Source, fault: Any) -> source.Path:
 def _misspelt(model: type[BaseModel], key: str, above: source.Path, faults: Sequence[tuple[source.Path, Any]]) -> bool:
     """Whether a missing key is in fact there, with a typo that is reported anyway."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
-    return any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
+    of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
+    return of_ros or any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
 
 
 def _known_keys(model: type[BaseModel], path: source.Path) -> list[str]:
@@ -101,9 +103,26 @@ def _is_model(kind: Any) -> bool:
 def unknown_key(key: str, known: Collection[str]) -> str:
     """What to say of a key that is not known, and which was probably meant."""
     head = key.partition(":")[0]
+    ours, why = _OF_ROS.get(key, ("", ""))
+    if ours in known:
+        return f"unknown key {key!r}; {why or f'it is called {ours!r} here'}"
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"
     return f"unknown key {key!r}{did_you_mean(key, known)}"
+
+
+_OF_ROS = {
+    "package": ("pkg", ""),
+    "executable": ("exec", ""),
+    "parameters": ("params", ""),
+    "remappings": ("remap", ""),
+    "arguments": ("args", ""),
+    "respawn": ("restart", "write restart: always"),
+    "respawn_delay": ("restart", "write restart: {policy: always, delay: SECONDS}"),
+    "output": ("pkg", "what any node prints is logged and shown"),
+    "name": ("pkg", "a node is called as its key"),
+}
+"""Words of ROS's launch files in Python for a node: the key that is meant, and what to say other than that."""
 
 
 def _wanted(fault: Any) -> str:
@@ -147,6 +166,7 @@ _EXAMPLES: dict[source.Path, str] = {
     ("nodes", "", "concurrency"): "concurrency: {motion: [control]}",
     ("nodes", "", "concurrency", ""): "motion: [control], or motion: {handlers: [control], limit: 2}",
     ("nodes", "", "command"): "command: [rviz2, -d, robot.rviz]",
+    ("nodes", "", "args"): "args: [--fast, 3]",
     ("nodes", "", "restart"): "restart: on_failure, or restart: {policy: always, delay: 1.0}",
     ("group",): "group: {namespace: robot1, nodes: {talker: {class: nodes.talker:Talker}}}",
     ("for",): "for: {var: i, in: 1..3, nodes: {/talker$(var i): {class: nodes.talker:Talker}}}",

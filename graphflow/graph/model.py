@@ -181,10 +181,15 @@ class _Settings(_Model):
     unless: Condition = None
 
 
-OF_NODES = ("class", "params", "params_file", "remap", "concurrency", "process", "log_level", "lifecycle")
+OF_CLASSES = ("class", "concurrency", "process", "lifecycle")
+"""Keys that only a node with a class can have."""
+OF_NODES = (*OF_CLASSES, "pkg", "exec", "args", "keep_names", "params", "params_file", "remap", "log_level")
 """Keys that a foreign program cannot have."""
 _HELP = {
     "class": "write class: or command:, not both",
+    "pkg": "write pkg: and exec:, or command:, not both",
+    "args": "they stand in the list: command: [PROGRAM, WORD, WORD]",
+    "concurrency": "its code has its callback groups",
     "params": "pass it words: command: [PROGRAM, --ros-args, -p, NAME:=VALUE]",
     "remap": "pass it words: command: [PROGRAM, --ros-args, -r, FROM:=TO]",
 }
@@ -195,6 +200,10 @@ class NodeSpec(_Settings):
 
     class_: Annotated[StrictStr, AfterValidator(_class_path)] = Field(alias="class")
     command: list[StrictStr | StrictInt | StrictFloat] = []
+    pkg: StrictStr = ""
+    exec_: StrictStr = Field("", alias="exec")
+    args: list[StrictStr | StrictInt | StrictFloat] = []
+    keep_names: StrictBool = False
     template: StrictStr = ""
     params_file: StrictStr | list[StrictStr] = []
     process: StrictStr = ""
@@ -206,13 +215,27 @@ class NodeSpec(_Settings):
     @model_validator(mode="before")
     @classmethod
     def _program(cls, data: Any) -> Any:
-        """A program has no class, and none of what only a node can be given."""
-        if not isinstance(data, dict) or data.get("command") is None:
+        """A program has no class, and none of what only a node can be given; one of a package has names and values."""
+        if not isinstance(data, dict):
             return data
-        wrong = [key for key in OF_NODES if data.get(key) is not None]
+        has = {key for key in data if data[key] is not None}
+        if "command" in has:
+            wrong = next((key for key in OF_NODES if key in has), None)
+            data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
+        elif has & {"pkg", "exec"}:
+            if not has >= {"pkg", "exec"}:
+                raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME")
+            if "class" in has:
+                raise ValueError("write class:, or pkg: and exec:, not both")
+            wrong = next((key for key in OF_CLASSES if key in has), None)
+        else:
+            if has & {"args", "keep_names"}:
+                [key, *_] = sorted(has & {"args", "keep_names"})
+                raise ValueError(f"{key}: goes with pkg: and exec:, and this is a node with a class; remove it")
+            return data
         if wrong:
-            raise ValueError(f"{wrong[0]}: is for nodes, and this is a program; {_HELP.get(wrong[0], 'remove it')}")
-        return {**{k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}, "class": NO_CLASS}
+            raise ValueError(f"{wrong}: is for nodes, and this is a program; {_HELP.get(wrong, 'remove it')}")
+        return {**data, "class": NO_CLASS}
 
 
 class StepSpec(_Model):

@@ -81,6 +81,12 @@ class PlannedNode:
     """What differs from the groups the class declares, by group name."""
     command: tuple[str, ...] = ()
     """A foreign program with its words, in place of a class."""
+    executable: str = ""
+    """Package and executable of a program that is passed its name, remaps and parameters as ROS 2's words."""
+    keeps_names: bool = False
+    """Whether the nodes of such a program are called as its code has it."""
+    params_files: tuple[str, ...] = ()
+    """Parameter files that such a program reads itself, since only it knows the names of its nodes."""
     restart: Backoff = BACKOFF
     on_exit: str = "ignore"
     critical: bool = False
@@ -91,6 +97,11 @@ class PlannedNode:
     lifecycle_place: Place = NOWHERE
     is_debugged: bool = False
     """Whether its process waits for a debugger."""
+
+    @property
+    def what(self) -> str:
+        """What it is, for a reader: a class, an executable of a package, or a program and its words."""
+        return self.class_path or self.executable or shlex.join(self.command)
 
     def to_json(self) -> dict[str, Any]:
         """Plain data that `node_from_json` reads back."""
@@ -213,7 +224,7 @@ class Plan:
             yield f"  {name}:={value}"
         for node in self.nodes:
             yield f"{node.name}"
-            yield f"  command  {shlex.join(node.command)}" if node.command else f"  class    {node.class_path}"
+            yield f"  class    {node.class_path}" if node.class_path else f"  command  {shlex.join(node.command)}"
             if node.process:
                 yield f"  process  {node.process}"
             yield from _after_line(node.after)
@@ -223,6 +234,10 @@ class Plan:
                 yield f"  on_exit  {node.on_exit}"
             if node.critical:
                 yield "  critical"
+            if node.keeps_names:
+                yield "  names    as its code has them"
+            for file in node.params_files:
+                yield f"  params   of {file}"
             if node.log_level:
                 yield f"  logs     from {node.log_level}"
             if node.lifecycle:
@@ -259,6 +274,8 @@ _PLAIN = (
     "log_level",
     "lifecycle",
     "is_debugged",
+    "executable",
+    "keeps_names",
 )
 
 
@@ -272,6 +289,7 @@ def node_from_json(data: dict[str, Any]) -> PlannedNode:
         params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
         remaps=tuple(Rule(**{**rule, "place": Place(*rule["place"])}) for rule in data["remaps"]),
         command=tuple(data["command"]),
+        params_files=tuple(data["params_files"]),
         restart=Backoff(**data["restart"]),
         concurrency={name: _group(g) for name, g in data["concurrency"].items()},
     )

@@ -6,15 +6,17 @@ import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 from graphflow.errors import GraphFileError, InvalidName, Place
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file, source
 from graphflow.graph.console import console_section
+from graphflow.graph.executables import command_of
 from graphflow.graph.expand import Expansion
 from graphflow.graph.faults import Problems, example, validated
-from graphflow.graph.model import BLOCKS, FROM_GROUPS, GraphFile, GroupSpec, NodeSpec, RestartSpec
+from graphflow.graph.model import BLOCKS, FROM_GROUPS, NO_CLASS, GraphFile, GroupSpec, NodeSpec, RestartSpec
 from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
@@ -23,6 +25,7 @@ from graphflow.graph.reading import Describe, read
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import Outside, Run
 from graphflow.graph.tree import Item, source_of, tree
+from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Resolver, check_references, did_you_mean, expand, split
@@ -86,7 +89,7 @@ def _resolve(
         problems.raise_any()
     assert model is not None
     files = _ParamsFiles(src, expansion.files, problems)
-    nodes = _nodes(src, model, files, problems)
+    nodes = _nodes(src, model, files, _Programs(src, outside, problems), problems)
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
@@ -109,6 +112,28 @@ def _resolve(
     )
 
 
+class _Programs:
+    """The programs of a graph; its workspace is read once, if any is of a package."""
+
+    def __init__(self, src: Source, outside: Outside, problems: Problems) -> None:
+        self._src, self._outside, self._problems = src, outside, problems
+
+    @cached_property
+    def _workspace(self) -> Workspace:
+        return find_workspace(self._outside.root)
+
+    def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
+        """The words that run a node's program; none for a class."""
+        if not spec.pkg:
+            return tuple(map(str, spec.command))
+        try:
+            command = command_of(spec.pkg, spec.exec_, self._workspace)
+        except LookupError as error:
+            self._problems.add(self._src.place((*at, "exec")), str(error))
+            return ()
+        return (*command, *map(str, spec.args))
+
+
 class _ParamsFiles:
     """The parameter files of a graph; each is read once.
 
@@ -123,10 +148,8 @@ class _ParamsFiles:
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
         """What a node's files have for it, later files first."""
         found: dict[str, Setting] = {}
-        names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
-        for i, name in enumerate(names):
-            place = self._src.place((*at, i))
-            path = self._graph_files[place.file].parent / name
+        for name, place in self._named(spec, at):
+            path = self._path(name, place)
             if path not in self._files:
                 self._files[path] = self._read(path, place)
             sections = self._files[path]
@@ -135,6 +158,21 @@ class _ParamsFiles:
                 self._problems.add(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
             found |= params_file.params_for(sections, node)
         return found
+
+    def checked(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
+        """The files of a program that reads them itself; what they have for which node is its own matter."""
+        found = [(self._path(name, place), place) for name, place in self._named(spec, at)]
+        for path, place in found:
+            if path not in self._files:
+                self._read(path, place)
+        return tuple(str(path) for path, _ in found)
+
+    def _named(self, spec: NodeSpec, at: source.Path) -> list[tuple[str, Place]]:
+        names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
+        return [(name, self._src.place((*at, i))) for i, name in enumerate(names)]
+
+    def _path(self, name: str, place: Place) -> Path:
+        return self._graph_files[place.file].parent / name
 
     def _read(self, path: Path, place: Place) -> list[Section]:
         if not path.is_file():
@@ -153,18 +191,25 @@ class _ParamsFiles:
             self._problems += params_file.strays(sections, nodes)
 
 
-def _nodes(src: Source, model: GraphFile, files: _ParamsFiles, problems: Problems) -> dict[str, PlannedNode]:
+def _nodes(
+    src: Source, model: GraphFile, files: _ParamsFiles, programs: _Programs, problems: Problems
+) -> dict[str, PlannedNode]:
     """The nodes by full name."""
     nodes: dict[str, PlannedNode] = {}
     for name, spec in model.nodes.items():
         base: source.Path = ("nodes", name)
+        reads = files.checked(spec, (*base, "params_file")) if spec.pkg else ()
+        known = {} if spec.pkg else files.params(spec, (*base, "params_file"), name)
         nodes[name] = PlannedNode(
             name=name,
-            class_path="" if spec.command else spec.class_,
-            command=tuple(str(word) for word in spec.command),
+            class_path="" if spec.class_ == NO_CLASS else spec.class_,
+            command=programs.command(spec, base),
+            executable=f"{spec.pkg} {spec.exec_}" if spec.pkg else "",
+            keeps_names=spec.keep_names,
+            params_files=reads,
             place=src.key_place(base),
-            class_place=src.place((*base, "command" if spec.command else "class")),
-            params=files.params(spec, (*base, "params_file"), name) | _params(src, spec, base, problems),
+            class_place=src.place((*base, "command" if spec.command else "pkg" if spec.pkg else "class")),
+            params=known | _params(src, spec, base, problems),
             remaps=_remaps(src, spec, base, name, problems),
             process=spec.process,
             env={k: str(v) for k, v in spec.env.items()},

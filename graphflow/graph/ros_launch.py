@@ -15,7 +15,7 @@ Source: launch and launch_ros, the parsers of their frontends; the design articl
 
 from __future__ import annotations
 
-import json
+import re
 import shlex
 from pathlib import Path
 from typing import Any
@@ -109,8 +109,6 @@ class _Translation:
         self._count: dict[str, int] = {}
         self._numbered: dict[int, str] = {}
         """The names of actions that others come after."""
-        self._shared: list[tuple[str, Item]] = []
-        """What is set for the actions at hand: keys of the groups around them, and their values."""
 
     def file(self, top: Item) -> Item:
         body = self._block(top.entries["launch"].value)
@@ -173,9 +171,7 @@ class _Translation:
             loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
             return item._replace(value={"for": Item(loop, item.place)})
         key, value = self._setting(name, item)
-        self._shared.append((key, value))
         rest = self._block(after)
-        self._shared.pop()
         inner = rest.get("group")
         only = inner is not None and len(rest) == 1 and isinstance(inner.value, dict) and key not in inner.value
         body = inner.value if inner is not None and only else rest
@@ -298,7 +294,7 @@ class _Translation:
             entries["remap"] = Item(rules, item.entries["remap"].place, item.entries["remap"].key)
         self._params(item, entries)
         if found is None:
-            entries = self._program_of_ros(item, package.value, name.value, entries)
+            entries = {**self._program(item, package, name), **entries}
         else:
             self._words(item, entries)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
@@ -309,37 +305,26 @@ class _Translation:
         if "process" in item.entries:  # of a component
             entries["process"] = item.entries["process"]
         entries |= self._common(item)
-        usual = name.value if found is None else found.node_name
+        usual = re.sub(r"\W", "_", name.value.removesuffix(".py")) if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
         self._add_node(body, key, item._replace(value=entries, key=own.place if own is not None else item.key))
 
-    def _program_of_ros(self, item: Item, package: str, name: str, given: dict[str, Item]) -> dict[str, Item]:
-        """A program of the workspace, or one that only ROS has, as the command that runs it."""
-        place = item.entries["exec"].place
-        own_package = find_workspace(self._root).packages.get(package)
-        is_here = own_package is not None and own_package.has(name)
-        if not is_here:
-            self._note(place, f"{package} {name}: no node of that name is here; ros2 runs it, which must be installed")
-        words = ["graphflow" if is_here else "ros2", "run", package, name]
-        words += words_of(item.entries.get("args"))
-        own = [(key, given[key]) for key in ("namespace", "remap", "params") if key in given]
-        around = [*self._shared, *own]  # a group gives a program nothing: it is passed what it would have got
-        rules = {old: new.value for key, value in around if key == "remap" for old, new in value.entries.items()}
-        ros = [f"{old}:={new}" for old, new in rules.items()]
-        ros += [f"__node:={item.entries['name'].value}"] if "name" in item.entries else []
-        namespace = ""
-        for pushed in (str(value.value) for key, value in around if key == "namespace"):
-            namespace = pushed if pushed.startswith("/") else f"{namespace}/{pushed}"
-        ros += [f"__ns:={namespace}"] if namespace else []
-        options = [word for rule in ros for word in ("-r", rule)]
-        values = {k: v.plain() for key, value in around if key == "params" for k, v in value.entries.items()}
-        options += [word for key, value in values.items() for word in ("-p", f"{key}:={json.dumps(value)}")]
-        options += [
-            w for file in given.get("params_file", Item([], place)).value for w in ("--params-file", str(file.value))
-        ]
-        words += ["--ros-args", *options] if options else []
-        kept = {key: given[key] for key in ("namespace",) if key in given}
-        return {"command": Item([Item(word, place) for word in words], place, item.at), **kept}
+    def _program(self, item: Item, package: Item, name: Item) -> dict[str, Item]:
+        """A program of the workspace, or one that only ROS has."""
+        own = find_workspace(self._root).packages.get(package.value)
+        if own is None or own.known_as(name.value) is None:
+            text = f"{package.value} {name.value}: no node of that name is here; ros2 runs it, which must be installed"
+            self._note(name.place, text)
+        entries = {"pkg": package, "exec": name}
+        words, for_ros = (words_of(item.entries.get(key)) for key in ("args", "ros_args"))
+        if for_ros:
+            words += ["--ros-args", *(word for word in for_ros if word != "--ros-args"), "--"]
+        if words:
+            place = item.entries.get("args", item.entries.get("ros_args", name)).place
+            entries["args"] = Item([Item(word, place) for word in words], place, place)
+        if "name" not in item.entries:
+            entries["keep_names"] = Item(True, name.place, name.key)
+        return entries
 
     def _params(self, item: Item, entries: dict[str, Item]) -> None:
         files: list[Item] = []

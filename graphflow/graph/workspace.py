@@ -79,11 +79,13 @@ class Package:
         """What is wrong with its executables."""
         return [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
 
-    def fault_of(self, entry_point: str) -> str | None:
-        """What is wrong with one that is a function: its module is not there."""
-        entry = self.entry_points[entry_point]
+    def fault_of(self, executable: str) -> str | None:
+        """What is wrong with one: the module of its function is not there."""
+        entry = self.entry_points.get(executable)
+        if entry is None:
+            return None
         file, place = self.file_of(entry), self.folder / "setup.py"
-        said = f"{place}: {entry_point} is {entry.module}:{entry.function}, and there is no {file}"
+        said = f"{place}: {executable} is {entry.module}:{entry.function}, and there is no {file}"
         return None if file.is_file() else said
 
     def file_of(self, entry: EntryPoint) -> Path:
@@ -98,10 +100,10 @@ class Package:
         module = ".".join(inside.with_suffix("").parts)
         return module if entry is None else f"{module}:{entry.function}"
 
-    def has(self, executable: str) -> bool:
-        """Whether there is an executable of that name, with or without `.py`."""
-        names = {executable, f"{executable}.py", executable.removesuffix(".py")}
-        return not names.isdisjoint(self.executables)
+    def known_as(self, executable: str) -> str | None:
+        """The name of an executable that is asked for with or without `.py`; None if there is none."""
+        names = (executable, f"{executable}.py", executable.removesuffix(".py"))
+        return next((name for name in names if name in self.entry_points or name in self.programs), None)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ class Program(NamedTuple):
 
 
 def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
-    """The program that is meant by a file, or by a package of the workspace and an executable of it.
+    """The program that is meant by a file, or by a package, its name or its folder, and an executable of it.
 
     Args:
         here: The folder whose workspace counts.
@@ -43,8 +43,11 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     file = here / what
     if what.endswith(".py") and file.is_file():
         return Program(file, None, find_workspace(file), list(words)) if uses_rclpy(file) else None
-    workspace = find_workspace(here)
-    package = workspace.packages.get(what)
+    is_folder = (file / "package.xml").is_file()
+    workspace = find_workspace(file if is_folder else here)
+    packages = workspace.packages
+    named = next((p for p in packages.values() if p.folder == file.resolve()), None) if is_folder else None
+    package = named or packages.get(what)
     if package is None:
         return None
     if not words:
@@ -59,21 +62,19 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}")
     file, entry = found
     is_ours = entry is not None and not uses_rclpy(file) and "graphflow" in file.read_text("utf-8", "replace")
-    return None if is_ours else Program(file, entry, workspace, list(words[1:]))
+    return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
 
 
 def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:
     """The file, and the function, that an executable is; its name with or without `.py`."""
-    for known in (name, f"{name}.py", name.removesuffix(".py")):
-        entry = package.entry_points.get(known)
-        if entry is not None:
-            fault = package.fault_of(known)
-            if fault is not None:
-                raise UsageFault(fault)
-            return package.file_of(entry), entry
-        if known in package.programs:
-            return package.programs[known], None
-    return None
+    known = package.known_as(name)
+    if known is None:
+        return None
+    fault = package.fault_of(known)
+    if fault is not None:
+        raise UsageFault(fault)
+    entry = package.entry_points.get(known)
+    return (package.programs[known], None) if entry is None else (package.file_of(entry), entry)
 
 
 def make_importable(workspace: Workspace) -> bool:

@@ -123,7 +123,7 @@ class Components:
         if process is None:
             near = did_you_mean(container, [*self._processes, *names])
             raise SupervisorError(f"the graph has no process {container!r}{near}")
-        if process.command:
+        if process.is_program:
             raise SupervisorError(f"{container} is a foreign program, into which no node can be loaded")
         return process
 

@@ -62,9 +62,9 @@ class Process:
         self.is_critical = any(node.critical for node in nodes)
 
     @property
-    def command(self) -> tuple[str, ...]:
-        """The program and its words; empty for a worker."""
-        return self.nodes[0].command
+    def is_program(self) -> bool:
+        """Whether it is a foreign program, and no worker."""
+        return bool(self.nodes[0].command)
 
     @property
     def word(self) -> str:
@@ -102,7 +102,7 @@ class Process:
                 "since": self.since,
                 "process": node.process,
                 "number": self.numbers[node.name],
-                "class": node.class_path or " ".join(node.command),
+                "class": node.what,
                 "log": self.log,
                 "restarts": max(0, self.starts - 1),
                 "detail": self.detail,

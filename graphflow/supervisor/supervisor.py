@@ -22,6 +22,7 @@ from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
 from graphflow.supervisor.process import Process
+from graphflow.supervisor.programs import words_of
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
 from graphflow.supervisor.steps import StepRunner
@@ -206,7 +207,7 @@ class Supervisor:
             process.pid = event["pid"]
             if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # asked to before it had a pid
                 self._act(process, Do.TERMINATE)
-            elif process.command:  # nobody knows when a foreign program is ready
+            elif process.is_program:  # nobody knows when a foreign program is ready
                 self._has_become_ready(process, process.name)
         elif what == "ready":
             self._has_become_ready(process, event["node"])
@@ -344,8 +345,8 @@ class Supervisor:
             "allow_control": self.plan.allow_control,
             "debug": process.is_debugged,
         }
-        if process.command:
-            job = {"command": list(process.command)}
+        if process.is_program:
+            job = {"command": words_of(process.nodes[0])}
         process.begin()
         self._tell(event="starting", process=process.name, again=process.starts > 1)
         self._starter.spawn(process.name, job, process.log, env)

@@ -58,8 +58,35 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
     """`clas` is unknown, and `class` was meant by it; a key that is nowhere is missing."""
     assert faults("nodes:\n  a: {clas: x:Y}\n  b: {}") == [
         "2:7: unknown key 'clas'; did you mean 'class'?",
-        "3:3: the key 'class' is missing",
+        "3:3: the key 'class' is missing; a program has pkg: and exec:, or command:",
     ]
+
+
+@pytest.mark.parametrize(
+    ("node", "said"),
+    [
+        (
+            "{package: p, executable: e}",
+            ["unknown key 'package'; it is called 'pkg' here", "unknown key 'executable'; it is called 'exec' here"],
+        ),
+        ("{pkg: p, exec: e, output: screen}", ["unknown key 'output'; what any node prints is logged and shown"]),
+        ("{pkg: p, exec: e, name: n}", ["unknown key 'name'; a node is called as its key"]),
+        ("{class: x:Y, respawn: true}", ["unknown key 'respawn'; write restart: always"]),
+        ("{pkg: p}", ["an executable has both: pkg: PACKAGE and exec: NAME"]),
+        ("{pkg: p, exec: e, class: x:Y}", ["write class:, or pkg: and exec:, not both"]),
+        (
+            "{pkg: p, exec: e, command: [ls]}",
+            ["pkg: is for nodes, and this is a program; write pkg: and exec:, or command:, not both"],
+        ),
+        ("{pkg: p, exec: e, process: x}", ["process: is for nodes, and this is a program; remove it"]),
+        ("{class: x:Y, args: [a]}", ["args: goes with pkg: and exec:, and this is a node with a class; remove it"]),
+    ],
+)
+def test_words_of_ros_launch_files(node: str, said: list[str]) -> None:
+    """What a node is given there is told by the word for it here, and what goes with what."""
+    found = {fault.partition(": ")[2] for fault in faults(f"nodes:\n  a: {node}")}
+    assert found >= set(said)
+    assert not any("missing" in fault for fault in found)
 
 
 def test_a_place_that_is_known_to_be_wrong_is_complained_of_once() -> None:

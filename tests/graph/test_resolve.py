@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
+from graphflow.graph.check import check
 from graphflow.graph.order import find_cycle
 from graphflow.graph.plan import Plan, Rule, Setting
 from graphflow.graph.resolve import load, resolve
@@ -534,3 +536,101 @@ def test_a_process_has_one_environment() -> None:
     with pytest.raises(GraphFileError) as caught:
         resolve(source.read(text, "f.yaml"), Path("/nowhere/f.yaml"))
     assert str(caught.value) == "f.yaml:3:3: X=2 contradicts X=1 of /a, which shares process 'p'"
+
+
+@pytest.fixture
+def lamps(tmp_path: Path) -> Path:
+    """A workspace with a package that has a function, one whose module is gone, and a program as executables."""
+    folder = tmp_path / "src" / "lamp"
+    (folder / "lamp").mkdir(parents=True)
+    (folder / "scripts").mkdir()
+    (folder / "package.xml").write_text("<package><name>lamp</name></package>")
+    (folder / "setup.py").write_text("setup(entry_points={'console_scripts': ['shine = lamp.a:main', 'b = lamp.b:f']})")
+    (folder / "lamp" / "a.py").write_text("import rclpy\n")
+    (folder / "scripts" / "blink.py").write_text("import rclpy\n")
+    (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {level: 2}}\n")
+    return tmp_path
+
+
+def planned(root: Path, text: str) -> Plan:
+    return resolve(source.read(text, "f.yaml"), root / "f.yaml", [], ENV)
+
+
+def test_executables_of_packages(lamps: Path) -> None:
+    """Of the workspace, as the folder it lies in; of graphflow or the project, as the class; of ROS, by `ros2 run`."""
+    found = planned(
+        lamps,
+        """\
+nodes:
+  big: {pkg: lamp, exec: shine, args: [-x, 1], params: {level: 3}, remap: {a: b}, log_level: debug}
+  own: {pkg: lamp, exec: blink, keep_names: true, params_file: p.yaml}
+  sim: {pkg: turtlesim, exec: turtlesim_node}
+  nav: {pkg: nav2, exec: planner}
+""",
+    )
+    big, own, sim, nav = found.nodes
+    folder = str(lamps / "src" / "lamp")
+    assert big.command == ("graphflow", "run", folder, "shine", "-x", "1")
+    assert (big.executable, big.what, big.keeps_names, big.log_level) == ("lamp shine", "lamp shine", False, "debug")
+    assert big.params == {"level": Setting(3, Place("f.yaml", 2, 64))}
+    assert big.remaps == (Rule("a", "b", Place("f.yaml", 2, 76)),)
+    assert own.command == ("graphflow", "run", folder, "blink.py")
+    assert (own.keeps_names, own.params_files, own.params) == (True, (str(lamps / "p.yaml"),), {})
+    assert (sim.class_path, sim.command, sim.executable) == ("nodes.turtlesim:TurtleSim", (), "")
+    assert nav.command == ("ros2", "run", "nav2", "planner")
+    assert Plan.from_json(json.loads(json.dumps(found.to_json()))) == found
+    assert {"  names    as its code has them", f"  params   of {lamps / 'p.yaml'}"} <= set(found.lines())
+
+
+def test_what_groups_give_to_executables(lamps: Path) -> None:
+    """Namespace, parameters, remaps and policies, as to any node; nothing to a foreign program."""
+    found = planned(
+        lamps,
+        "group: {namespace: n, params: {p: 1}, remap: {x: y}, restart: always, nodes: {a: {pkg: lamp, exec: shine, "
+        "params: {q: 2}}, b: {command: [ls]}}}\n",
+    )
+    a, b = found.nodes
+    assert (a.name, {name: s.value for name, s in a.params.items()}) == ("/n/a", {"p": 1, "q": 2})
+    assert ([r.match for r in a.remaps], a.restart.policy) == (["x"], "always")
+    assert (b.name, b.params, b.remaps) == ("/n/b", {}, ())
+
+
+def test_programs_that_keep_their_names(lamps: Path) -> None:
+    """The file's name is only that of the process, so that there may be several of one."""
+    text = "for: {var: i, in: 1..3, nodes: {a: {pkg: lamp, exec: shine, keep_names: true, args: [$(var i)]}}}"
+    assert [node.name for node in planned(lamps, text).nodes] == ["/a", "/a_2", "/a_3"]
+    text = "for: {var: i, in: 1..2, nodes: {a: {pkg: lamp, exec: shine}}}"
+    with pytest.raises(GraphFileError, match="every round of the loop has the same node /a"):
+        planned(lamps, text)
+
+
+@pytest.mark.parametrize(
+    ("node", "said"),
+    [
+        ("{pkg: lamp, exec: shin}", "the package 'lamp' has no executable 'shin'; did you mean 'shine'?"),
+        ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
+        ("{pkg: turtlesim, exec: sim}", "graphflow has no executable 'sim' of the package 'turtlesim'; there is turt"),
+        ("{pkg: lamp, exec: shine, params_file: q.yaml}", "there is no file "),
+        ("{pkg: lamp, exec: shine, remap: {__ns: /x}}", "'__ns' cannot be remapped"),
+    ],
+)
+def test_executables_that_are_not_there(lamps: Path, node: str, said: str) -> None:
+    """It is told before anything starts, with what there is."""
+    with pytest.raises(GraphFileError) as caught:
+        planned(lamps, f"nodes: {{a: {node}}}")
+    [problem] = caught.value.problems
+    assert problem.message.startswith(said.replace("WORKSPACE", str(lamps)))
+
+
+def test_parameters_that_only_a_program_may_have(lamps: Path) -> None:
+    """What groups give to programs of packages cannot be checked, and is not complained of."""
+    text = "group: {params: {p: 1}, remap: {x: y}, nodes: {a: {pkg: lamp, exec: shine}}}\nsteps: {s: {call: /z}}\n"
+    assert check(planned(lamps, text), {}) == []
+
+
+def test_packages_that_only_ros_may_have(lamps: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where there is no ROS 2, the plan can be looked at, but not started."""
+    monkeypatch.setenv("PATH", "/nowhere")
+    [problem] = check(planned(lamps, "nodes: {a: {pkg: lmp, exec: shine}}"), {})
+    said = f"there is no package 'lmp' in {lamps}, and no ROS 2 is sourced; did you mean 'lamp'?"
+    assert (problem.message, str(problem.place)) == (said, "f.yaml:1:18")

@@ -265,15 +265,23 @@ def test_what_has_no_words(action: str, complaint: str) -> None:
 
 
 def test_a_node_that_only_ros_has() -> None:
-    """It is run by ros2, with its names and values as words; the reader of a converted file is told so."""
+    """It is run by ros2; the reader of a converted file is told so."""
     made, complaints, notes = native(
         "launch: [{node: {pkg: nav2, exec: planner, name: p, namespace: n, args: -x 1, remap: [{from: a, to: b}], "
         "param: [{name: rate, value: '2.5'}, {from: f.yaml}], respawn: 'true'}}]\n"
     )
     assert complaints == []
     assert notes == ["nav2 planner: no node of that name is here; ros2 runs it, which must be installed"]
-    words = "ros2 run nav2 planner -x 1 --ros-args -r a:=b -r __node:=p -r __ns:=/n -p rate:=2.5 --params-file f.yaml"
-    assert made["nodes"]["p"] == {"command": words.split(), "namespace": "n", "restart": {"policy": "always"}}
+    assert made["nodes"]["p"] == {
+        "pkg": "nav2",
+        "exec": "planner",
+        "args": ["-x", "1"],
+        "namespace": "n",
+        "remap": {"a": "b"},
+        "params_file": ["f.yaml"],
+        "params": {"rate": 2.5},
+        "restart": {"policy": "always"},
+    }
 
 
 def test_a_program_of_the_workspace(tmp_path: Path) -> None:
@@ -284,24 +292,14 @@ def test_a_program_of_the_workspace(tmp_path: Path) -> None:
     (folder / "scripts" / "shine.py").write_text("import rclpy\n")
     made, complaints, notes = native("launch: [{node: {pkg: lamp, exec: shine.py, name: big}}]", tmp_path)
     assert (complaints, notes) == ([], [])
-    words = "graphflow run lamp shine.py --ros-args -r __node:=big"
-    assert made["nodes"]["big"]["command"] == words.split()
+    assert made["nodes"]["big"] == {"pkg": "lamp", "exec": "shine.py"}
 
 
-def test_what_a_program_of_ros_gets_from_its_groups() -> None:
-    """Nothing of a group reaches a foreign program by itself: it is passed on as words, the node's own last."""
-    made, complaints, _ = native(
-        "launch: [{push_ros_namespace: {namespace: a}}, {set_remap: {from: x, to: y}}, {set_parameter: {name: p, "
-        "value: '1'}}, {group: [{push_ros_namespace: {namespace: b}}, {node: {pkg: nav2, exec: planner, namespace: c, "
-        "remap: [{from: x, to: z}], param: [{name: p, value: '2'}]}}]}, {node: {pkg: nav2, exec: other}}]\n"
-    )
-    assert complaints == []
-    group = made["group"]
-    assert (group["namespace"], group["remap"], group["params"]) == ("a", {"x": "y"}, {"p": 1})
-    words = "ros2 run nav2 planner --ros-args -r x:=z -r __ns:=/a/b/c -p p:=2"
-    assert group["group"]["nodes"]["planner"]["command"] == words.split()
-    words = "ros2 run nav2 other --ros-args -r x:=y -r __ns:=/a -p p:=1"
-    assert group["nodes"]["other"]["command"] == words.split()
+def test_a_program_without_a_name(tmp_path: Path) -> None:
+    """Its nodes are called as its code has it; the file's name for it is one that a node could have."""
+    made, _, _ = native("launch: [{node: {pkg: nav2, exec: a-b.py, ros_args: --ros-args --log-level debug}}]", tmp_path)
+    words = ["--ros-args", "--log-level", "debug", "--"]
+    assert made["nodes"] == {"a_b": {"pkg": "nav2", "exec": "a-b.py", "args": words, "keep_names": True}}
 
 
 def test_a_group_without_a_scope() -> None:

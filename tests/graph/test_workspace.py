@@ -75,7 +75,7 @@ def test_an_executable_has_a_place_in_the_project(tmp_path: Path) -> None:
     found = find_workspace(folder).packages["my_robot"]
     assert found.path_of("talker", tmp_path) == "src.p.my_robot.talker:main"
     assert found.path_of("drive.py", tmp_path) == "src.p.scripts.drive"
-    assert [found.has(name) for name in ("talker", "drive", "drive.py", "dive")] == [True, True, True, False]
+    assert [found.known_as(name) for name in ("talker", "drive", "dive")] == ["talker", "drive.py", None]
 
 
 @pytest.mark.parametrize("inside", ["", "src", "src/group/arm", "src/group/arm/arm/node.py", "build"])

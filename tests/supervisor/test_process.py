@@ -20,9 +20,9 @@ def test_what_its_nodes_say_holds_for_all() -> None:
     """Nodes that share a process have one life: what one of them says of it counts."""
     both = Process("both", [A, B], "both.log")
     assert (both.restarts.backoff.policy, both.is_critical, both.ends_graph) == ("always", True, False)
-    assert both.command == ()
+    assert not both.is_program
     program = Process("/p", [PROGRAM], "p.log")
-    assert (program.restarts.backoff.policy, program.ends_graph, program.command) == ("never", True, ("sleep", "1"))
+    assert (program.restarts.backoff.policy, program.ends_graph, program.is_program) == ("never", True, True)
 
 
 def test_rows() -> None:

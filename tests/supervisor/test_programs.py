@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
+import sys
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
 
+from graphflow.errors import Place
+from graphflow.graph.plan import PlannedNode, Rule, Setting
+from graphflow.runtime.args import parse_ros_args
+from graphflow.supervisor.programs import words_of
 from graphflow.system import is_portable
 from tests.cases import slow, some
 from tests.conftest import Machine, alive
@@ -24,6 +31,53 @@ nodes:
     env: {COLOUR: red}
     after: /a
 """
+
+
+HERE = Place("g.yaml", 1, 1)
+
+
+def executable(name: str, **settings: Any) -> PlannedNode:
+    return PlannedNode(name, "", HERE, HERE, command=("graphflow", "run", "p", "e", "-x"), executable="p e", **settings)
+
+
+@pytest.mark.parametrize(
+    ("node", "words"),
+    [
+        (executable("/a"), ["-r", "__node:=a"]),
+        (executable("/n/m/a"), ["-r", "__node:=a", "-r", "__ns:=/n/m"]),
+        (executable("/n/a", keeps_names=True), ["-r", "__ns:=/n"]),
+        (executable("/a", keeps_names=True, params_files=("f.yaml",)), ["--params-file", "f.yaml"]),
+        (executable("/a", keeps_names=True, log_level="warn"), ["--log-level", "warn"]),
+        (executable("/a", keeps_names=True, remaps=(Rule("x", "/y", HERE),)), ["-r", "x:=/y"]),
+        *(
+            (executable("/a", keeps_names=True, params={"p": Setting(value, HERE)}), ["-p", f"p:={word}"])
+            for value, word in [
+                (3, "3"),
+                (1e-05, "1e-05"),
+                (math.inf, ".inf"),
+                (True, "true"),
+                ("5", "'5'"),
+                ("true", "'true'"),
+                ("a b", "a b"),
+                (["x", "1"], "[x, '1']"),
+                ([0.5, -math.inf], "[0.5, -.inf]"),
+            ]
+        ),
+    ],
+)
+def test_words_of_an_executable(node: PlannedNode, words: list[str]) -> None:
+    """Its own words, then what the graph file gives it, as ROS 2's; values read back as what they are."""
+    program, given = words_of(node)[:4], words_of(node)[4:]
+    assert program == [sys.executable, "-P", "-m", "graphflow.rclpy"]
+    assert given == ["p", "e", "-x", "--ros-args", *words]
+    [(_, _, read, _)] = parse_ros_args(given).params or [(None, "", None, "")]
+    assert [read] == ([setting.value for setting in node.params.values()] or [None])
+
+
+def test_words_of_a_program() -> None:
+    """As they are written, unless it is graphflow itself, which need not be on the PATH."""
+    assert words_of(PlannedNode("/a", "", HERE, HERE, command=("ls", "-l"))) == ["ls", "-l"]
+    assert words_of(PlannedNode("/a", "", HERE, HERE, command=("graphflow", "ps")))[3:] == ["graphflow", "ps"]
 
 
 def pids_of(machine: Machine) -> list[int]:
@@ -83,6 +137,67 @@ def test_killed_processes_are_started_again(machine: Machine, project: Path) -> 
     assert "its last end: signal SIGKILL" in machine.look("status", "/a")
     machine.look("down")
     nothing_is_left(machine, [row["pid"] for row in after.values()])
+
+
+LAMP = """\
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+
+def main():
+    rclpy.init()
+    node = Node("lamp")
+    level = node.declare_parameter("level", 1).value
+    publisher = node.create_publisher(Int32, "light", 10)
+    node.create_timer(0.1, lambda: publisher.publish(Int32(data=level)))
+    node.get_logger().info(f"level {level}")
+    rclpy.spin(node)
+"""
+LAMPS = """\
+group:
+  namespace: room
+  params: {level: 3}
+  nodes:
+    big: {pkg: lamp, exec: lamp, remap: {light: /sun}, restart: {policy: always, delay: 0.05}}
+    as_coded: {pkg: lamp, exec: lamp, keep_names: true}
+"""
+
+
+LAUNCHED = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node, PushRosNamespace, SetParameter
+
+
+def generate_launch_description():
+    big = Node(package="lamp", executable="lamp", name="big", remappings=[("light", "/sun")], respawn=True)
+    as_coded = Node(package="lamp", executable="lamp")
+    return LaunchDescription([PushRosNamespace("room"), SetParameter("level", 3), big, as_coded])
+"""
+
+
+@pytest.mark.parametrize("start", some(["graph file", "launch file"], "graph file"))
+def test_an_executable_of_a_package_is_a_node(machine: Machine, project: Path, start: str) -> None:
+    """It has its name, namespace, remaps and parameters, is logged, asked for parameters, and started again."""
+    package = project / "src" / "lamp"
+    (package / "lamp").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>lamp</name></package>")
+    (package / "setup.py").write_text("setup(entry_points={'console_scripts': ['lamp = lamp.node:main']})")
+    (package / "lamp" / "node.py").write_text(LAMP)
+    (project / "lamps.launch.py").write_text(LAUNCHED)
+    machine.run("up", "-d", write(project, LAMPS) if start == "graph file" else "lamps.launch.py", cwd=project)
+    both = ["/room/big", "/room/lamp"]
+    machine.until(lambda: machine.look("node", "list").split() == both, "both are there")
+    assert "data: 3" in machine.look("topic", "echo", "/sun", "std_msgs/msg/Int32", "--once")
+    assert machine.look("param", "get", "/room/lamp", "level") == "Integer value is: 3\n"
+    assert "[room.lamp]: level 3" in machine.look("logs", next(n for n in rows(machine) if n != "/room/big"))
+    pid = rows(machine)["/room/big"]["pid"]
+    os.kill(pid, signal.SIGKILL)
+    machine.until(lambda: rows(machine)["/room/big"]["restarts"] == 1, "it is started again")
+    assert "data: 3" in machine.look("topic", "echo", "/sun", "std_msgs/msg/Int32", "--once")
+    pids = pids_of(machine)
+    machine.look("down")
+    nothing_is_left(machine, pids)
 
 
 def test_a_program_that_cannot_be_started(machine: Machine, project: Path) -> None:

@@ -1,0 +1,38 @@
+"""The words that start a program of a graph, and with which one of a package gets its name, remaps and parameters."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+
+from graphflow.graph.plan import PlannedNode
+from graphflow.introspect.echo import flow
+from graphflow.names import split
+
+
+def words_of(node: PlannedNode) -> list[str]:
+    """The program of a planned node that has no class, and its words."""
+    match node.command:
+        case "graphflow", "run", *words if node.executable:
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", *words]
+        case "graphflow", *words:  # this one, whether or not it is on the PATH
+            command = [sys.executable, "-P", "-m", "graphflow", *words]
+        case words:
+            command = list(words)
+    return [*command, *(_ros_args(node) if node.executable else ())]
+
+
+def _ros_args(node: PlannedNode) -> Iterator[str]:
+    namespace, name = split(node.name)
+    rules = [f"{rule.match}:={rule.replacement}" for rule in node.remaps]
+    rules += [] if node.keeps_names else [f"__node:={name}"]
+    rules += [f"__ns:={namespace}"] if namespace != "/" else []
+    yield "--ros-args"
+    for rule in rules:
+        yield from ("-r", rule)
+    for file in node.params_files:
+        yield from ("--params-file", file)
+    for parameter, setting in node.params.items():
+        yield from ("-p", f"{parameter}:={flow(setting.value)}")
+    if node.log_level:
+        yield from ("--log-level", node.log_level)
