@@ -121,16 +121,23 @@ def packages(only: str | None, as_json: bool) -> None:
 @interface.command()
 @click.option("--output", "-o", "folder", default="typings", show_default=True, help="Folder, in the project.")
 def stubs(folder: str) -> int:
-    """Write what editors and type checkers read about the project's own types. Repeat when a definition changes."""
+    """Write what editors and type checkers read about the types of a project or workspace. Repeat when one changes."""
     from graphflow.graph.project import project_root, shown
+    from graphflow.graph.workspace import find_workspace
     from graphflow.msgs import registry
     from graphflow.msgs import stubs as writer
+    from graphflow.rclpy.stubs import stubs as ros_stubs
 
     root = project_root(Path.cwd())
     use_project()
     files = writer.project_stubs(root / "interfaces", root / folder)
+    workspace = find_workspace(Path.cwd())
+    for package, folder_of_package in workspace.interfaces.items():
+        registry.add_package(package, folder_of_package)
+    files |= ros_stubs(workspace.interfaces, (workspace.root if workspace.interfaces else root) / folder)
     if not files:
-        raise UsageFault(f"{root / 'interfaces'} has no PACKAGE/msg, PACKAGE/srv or PACKAGE/action with definitions")
+        where = f"{root / 'interfaces'} has no PACKAGE/msg, PACKAGE/srv or PACKAGE/action with definitions"
+        raise UsageFault(f"{where}, and no package of a workspace is here")
     try:
         writer.write(files)
     except OSError as error:

@@ -24,12 +24,9 @@ class Arguments:
 
     def __init__(self, given: Sequence[str], problems: Problems) -> None:
         self._problems = problems
-        self._given: dict[str, str] = {}
+        self._given = given_values(given)
         for word in given:
-            name, arrow, text = word.partition(":=")
-            if arrow and name:
-                self._given[name] = text
-            else:
+            if ":=" not in word or word.startswith(":="):
                 problems.add(COMMAND_LINE, f"{word!r}: an argument is written name:=value")
         self.values: dict[str, Any] = {}
         """By name, of those that the command line may set."""
@@ -104,6 +101,12 @@ class Arguments:
             shown = ", ".join(map(str, choices))
             self._problems.add(spec.at, f"argument {name!r} is {value!r}, but must be one of {shown}")
         return value
+
+
+def given_values(words: Sequence[str]) -> dict[str, str]:
+    """What words of the command line, `name:=value`, give to which argument."""
+    pairs = (word.partition(":=") for word in words)
+    return {name: text for name, arrow, text in pairs if arrow and name}
 
 
 def _read(text: str, settings: Mapping[str, Item]) -> Any:

@@ -168,7 +168,7 @@ class Expansion:
         if path.resolve() in scope.files:
             self._problems.add(file.place, f"{model.file} includes itself")
             return scope
-        top = self._read(path, file.place)
+        top = self._read(path, file.place, {**scope.values, **model.args})
         if top is None:
             return scope
         before = set(self.nodes)
@@ -185,7 +185,7 @@ class Expansion:
             self._override(self._substituted(change, scope), set(self.nodes) - before, scope)
         return replace(scope, templates={**templates, **scope.templates})
 
-    def _read(self, path: Path, place: Place) -> Item | None:
+    def _read(self, path: Path, place: Place, values: Mapping[str, Any]) -> Item | None:
         if not path.is_file():
             stems = {file.stem: file.name for file in path.parent.glob("*.yaml")}
             found = stems.get(nearest(path.stem, stems) or "")
@@ -193,7 +193,7 @@ class Expansion:
             raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
-        top = read(path, shown(path), self._problems.add, describe=self._outside.describe)
+        top = read(path, shown(path), self._problems.add, describe=self._outside.describe, values=values)
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None

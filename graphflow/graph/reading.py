@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,18 @@ from graphflow.graph.ros_commands import Complain
 from graphflow.graph.ros_launch import ignore
 from graphflow.graph.tree import Item, tree
 
-Describe = Callable[[Path, str], dict[str, Any]]
-"""Runs a launch file in Python and returns what it describes; the second argument is the file as messages show it."""
+Describe = Callable[[Path, str, Mapping[str, Any] | None], dict[str, Any]]
+"""Runs a launch file in Python and returns what it describes: the file, as messages show it, and its arguments."""
 
 
-def read(path: Path, name: str, complain: Complain, note: Complain = ignore, describe: Describe | None = None) -> Item:
+def read(
+    path: Path,
+    name: str,
+    complain: Complain,
+    note: Complain = ignore,
+    describe: Describe | None = None,
+    values: Mapping[str, Any] | None = None,
+) -> Item:
     """A graph file, or a launch file in YAML, XML or Python.
 
     Args:
@@ -25,6 +32,7 @@ def read(path: Path, name: str, complain: Complain, note: Complain = ignore, des
         complain: Called with what a launch file says that a graph file cannot.
         note: Called with what the reader of a converted launch file should know of.
         describe: For those in Python.
+        values: The arguments that such a file is about to be started with; None if it is only to be written down.
 
     Raises:
         GraphFileError: It cannot be read; why, and where.
@@ -33,7 +41,7 @@ def read(path: Path, name: str, complain: Complain, note: Complain = ignore, des
         if describe is None:
             text = f"a launch file in Python is converted first: graphflow launch convert {name} -o {path.stem}.yaml"
             raise GraphFileError([Problem(Place(name), text)])
-        told = describe(path, name)
+        told = describe(path, name, values)
         for problem in told["problems"]:
             complain(Place(name, problem["line"], 1), problem["message"])
         return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note)

@@ -12,6 +12,7 @@ from pathlib import Path
 from graphflow.errors import GraphFileError, InvalidName, Place
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file, source
+from graphflow.graph.arguments import given_values
 from graphflow.graph.console import console_section
 from graphflow.graph.executables import command_of
 from graphflow.graph.expand import Expansion
@@ -52,7 +53,7 @@ def load(
         GraphFileError: Every mistake that could be found.
     """
     problems = Problems()
-    top = read(path, shown(path), problems.add, describe=describe)
+    top = read(path, shown(path), problems.add, describe=describe, values=given_values(given))
     return _resolve(top, path, given, env, problems, run=run, describe=describe)
 
 

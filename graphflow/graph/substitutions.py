@@ -44,7 +44,7 @@ class Outside(NamedTuple):
     """The folder of the logs."""
     run: Run | None = None
     """What `$(command ...)` is carried out by; it stays as it is written without."""
-    describe: Callable[[Path, str], dict[str, Any]] | None = None
+    describe: Callable[[Path, str, Mapping[str, Any] | None], dict[str, Any]] | None = None
     """What launch files in Python are run by."""
 
 

@@ -13,7 +13,10 @@ SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "site")
 """The folder of what is imported under ROS's names."""
 FILE = "graphflow-rclpy.pth"
 """What `enable` writes where Python looks for installed packages; Python runs the line each time that it starts."""
+TYPINGS = "graphflow-rclpy"
+"""The folder beside it with what editors read of messages."""
 LINES = f"""{SITE}
+{TYPINGS}
 import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.enabling").rclpy.enabling.here()
 """
 
@@ -28,7 +31,7 @@ def elsewhere() -> str | None:
 def here() -> bool:
     """Let this process import rclpy, and messages under ROS's names; whether it is graphflow's that it imports."""
     if elsewhere() is not None:
-        sys.path[:] = [entry for entry in sys.path if entry != SITE]
+        sys.path[:] = [entry for entry in sys.path if entry not in (SITE, typings())]
         return False
     if SITE not in sys.path:
         sys.path.append(SITE)
@@ -45,6 +48,11 @@ def file() -> str:
     return os.path.join(sysconfig.get_path("purelib"), FILE)
 
 
+def typings() -> str:
+    """The folder that `enable` writes for editors."""
+    return os.path.join(os.path.dirname(file()), TYPINGS)
+
+
 def is_enabled() -> bool:
     """Whether Python itself imports rclpy."""
     return os.path.isfile(file())
@@ -52,7 +60,14 @@ def is_enabled() -> bool:
 
 def enable() -> str:
     """Let this Python import rclpy from now on; returns the file that does it. Raises OSError if that fails."""
+    from pathlib import Path
+
+    from graphflow.msgs import registry
+    from graphflow.msgs.stubs import write
+    from graphflow.rclpy.stubs import stubs
+
     path = file()
+    write(stubs(registry.packages(), Path(typings())))
     with open(path, "w", encoding="utf-8") as opened:
         opened.write(LINES)
     return path
@@ -60,8 +75,11 @@ def enable() -> str:
 
 def disable() -> bool:
     """Take that back; whether there was anything to take back. Raises OSError if that is not possible."""
-    try:
+    import shutil
+
+    was_enabled = is_enabled()
+    if was_enabled:
         os.remove(file())
-    except FileNotFoundError:
-        return False
-    return True
+    if os.path.isdir(typings()):
+        shutil.rmtree(typings())
+    return was_enabled

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +15,18 @@ PYTHON_LIMIT = 20.0
 """Seconds that a launch file may take to describe itself."""
 
 
-def described(file: Path, name: str) -> dict[str, Any]:
+def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
     """What a launch file says: its `actions`, and `problems` with what the stand-ins do not know. It is run.
 
     Args:
         name: The file as messages show it.
+        values: The arguments that it is about to be started with; None if it is only to be written down.
 
     Raises:
         GraphFileError: It failed, or took too long.
     """
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    command += [] if values is None else [json.dumps(values)]
     try:
         ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
     except subprocess.TimeoutExpired:

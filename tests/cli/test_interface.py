@@ -143,6 +143,21 @@ def test_stubs_of_a_project(mylab: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert [f.name for f in (mylab / "typings/graphflow/msgs").iterdir()] == ["mylab_interfaces"]
 
 
+def test_stubs_of_a_workspace(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Under the names that ROS's code imports them by, in the workspace."""
+    package = tmp_path / "src" / "lamp_interfaces"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>lamp_interfaces</name></package>")
+    (package / "msg" / "Light.msg").write_text("geometry_msgs/Point[] at\nint32 level\n")
+    monkeypatch.chdir(package)
+    assert stubs() == exits.OK
+    file = tmp_path / "typings" / "lamp_interfaces" / "msg" / "__init__.pyi"
+    assert str(file) in capsys.readouterr().out
+    assert "    def at(self) -> list[geometry_msgs.msg.Point]: ...\n" in file.read_text()
+
+
 def test_stubs_where_there_is_nothing_to_describe(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], show: Show
 ) -> None:

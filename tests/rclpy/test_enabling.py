@@ -45,6 +45,8 @@ def test_a_virtual_environment_has_it_from_enable_to_disable(tmp_path: Path) -> 
     made = run("from graphflow.rclpy import enabling; print(enabling.enable(), enabling.is_enabled())").stdout.split()
     assert made == [str(folder / enabling.FILE), "True"]
     assert run(use).stdout == "std_msgs.msg.String(data='a')\n"
+    assert (folder / enabling.TYPINGS / "std_msgs" / "msg" / "__init__.pyi").is_file()
     undo = "from graphflow.rclpy import enabling; print(enabling.disable(), enabling.disable())"
     assert run(undo).stdout == "True False\n"
+    assert not (folder / enabling.TYPINGS).exists()
     assert "No module named 'rclpy'" in run(use).stderr

@@ -18,7 +18,7 @@ def test_what_it_describes(tmp_path: Path) -> None:
         "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
         "def generate_launch_description():\n    return LaunchDescription([Node(package='a', executable='b')])\n"
     )
-    told = described(file, "a.launch.py")
+    told = described(file, "a.launch.py", {})
     assert told["problems"] == []
     assert told["actions"] == [{"node": {"line": 4, "pkg": "a", "exec": "b"}}]
 
@@ -36,4 +36,4 @@ def test_what_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, 
     file = tmp_path / "a.launch.py"
     file.write_text(text)
     with pytest.raises(GraphFileError, match=why):
-        described(file, "a.launch.py")
+        described(file, "a.launch.py", {})

@@ -16,9 +16,10 @@ pytestmark = pytest.mark.real
 ROBOT = PROGRAMS / "launch" / "robot.launch.py"
 
 
-def record(file: Path) -> Any:
-    """What a file describes, and what has no words, as lines."""
+def record(file: Path, **values: Any) -> Any:
+    """What a file describes, and what has no words, as lines; with values when it is about to be started."""
     command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    command += [json.dumps(values)] if values else []
     ran = subprocess.run(command, capture_output=True, timeout=30, check=True)
     return json.loads(ran.stdout)
 
@@ -177,3 +178,60 @@ def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> 
     (problem,) = record(tmp_path / "a.launch.py")["problems"]
     assert problem["line"] == line
     assert problem["message"].startswith(message)
+
+
+STARTED = """
+import os
+from ament_index_python.packages import get_package_share_directory, get_package_share_path
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+from robot.parts import wheels
+
+who, far = LaunchConfiguration("who"), LaunchConfiguration("far")
+
+def several(context, what):
+    made = [Node(package="p", executable=what, name=f"{who.perform(context)}{i}") for i in range(wheels)]
+    if IfCondition(far).evaluate(context):
+        path = PathJoinSubstitution([FindPackageShare("robot"), who])
+        made.append(Node(package="p", executable=path.perform(context)))
+    return [*made, Node(package="p", executable=context.launch_configurations["where"])]
+
+def generate_launch_description():
+    share = get_package_share_directory("robot")
+    with open(os.path.join(share, "urdf", "robot.urdf")) as file:
+        urdf = file.read()
+    same = (get_package_share_path("robot") / "urdf" / "robot.urdf").read_text() == urdf
+    return LaunchDescription([
+        DeclareLaunchArgument("who", default_value="leo"),
+        DeclareLaunchArgument("where", default_value=["at_", who]),
+        OpaqueFunction(function=several, args=["drive"]),
+        Node(package=get_package_share_directory("elsewhere"), executable="e", parameters=[{"urdf": urdf, "ok": same}]),
+    ])
+"""
+
+
+def test_a_file_that_is_about_to_be_started(tmp_path: Path) -> None:
+    """Its packages are where they are, it may import from them, and its functions are told what they ask for."""
+    robot = tmp_path / "src" / "robot"
+    for folder in ("robot", "urdf", "launch"):
+        (robot / folder).mkdir(parents=True)
+    (robot / "package.xml").write_text("<package><name>robot</name></package>")
+    (robot / "robot" / "parts.py").write_text("wheels = 2\n")
+    (robot / "urdf" / "robot.urdf").write_text("<robot/>")
+    file = robot / "launch" / "a.launch.py"
+    file.write_text(STARTED)
+    told = record(file, far=True, who="don")
+    assert told["problems"] == []
+    nodes = [action["node"] for action in told["actions"] if "node" in action]
+    assert [node.get("name", node["exec"]) for node in nodes] == ["don0", "don1", f"{robot}/don", "at_don", "e"]
+    assert nodes[-1]["pkg"] == "$(find-pkg-share elsewhere)"
+    assert [param["value"] for param in nodes[-1]["param"]] == ["<robot/>", True]
+    (problem,) = record(file, who="don")["problems"]
+    assert (problem["line"], problem["message"].startswith("SubstitutionError: there is no argument 'far'")) == (
+        16,
+        True,
+    )

@@ -1,0 +1,213 @@
+"""What stand-ins for ROS's launch packages were called with, as actions of ROS's YAML dialect, each with its line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
+
+_numbers: dict[int, int] = {}
+"""Numbers of actions that others come after."""
+_ending: set[int] = set()
+"""Actions with whose end everything ends."""
+
+
+def actions(said: Any) -> list[dict[str, Any]]:
+    """What was described, as actions of the YAML dialect."""
+    if isinstance(said, (list, tuple)):
+        return [action for one in said for action in actions(one)]
+    if said is None:
+        return []
+    if not isinstance(said, Said):
+        RECORDING.problems.append({"line": 1, "message": f"{said!r} is no action"})
+        return []
+    name, attributes = _action(said)
+    if name == "":
+        return list(attributes)
+    attributes |= {
+        "line": said.line,
+        **(condition(given) if isinstance(given := said.kwargs.get("condition"), Said) else {}),
+    }
+    if id(said) in _numbers:
+        attributes["number"] = _numbers[id(said)]
+    if id(said) in _ending:
+        attributes["on_exit"] = "shutdown"
+    return [{name: attributes}]
+
+
+def _action(said: Said) -> tuple[str, Any]:
+    get = said.get
+    match said.name:
+        case "LaunchDescription" | "ReplaceEnvironmentVariables":
+            return "", actions(get("initial_entities", 0, []))
+        case "DeclareLaunchArgument":
+            found: dict[str, Any] = {"name": text(get("name", 0)), "description": text(get("description", default=""))}
+            if get("default_value") is not None:
+                found["default"] = text(get("default_value"))
+            if get("choices"):
+                found["choice"] = [{"value": text(choice)} for choice in get("choices")]
+            return "arg", found
+        case "SetLaunchConfiguration":
+            return "let", {"name": text(get("name", 0)), "value": text(get("value", 1))}
+        case "SetEnvironmentVariable":
+            return "set_env", {"name": text(get("name", 0)), "value": text(get("value", 1))}
+        case "AppendEnvironmentVariable":
+            found = {"name": text(get("name", 0)), "value": text(get("value", 1))}
+            return "append_env", {**found, "prepend": str(get("prepend", 2, default=False))}
+        case "SetParameter":
+            return "set_parameter", {"name": text(get("name", 0)), "value": plain(get("value", 1))}
+        case "SetRemap":
+            return "set_remap", {"from": text(get("src", 0)), "to": text(get("dst", 1))}
+        case "SetUseSimTime":
+            return "set_use_sim_time", {"value": plain(get("value", 0))}
+        case "PushRosNamespace" | "PushROSNamespace":
+            return "push_ros_namespace", {"namespace": text(get("namespace", 0))}
+        case "GroupAction":
+            return "group", {"children": actions(get("actions", 0, [])), "scoped": bool(get("scoped", default=True))}
+        case "TimerAction":
+            return "timer", {"period": plain(get("period")), "children": actions(get("actions", default=[]))}
+        case "IncludeLaunchDescription":
+            arguments = dict(get("launch_arguments", default=None) or {})
+            pairs = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
+            return "include", {"file": text(get("launch_description_source", 0)), "arg": pairs}
+        case "LogInfo" | "UnregisterEventHandler":
+            return "log", {"message": text(get("msg", default=""))}
+        case "OpaqueFunction":
+            return "", actions(_called(said))
+        case "RegisterEventHandler":
+            return "", _handled(said)
+        case "Node" | "LifecycleNode":
+            found = {"autostart": "true"} if get("autostart") is True else {}
+            return "node", {**_node(said), **found}
+        case "ComposableNodeContainer":
+            for key in sorted(_OF_PROCESSES & {key for key, value in said.kwargs.items() if value}):
+                RECORDING.problem(said, f"{key}: its container is a process that nodes share; write it at the nodes")
+            return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
+        case "LoadComposableNodes":
+            target = get("target_container")
+            name = text(target.get("name") if isinstance(target, Said) else target)
+            return "load_composable_node", {"target": name, "composable_node": _components(said)}
+        case "ExecuteProcess" | "ExecuteLocal":
+            first, *rest = get("cmd", 0, [""])
+            if isinstance(first, Said) and first.name == "ExecutableInPackage":  # a node, by another way
+                found = {"pkg": text(first.get("package", 1)), "exec": text(first.get("executable", 0))}
+                return "node", {**_common(said), **found, "args": [text(word) for word in rest]}
+            return "executable", _process(said)
+    RECORDING.problem(said, f"{said.name} has no words in a graph file")
+    return "", []
+
+
+def _called(said: Said) -> Any:
+    function = said.get("function", 0)
+    if RECORDING.values is None:
+        text = "OpaqueFunction: it was called once, with $(var ...) in place of each value; look what it made"
+        RECORDING.problem(said, text)
+    found = function(Context(), *(said.get("args", default=None) or []), **(said.get("kwargs", default=None) or {}))
+    number_targets(found)
+    return found
+
+
+def _handled(said: Said) -> list[dict[str, Any]]:
+    """Actions that begin when a process has started or ended."""
+    handler = said.get("event_handler", 0)
+    names = {"OnProcessExit": ("on_exit", "exited"), "OnProcessStart": ("on_start", "ready")}
+    if not isinstance(handler, Said) or handler.name not in names:
+        RECORDING.problem(said, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
+        return []
+    key, what = names[handler.name]
+    target, then = handler.get("target_action"), handler.get(key)
+    if not isinstance(target, Said) or (callable(then) and not isinstance(then, Said)):
+        RECORDING.problem(said, f"{handler.name}: only for one process, with a list of actions")
+        return []
+    then = [one for one in (then if isinstance(then, list) else [then]) if not _is_shutdown(one)]
+    number = _numbers.setdefault(id(target), len(_numbers) + 1)
+    found = actions(then)
+    for action in found:
+        for attributes in action.values():
+            attributes["after_number"], attributes["after_what"] = number, what
+    return found
+
+
+def _common(said: Said) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key in ("name", "namespace", "cwd", "respawn", "respawn_delay", "respawn_max_retries", "shell"):
+        if said.get(key) is not None:
+            found[key] = text(said.get(key))
+    variables = {**(said.get("env") or {}), **(said.get("additional_env") or {})}
+    if variables:
+        found["env"] = [{"name": text(key), "value": text(value)} for key, value in variables.items()]
+    on_exit = said.get("on_exit")
+    if on_exit is not None:
+        if isinstance(on_exit, Said) and on_exit.name in ("Shutdown", "EmitEvent"):
+            found["on_exit"] = "shutdown"
+        else:
+            RECORDING.problem(said, "on_exit: only Shutdown() has words in a graph file")
+    return found
+
+
+def _process(said: Said) -> dict[str, Any]:
+    return {**_common(said), "cmd": [text(word) for word in said.get("cmd", 0, [])]}
+
+
+def _node(said: Said) -> dict[str, Any]:
+    found = {**_common(said), "pkg": text(said.get("package")), "exec": text(said.get("executable"))}
+    for key, ours in (("arguments", "args"), ("ros_arguments", "ros_args")):
+        if said.get(key):
+            found[ours] = [text(word) for word in said.get(key)]
+    if said.get("remappings"):
+        found["remap"] = [{"from": text(old), "to": text(new)} for old, new in said.get("remappings")]
+    params: list[dict[str, Any]] = []
+    for given in said.get("parameters") or []:
+        if isinstance(given, dict):
+            params += [_parameter(key, value) for key, value in given.items()]
+        else:
+            params.append({"from": text(given)})
+    if params:
+        found["param"] = params
+    return found
+
+
+_OF_PROCESSES = {
+    "respawn",
+    "parameters",
+    "remappings",
+    "env",
+    "additional_env",
+    "on_exit",
+    "ros_arguments",
+    "arguments",
+}
+"""What a container may be given that its nodes here must be given."""
+
+
+def _components(said: Said) -> list[dict[str, Any]]:
+    described = said.get("composable_node_descriptions") or []
+    nodes = [one for one in described if isinstance(one, Said)]
+    return [
+        {**{k: v for k, v in _node(one).items() if k != "exec"}, "plugin": text(one.get("plugin"))} for one in nodes
+    ]
+
+
+def _parameter(name: Any, value: Any) -> dict[str, Any]:
+    if isinstance(value, dict):
+        return {"name": text(name), "param": [_parameter(key, inner) for key, inner in value.items()]}
+    is_text = isinstance(value, str) and "$(" not in value
+    return {"name": text(name), "value": plain(value), **({"type": "str"} if is_text else {})}
+
+
+def _is_shutdown(said: Any) -> bool:
+    return isinstance(said, Said) and said.name in ("EmitEvent", "Shutdown")
+
+
+def number_targets(said: Any) -> None:
+    """Number the actions that event handlers wait for, before they are written down."""
+    if isinstance(said, (list, tuple)):
+        for one in said:
+            number_targets(one)
+    elif isinstance(said, Said):
+        if said.name in ("OnProcessExit", "OnProcessStart") and isinstance(target := said.get("target_action"), Said):
+            _numbers.setdefault(id(target), len(_numbers) + 1)
+            then = said.get("on_exit")
+            if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
+                _ending.add(id(target))
+        number_targets([*said.args, *said.kwargs.values()])

@@ -1,0 +1,313 @@
+"""Stand-ins for ROS's launch packages, which remember what they are called with, and with which line.
+
+They have the names of `launch`, `launch_ros` and `ament_index_python`. Substitutions become their texts, `$(var x)`; so
+a value that only a running launch would know stays a text, unless a function asks for it (`perform`) when the file is
+about to be started.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import sys
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from graphflow.folders import newest_logs
+from graphflow.graph.executables import package_prefix, package_share
+from graphflow.graph.project import project_root
+from graphflow.graph.substitutions import Outside, Substitutions, truth
+from graphflow.supervisor.printed import printed
+
+PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
+"""The packages that there are stand-ins for."""
+
+
+class Recording:
+    """One launch file, and what is known of it while it is run."""
+
+    def __init__(self) -> None:
+        self.file = ""
+        """Its path, as its frames name it."""
+        self.values: dict[str, str] | None = None
+        """The arguments that it is to be started with; None if it is only written down."""
+        self.defaults: dict[str, str] = {}
+        """Those of the arguments that have been declared so far."""
+        self.problems: list[dict[str, Any]] = []
+        """What has no words in a graph file, each with its `line` and a `message`."""
+
+    def problem(self, said: Said, message: str) -> None:
+        """Add one."""
+        self.problems.append({"line": said.line, "message": message})
+
+    def line(self) -> int:
+        """The line of the file that is being carried out."""
+        frame = sys._getframe(1)
+        while frame is not None and frame.f_code.co_filename != self.file:
+            frame = frame.f_back  # type: ignore[assignment]
+        return frame.f_lineno if frame is not None else 1
+
+    def known(self, text: str) -> str:
+        """A text with its substitutions made, if the file is to be started.
+
+        Raises:
+            SubstitutionError: A substitution cannot be made.
+        """
+        return text if self.values is None else self._made(text, self.arguments())
+
+    def arguments(self) -> dict[str, str]:
+        """The values of arguments that are known: what is given, and defaults."""
+        found = dict(self.values or {})
+        for name, default in self.defaults.items():
+            if name not in found:
+                found[name] = self._made(default, found)
+        return found
+
+    def _made(self, text: str, values: Mapping[str, str]) -> str:
+        file = Path(self.file)
+        outside = Outside(os.environ, project_root(file), newest_logs(file.name.removesuffix(".launch.py")), printed)
+        return as_text(Substitutions(values, file, outside).apply(text))
+
+    def folder(self, what: str, package: str) -> str:
+        """The `share` folder or `prefix` of a package; where that is not known, the substitution for it."""
+        find = package_prefix if what == "prefix" else package_share
+        found = None if self.values is None else find(package, project_root(Path(self.file)), os.environ)
+        return f"$(find-pkg-{what} {package})" if found is None else str(found)
+
+
+RECORDING = Recording()
+"""A process runs one launch file."""
+
+
+def as_text(value: Any) -> str:
+    """A value as launch configurations have it: they are all texts."""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+class Context:
+    """What an `OpaqueFunction` is called with."""
+
+    @property
+    def launch_configurations(self) -> dict[str, str]:
+        """The values of arguments."""
+        return RECORDING.arguments()
+
+    def perform_substitution(self, value: Any) -> str:
+        """A value with its substitutions made."""
+        return RECORDING.known(text(value))
+
+
+class Said:
+    """A call of one of the stand-ins."""
+
+    name = ""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        self.args, self.kwargs, self.line = args, kwargs, RECORDING.line()
+        default = self.get("default_value")
+        if self.name == "DeclareLaunchArgument" and default is not None:
+            RECORDING.defaults[text(self.get("name", 0))] = text(default)
+
+    def get(self, key: str, place: int = -1, default: Any = None) -> Any:
+        """An argument by its name, or by its place among those without."""
+        if key in self.kwargs:
+            return self.kwargs[key]
+        return self.args[place] if 0 <= place < len(self.args) else default
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return lambda *_, **__: None
+
+    def add_action(self, action: Any) -> None:
+        """As a LaunchDescription has it."""
+        self.__dict__.setdefault("added", []).append(action)
+
+    def find(self, package: Any = None) -> str:
+        """As a FindPackageShare has it."""
+        return RECORDING.folder("share", text(package))
+
+    def perform(self, context: Any = None) -> str:
+        """As a substitution has it."""
+        return RECORDING.known(text(self))
+
+    def evaluate(self, context: Any = None) -> bool:
+        """As a condition has it."""
+        ((word, said),) = condition(self).items()
+        return truth(RECORDING.known(said)) is (word == "if")
+
+    def __str__(self) -> str:
+        return text(self)
+
+    def __add__(self, other: Any) -> str:
+        return text(self) + text(other)
+
+    def __radd__(self, other: Any) -> str:
+        return text(other) + text(self)
+
+    def __fspath__(self) -> str:
+        return text(self)
+
+
+class LaunchService(Said):
+    """What starts a description from a program; here that is a command's to do."""
+
+    name = "LaunchService"
+
+    def run(self, *_: Any, **__: Any) -> int:
+        """Start it. Raises NotImplementedError."""
+        raise NotImplementedError("LaunchService: start a file by `graphflow launch FILE.launch.py`")
+
+    run_async = run
+
+
+def text(value: Any) -> str:
+    """A value with its substitutions, as launch files in YAML have it."""
+    if isinstance(value, (list, tuple)):
+        return "".join(map(text, value))
+    if not isinstance(value, Said):
+        return str(value)
+    first = value.args[0] if value.args else next(iter(value.kwargs.values()), "")
+    match value.name:
+        case "LaunchConfiguration":
+            return f"$(var {text(first)})"
+        case "EnvironmentVariable":
+            default = value.get("default_value", 1)
+            return f"$(env {text(first)}{'' if default is None else f' {text(default)}'})"
+        case "FindPackageShare" | "FindPackagePrefix":
+            return f"$(find-pkg-{value.name[11:].lower()} {text(first)})"
+        case "ExecutableInPackage":
+            return f"$(exec-in-pkg {text(value.get('executable', 0))} {text(value.get('package', 1))})"
+        case "PathJoinSubstitution":
+            return "/".join(text(part).strip("/") if i else text(part) for i, part in enumerate(first))
+        case "PythonExpression":
+            return f"$(eval {text(first)})"
+        case "ThisLaunchFileDir":
+            return "$(dirname)"
+        case "ThisLaunchFile":
+            return "$(filename)"
+        case "LaunchLogDir" | "LogDir":
+            return "$(log_dir)"
+        case "Parameter":
+            return f"$(param {text(first)})"
+        case "IfElseSubstitution":
+            return f"$(if {' '.join(map(_quoted, (*value.args, *value.kwargs.values())))})"
+        case "AnySubstitution" | "AllSubstitution":
+            return f"$({value.name[:3].lower()} {' '.join(map(_quoted, value.args))})"
+        case "Command":
+            on_stderr = value.get("on_stderr", 1)
+            return f"$(command {_quoted(first)}{'' if on_stderr is None else f' {text(on_stderr)}'})"
+        case "FileContent":
+            return f"$(file-content {text(first)})"
+        case "FindExecutable":
+            return f"$(find-exec {text(first)})"
+        case "AnonName":
+            return f"$(anon {text(first)})"
+        case "NotSubstitution":
+            return f"$(not {text(first)})"
+        case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
+            word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.name[:-12]]
+            return f"$({word} {' '.join(map(_quoted, value.args))})"
+        case "TextSubstitution" | "ParameterValue" | "ParameterFile" | "PythonLaunchDescriptionSource":
+            return text(first)
+        case name if name.endswith("LaunchDescriptionSource"):
+            return text(first)
+    RECORDING.problem(value, f"{value.name} has no words in a graph file")
+    return ""
+
+
+def _quoted(value: Any) -> str:
+    return shlex.quote(text(value))
+
+
+def condition(said: Said) -> dict[str, str]:
+    """A condition, as the attribute that actions of the YAML dialect have for it."""
+    words = {"IfCondition": "if", "UnlessCondition": "unless"}
+    if said.name in words:
+        return {words[said.name]: text(said.args[0] if said.args else "")}
+    if said.name in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
+        word = "equals" if said.name.endswith("nEquals") else "not-equals"
+        variable, value = said.args
+        return {"if": f"$({word} $(var {text(variable)}) {text(value)})"}
+    RECORDING.problem(said, f"{said.name} has no words in a graph file")
+    return {}
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON has it: numbers stay numbers."""
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, (list, tuple)):
+        return text(value) if any(isinstance(part, Said) for part in value) else [plain(part) for part in value]
+    return text(value)
+
+
+_SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
+_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages"}
+
+
+class _StandIn(ModuleType):
+    """A module that has whatever is asked for."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        made = _made(self.__name__, name)
+        setattr(self, name, made)
+        return made
+
+
+def _made(module: str, name: str) -> Any:
+    """What a module of ROS's launch packages has under a name."""
+    if name in _SUBMODULES:  # also for those who have only imported `launch`
+        return import_module(f"{module}.{name}")
+    if name == "LaunchService":
+        return LaunchService
+    return _class(name) if name[:1].isupper() else _function(name)
+
+
+@cache
+def _class(name: str) -> type[Said]:
+    return type(name, (Said,), {"name": name})
+
+
+def stand_in(package: str) -> Callable[[str], Any]:
+    """The `__getattr__` of a package outside of launch files, whose modules can be imported from now on."""
+    if not any(isinstance(finder, StandIns) for finder in sys.meta_path):
+        sys.meta_path.append(StandIns())
+
+    def get(name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return _made(package, name)
+
+    return get
+
+
+def _function(name: str) -> Any:
+    what = "prefix" if name.endswith("prefix") else "share"
+    if name in ("get_package_share_directory", "get_package_prefix"):
+        return lambda package, *_: RECORDING.folder(what, package)
+    if name in ("get_package_share_path", "get_package_prefix_path"):
+        return lambda package, *_: Path(RECORDING.folder(what, package))
+    return lambda *_, **__: None
+
+
+class StandIns(MetaPathFinder, Loader):
+    """Finds a stand-in for every module of ROS's launch packages."""
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        return ModuleSpec(name, self, is_package=True) if name.partition(".")[0] in PACKAGES else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        return _StandIn(spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing is in it before it is asked for."""

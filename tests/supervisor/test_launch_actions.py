@@ -1,0 +1,54 @@
+"""What stand-ins were called with, as actions of ROS's YAML dialect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from graphflow.supervisor.launch_actions import actions, number_targets
+from graphflow.supervisor.launch_stand_ins import RECORDING, Said
+
+
+@pytest.fixture(autouse=True)
+def problems() -> Iterator[list[dict[str, Any]]]:
+    """What has no words, of this test alone."""
+    RECORDING.problems = []
+    yield RECORDING.problems
+    RECORDING.problems = []
+
+
+def said(name: str, *args: Any, **kwargs: Any) -> Said:
+    made: Said = type(name, (Said,), {"name": name})(*args, **kwargs)
+    made.line = 7
+    return made
+
+
+def test_an_action_and_its_condition() -> None:
+    """Its attributes are texts; a condition is one of them."""
+    var = said("LaunchConfiguration", "x")
+    node = said("Node", package="p", executable=["e_", var], condition=said("UnlessCondition", var))
+    assert actions([None, [node]]) == [{"node": {"pkg": "p", "exec": "e_$(var x)", "line": 7, "unless": "$(var x)"}}]
+
+
+def test_what_comes_after_what() -> None:
+    """Actions of an event handler know the number of the process, which must be given before."""
+    first = said("ExecuteProcess", cmd=["ls"])
+    then = [said("LogInfo", msg="over"), said("Shutdown")]
+    whole = [first, said("RegisterEventHandler", said("OnProcessExit", target_action=first, on_exit=then))]
+    number_targets(whole)
+    ls, log = actions(whole)
+    number = ls["executable"]["number"]
+    assert ls["executable"]["on_exit"] == "shutdown"
+    assert (log["log"]["after_number"], log["log"]["after_what"]) == (number, "exited")
+
+
+def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
+    """It is a problem, with its line if there is one."""
+    assert actions(3) == []
+    actions([said("PushMatrix")])
+    assert problems == [
+        {"line": 1, "message": "3 is no action"},
+        {"line": 7, "message": "PushMatrix has no words in a graph file"},
+    ]

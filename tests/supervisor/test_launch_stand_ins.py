@@ -1,0 +1,73 @@
+"""Stand-ins for ROS's launch packages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph.substitutions import SubstitutionError
+from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, StandIns, as_text, plain, text
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_known() -> Iterator[None]:
+    """What a file is about to be started with is forgotten."""
+    yield
+    RECORDING.values, RECORDING.defaults = None, {}
+
+
+def said(name: str, *args: object, **kwargs: object) -> Said:
+    made: Said = type(name, (Said,), {"name": name})(*args, **kwargs)
+    return made
+
+
+def test_substitutions_are_texts() -> None:
+    """Also where they are put together by hand."""
+    x = said("LaunchConfiguration", "x")
+    assert text(["a", x, 3]) == "a$(var x)3"
+    assert ("a" + x, x + "b", f"{x}") == ("a$(var x)", "$(var x)b", "$(var x)")
+    assert text(said("PathJoinSubstitution", [said("FindPackageShare", "p"), "a/", x])) == (
+        "$(find-pkg-share p)/a/$(var x)"
+    )
+    assert [plain(value) for value in (3, [1.5, True], [x], x)] == [3, [1.5, True], "$(var x)", "$(var x)"]
+
+
+def test_values_are_known_when_a_file_is_started() -> None:
+    """What is given, then defaults; otherwise texts stay as they are."""
+    x, y = said("LaunchConfiguration", "x"), said("LaunchConfiguration", "y")
+    said("DeclareLaunchArgument", "x", default_value="3")
+    said("DeclareLaunchArgument", "y", default_value=["y of ", x])
+    assert x.perform(Context()) == "$(var x)"
+    RECORDING.values = {}
+    assert (x.perform(Context()), y.perform(Context())) == ("3", "y of 3")
+    RECORDING.values = {"x": "4"}
+    assert Context().launch_configurations == {"x": "4", "y": "y of 4"}
+    assert Context().perform_substitution(["", y]) == "y of 4"
+    assert said("IfCondition", said("PythonExpression", [x, " > 3"])).evaluate(Context())
+    assert not said("UnlessCondition", "true").evaluate(Context())
+    assert said("LaunchConfigurationEquals", "x", "4").evaluate(Context())
+    with pytest.raises(SubstitutionError, match="there is no argument 'z'"):
+        said("LaunchConfiguration", "z").perform(Context())
+    assert [as_text(value) for value in ("True", True, 2.5)] == ["True", "true", "2.5"]
+
+
+def test_modules_are_found_by_name() -> None:
+    """Those of ROS's launch packages, and no others."""
+    finder = StandIns()
+    spec = finder.find_spec("launch_ros.actions")
+    assert spec is not None
+    module = finder.create_module(spec)
+    assert module.Node(package="p").kwargs == {"package": "p"}
+    assert (finder.find_spec("launcher"), finder.find_spec("json")) == (None, None)
+
+
+def test_folders_of_packages(tmp_path: Path) -> None:
+    """As substitutions; as they are where the file is about to be started."""
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    RECORDING.file = str(tmp_path / "a.launch.py")
+    share = said("FindPackageShare", "robot")
+    assert share.find("robot") == "$(find-pkg-share robot)"
+    RECORDING.values = {}
+    assert (share.find("robot"), share.perform()) == (str(tmp_path), str(tmp_path))
