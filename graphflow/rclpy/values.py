@@ -31,13 +31,14 @@ SEQUENCE_CODES = {
     "uint64": "Q",
 }
 """Numbers whose sequences are kept as `array.array`, with its codes, and whose fixed arrays as numpy's."""
-_WORDS = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet", "char": "uint8"}
+WORDS = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet", "char": "uint8"}
+"""What rosidl calls some basic types."""
 _FLOAT32 = 3.402823466e38
 
 
 def rosidl_type(type_: FieldType) -> str:
     """A field's type in rosidl's words: `sequence<double, 3>`."""
-    base = _WORDS.get(type_.base, type_.base.replace("/msg/", "/"))
+    base = WORDS.get(type_.base, type_.base.replace("/msg/", "/"))
     if type_.string_bound:
         base = f"{base}<{type_.string_bound}>"
     match type_.array:
