@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
+from graphflow.graph.source import scalar
 from graphflow.names import did_you_mean
 
 MAX_DEPTH = 20
@@ -106,12 +107,14 @@ class Substitutions:
         return function(self, rest.strip())
 
     def _var(self, text: str) -> Any:
-        words = text.split()
-        if len(words) != 1:
-            raise SubstitutionError("write $(var NAME)")
-        name, *parts = words[0].split(".")
-        if words[0] in self._args:
-            name, parts = words[0], []
+        word, _, default = text.strip().partition(" ")
+        if not word:
+            raise SubstitutionError("write $(var NAME), or $(var NAME DEFAULT)")
+        name, *parts = word.split(".")
+        if word in self._args:
+            name, parts = word, []
+        if name not in self._args and default:
+            return _default(default.strip())
         if name not in self._args:
             help_ = did_you_mean(name, self._args) or "; declare it under args:"
             raise SubstitutionError(f"there is no argument {name!r}{help_}")
@@ -119,7 +122,7 @@ class Substitutions:
         for part in parts:
             if not isinstance(value, dict) or part not in value:
                 near = did_you_mean(part, value) if isinstance(value, dict) else ""
-                raise SubstitutionError(f"$(var {words[0]}): {name!r} has no {part!r}{near}")
+                raise SubstitutionError(f"$(var {word}): {name!r} has no {part!r}{near}")
             value = value[part]
         return value
 
@@ -222,6 +225,14 @@ class Substitutions:
     def _chosen(self, text: str) -> str:
         condition, yes, *no = _words(text, (2, 3), "if CONDITION A B")
         return yes if truth(condition) else "".join(no)
+
+
+def _default(text: str) -> Any:
+    """What stands behind a name: text in quotes, or a value as YAML has it."""
+    try:
+        return "".join(shlex.split(text)) if text[:1] in ("'", '"') else scalar(text)
+    except ValueError:  # a quotation that does not end, or a number that is none
+        return text
 
 
 def _closing(text: str, start: int) -> int:

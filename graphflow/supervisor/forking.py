@@ -32,7 +32,7 @@ class ForkingStarter:
         self._lines: list[Lines] = []
         self._workers: dict[int, tuple[str, int]] = {}
         """Living workers by process id: the name of each, and the descriptor that tells its end."""
-        self._programs: set[str] = set()
+        self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
         self._heard: Heard
         self._lost: Callable[[str], None]
@@ -131,14 +131,14 @@ class ForkingStarter:
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         if "command" in job:
-            self._programs.add(process)
+            self._programs[process] = signal.Signals[job["signal"]]
         self._lines[0].send(do="spawn", process=process, job=job, log=log, env=env)
 
     def tell(self, process: str, order: dict[str, Any]) -> None:
         self._lines[0].send(do="tell", process=process, order=order)
 
     def terminate(self, process: str, pid: int) -> None:
-        family.kill_group(pid, signal.SIGTERM)
+        family.kill_group(pid, self._programs.get(process, signal.SIGTERM))
 
     def kill(self, process: str, pid: int) -> None:
         family.kill_group(pid, signal.SIGKILL)

@@ -177,7 +177,8 @@ def text(value: Any) -> str:
     first = value.args[0] if value.args else next(iter(value.kwargs.values()), "")
     match value.name:
         case "LaunchConfiguration":
-            return f"$(var {text(first)})"
+            default = value.get("default", 1)
+            return f"$(var {text(first)}{'' if default is None else f' {_quoted(default)}'})"
         case "EnvironmentVariable":
             default = value.get("default_value", 1)
             return f"$(env {text(first)}{'' if default is None else f' {text(default)}'})"

@@ -22,6 +22,11 @@ def words_of(node: PlannedNode) -> list[str]:
     return [*command, *(_ros_args(node) if node.executable else ())]
 
 
+def signal_of(node: PlannedNode) -> str:
+    """The signal that asks such a program to end; those of ROS 2 expect what Ctrl-C sends."""
+    return "SIGINT" if node.executable else "SIGTERM"
+
+
 def _ros_args(node: PlannedNode) -> Iterator[str]:
     namespace, name = split(node.name)
     rules = [f"{rule.match}:={rule.replacement}" for rule in node.remaps]

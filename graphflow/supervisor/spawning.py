@@ -13,6 +13,7 @@ import json
 import logging
 import os
 import secrets
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -46,7 +47,7 @@ class SpawningStarter:
         self._voices: dict[str, asyncio.StreamWriter] = {}
         self._silent: dict[str, asyncio.Event] = {}
         """Set when a worker's connection has ended."""
-        self._programs: set[str] = set()
+        self._programs: dict[str, signal.Signals] = {}
         """Processes that are foreign programs."""
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
@@ -84,7 +85,8 @@ class SpawningStarter:
 
     def spawn(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
         self._silent[process] = asyncio.Event()
-        self._programs.update([process] if "command" in job else [])
+        if "command" in job:
+            self._programs[process] = signal.SIGTERM if os.name == "nt" else signal.Signals[job["signal"]]
         self._workers[process] = asyncio.create_task(self._live(process, job, log, env), name=process)
 
     async def _live(self, process: str, job: dict[str, Any], log: str, env: dict[str, str]) -> None:
@@ -136,7 +138,7 @@ class SpawningStarter:
         if voice is not None:
             voice.write(b'{"do": "stop"}\n')
         elif process in self._programs:
-            self._processes[process].terminate()
+            self._processes[process].send_signal(self._programs[process])
         else:  # it is not yet able to hear
             self.kill(process, pid)
 

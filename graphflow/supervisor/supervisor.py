@@ -22,7 +22,7 @@ from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
 from graphflow.supervisor.process import Process
-from graphflow.supervisor.programs import words_of
+from graphflow.supervisor.programs import signal_of, words_of
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.starter import Starter
 from graphflow.supervisor.steps import StepRunner
@@ -346,7 +346,7 @@ class Supervisor:
             "debug": process.is_debugged,
         }
         if process.is_program:
-            job = {"command": words_of(process.nodes[0])}
+            job = {"command": words_of(process.nodes[0]), "signal": signal_of(process.nodes[0])}
         process.begin()
         self._tell(event="starting", process=process.name, again=process.starts > 1)
         self._starter.spawn(process.name, job, process.log, env)

@@ -65,6 +65,12 @@ def test_what_has_no_substitution_stays(value: Any) -> None:
         ("x$(if 0 a)", "x"),
         ("$(command 'xacro $(var name).urdf' warn)", "$(command 'xacro turtle2.urdf' warn)"),
         ("$(var $(var which))", "turtle2"),
+        ("$(var name leo)", "turtle2"),
+        ("$(var nobody leo)", "leo"),
+        ("$(var nobody 2.5)", 2.5),
+        ("$(var nobody '2.5')", "2.5"),
+        ("$(var nobody 'a b')", "a b"),
+        ("$(var nobody $(var name))s", "turtle2s"),
         ("$(var $(env ARG))", 2.5),
         ("$(env NOBODY $(var name))", "turtle2"),
         ("$(env NOBODY a$(var $(var which))b)", "aturtle2b"),
@@ -117,8 +123,7 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
     ("text", "message"),
     [
         ("$(var nme)", "there is no argument 'nme'; did you mean 'name'?"),
-        ("$(var)", "write $(var NAME)"),
-        ("$(var a b)", "write $(var NAME)"),
+        ("$(var)", "write $(var NAME), or $(var NAME DEFAULT)"),
         ("$(env)", "write $(env NAME) or $(env NAME default)"),
         ("$(env NOBODY)", "the environment variable NOBODY is not set; give a default: $(env NAME default)"),
         ("$(dirname x)", "write $(dirname)"),
@@ -146,7 +151,6 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
         ("$()", "unknown substitution ''"),
         ("a $(var name", "'$(var name' has no closing )"),
         ("$(env NOBODY $(var name)", "has no closing )"),
-        ("$(var $(env TWO))", "write $(var NAME)"),
     ],
 )
 def test_what_cannot_be_substituted(text: str, message: str) -> None:

@@ -54,7 +54,7 @@ def test_what_is_recorded() -> None:
         "param": [
             {"name": "background_r", "value": 10},
             {"name": "name", "value": "5", "type": "str"},
-            {"name": "gain", "value": "$(var speed)"},
+            {"name": "gain", "value": "$(var speed 1.0)"},
             {"name": "list", "value": [1.0, 2.0]},
             {"name": "n", "param": [{"name": "a", "value": True}]},
             {"from": "$(find-pkg-share robot)/config/params.yaml"},
@@ -69,7 +69,7 @@ def test_what_is_recorded() -> None:
     assert found[8]["children"][0]["node"]["args"] == ["-d", "$(find-pkg-share robot)/rviz/a.rviz"]
     assert (found[9]["period"], found[9]["children"][0]["node"]["respawn"]) == (5.0, "True")
     assert found[10]["file"] == "$(find-pkg-share robot)/launch/b.launch.py"
-    assert found[10]["arg"] == [{"name": "speed", "value": "$(var speed)"}]
+    assert found[10]["arg"] == [{"name": "speed", "value": "$(var speed 1.0)"}]
     assert found[10]["if"] == "$(equals $(var who) don)"
     assert found[11]["name"] == "$(var who)"
 

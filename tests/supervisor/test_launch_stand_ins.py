@@ -27,6 +27,7 @@ def test_substitutions_are_texts() -> None:
     """Also where they are put together by hand."""
     x = said("LaunchConfiguration", "x")
     assert text(["a", x, 3]) == "a$(var x)3"
+    assert text(said("LaunchConfiguration", "x", default="a b")) == "$(var x 'a b')"
     assert ("a" + x, x + "b", f"{x}") == ("a$(var x)", "$(var x)b", "$(var x)")
     assert text(said("PathJoinSubstitution", [said("FindPackageShare", "p"), "a/", x])) == (
         "$(find-pkg-share p)/a/$(var x)"

@@ -182,12 +182,17 @@ class Rate:
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._timer, self._context = timer, context
         self._sleepers: dict[Wake, None] = {}
+        self._has_ticked = False
+        """Whether the timer has called and nobody has slept since: the next sleep is over at once."""
+        self._lock = threading.Lock()
         self._is_destroyed = False
         timer.callback = self._tick
 
     def _tick(self) -> None:
-        for sleeper in list(self._sleepers):
-            sleeper.set()
+        with self._lock:
+            self._has_ticked = True
+            for sleeper in self._sleepers:
+                sleeper.set()
 
     def destroy(self) -> None:
         """End all sleeps. `Node.destroy_rate` is what to call."""
@@ -196,7 +201,7 @@ class Rate:
         self._tick()
 
     def sleep(self) -> None:
-        """Block until the timer has called.
+        """Block until the timer has called, or not at all if it has since the last sleep.
 
         Raises:
             ROSInterruptException: The context was shut down.
@@ -209,13 +214,18 @@ class Rate:
         if self._timer.is_canceled():
             raise TimerCancelledError("the timer of the rate was cancelled")
         wake = Wake()
-        self._sleepers[wake] = None
+        with self._lock:
+            self._sleepers[wake] = None
+            if self._has_ticked:
+                wake.set()
         life.on_end(wake)
         try:
             wake.wait()
         finally:
             life.forget(wake)
-            self._sleepers.pop(wake, None)
+            with self._lock:
+                del self._sleepers[wake]
+                self._has_ticked &= bool(self._sleepers)
         if not life.is_ok:
             raise ROSInterruptException
 

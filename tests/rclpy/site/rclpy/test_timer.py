@@ -104,6 +104,18 @@ def test_a_rate_lets_its_thread_go_on_once_a_period(node: Node, spin: Spinner) -
         node.create_rate(0.0)
 
 
+def test_a_rate_whose_time_has_come_does_not_sleep(node: Node) -> None:
+    """What has passed since the last sleep counts, so that a thread may spin and sleep in turn."""
+    rate = node.create_rate(100.0)
+    for _ in range(3):
+        rclpy.spin_once(node, timeout_sec=10)
+        rate.sleep()
+    rclpy.spin_once(node, timeout_sec=10)
+    rclpy.spin_once(node, timeout_sec=10)
+    rate.sleep()
+    assert not rate._has_ticked
+
+
 def test_a_rate_is_cut_off_by_the_end_of_the_context(node: Node) -> None:
     """By an error that says so."""
     rate = node.create_rate(0.001)

@@ -20,11 +20,17 @@ _MESSAGES = (
 _GROUP = {"rclpy.callback_groups": ("CallbackGroup",)}
 _QOS = {"rclpy.qos": ("QoSProfile",)}
 _EVENTS = {"rclpy.event_handler": ("PublisherEventCallbacks", "SubscriptionEventCallbacks")}
+_SERVICE = {
+    "rclpy.service_introspection": ("ServiceIntrospectionState",),
+    "rclpy.type_support": ("SrvType", "SrvTypeRequest", "SrvTypeResponse"),
+}
+_MESSAGE = {"rclpy.event_handler": ("EventHandler", "PublisherEventCallbacks", "SubscriptionEventCallbacks")}
+_MESSAGE_TYPE = {"rclpy.type_support": ("MsgType",)}
 _NODE: dict[str, tuple[str, ...]] = {"rclpy.node": ("Node",)}
 PASSED: dict[str, dict[str, tuple[str, ...]]] = {
     "action.client": {"action_msgs.srv": ("CancelGoal",), "unique_identifier_msgs.msg": ("UUID",)},
     "action.server": {"action_msgs.msg": ("GoalInfo",)},
-    "client": {"rclpy.clock": ("Clock",), "rclpy.context": ("Context",), **_GROUP, **_QOS},
+    "client": {"rclpy.clock": ("Clock",), "rclpy.context": ("Context",), **_SERVICE, **_GROUP, **_QOS},
     "event_handler": {"rclpy.logging": ("get_logger",), "rclpy.waitable": ("NumberOfEntities",), **_GROUP},
     "executors": {
         "concurrent.futures": ("ThreadPoolExecutor",),
@@ -55,14 +61,19 @@ PASSED: dict[str, dict[str, tuple[str, ...]]] = {
         "rclpy.time_source": ("TimeSource",),
         "rclpy.timer": ("TimerInfo",),
         "rclpy.topic_endpoint_info": ("TopicEndpointInfo",),
+        "rclpy.type_support": ("MsgType", "SrvType", "SrvTypeRequest", "SrvTypeResponse"),
         "rclpy.validate_parameter_name": ("validate_parameter_name",),
         "rclpy.waitable": ("Waitable",),
     },
     "parameter": {"rcl_interfaces.msg": ("ParameterType", "ParameterValue")},
     "parameter_client": {
         "rcl_interfaces.msg": ("ParameterEvent",),
-        "rcl_interfaces.srv": ("GetParameters", "ListParameters", "SetParameters", "SetParametersAtomically"),
+        "rcl_interfaces.srv": (
+            *("DescribeParameters", "GetParameterTypes", "GetParameters", "ListParameters", "SetParameters"),
+            "SetParametersAtomically",
+        ),
         **_NODE,
+        **_GROUP,
     },
     "parameter_event_handler": {
         "rcl_interfaces.msg": ("ParameterEvent",),
@@ -70,10 +81,10 @@ PASSED: dict[str, dict[str, tuple[str, ...]]] = {
         **_NODE,
         **_GROUP,
     },
-    "publisher": {**_GROUP, **_QOS, **_EVENTS},
+    "publisher": {**_GROUP, **_QOS, **_MESSAGE, **_MESSAGE_TYPE},
     "qos_overriding_options": {"rcl_interfaces.msg": ("ParameterDescriptor", "SetParametersResult")},
-    "service": {"rclpy.clock": ("Clock",), **_GROUP, **_QOS},
-    "subscription": {**_GROUP, **_QOS, **_EVENTS},
+    "service": {"rclpy.clock": ("Clock",), **_SERVICE, **_GROUP, **_QOS},
+    "subscription": {**_GROUP, **_QOS, **_MESSAGE, **_MESSAGE_TYPE},
     "time_source": {"rcl_interfaces.msg": ("SetParametersResult",)},
     "timer": {"rclpy.clock": ("ClockType",), "rclpy.context": ("Context",)},
     "wait_for_message": _NODE,
