@@ -161,6 +161,7 @@ class Machine:
             patch.object(sys, "argv", ["graphflow", *words]),
             patch.object(registry, "_roots", list(registry._roots)),
             patch.object(registry, "_packages", dict(registry._packages)),
+            patch.object(registry, "_later", list(registry._later)),
             chdir(cwd),
             redirect_stdout(text),
             redirect_stderr(text),

@@ -114,8 +114,8 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
         output.as_json({"problems": [], "deadlocks": deadlocks})
         return exits.FAILED if certain else exits.OK
-    for way in ways:
-        output.talk(str(way))
+    for text in (*resolved.remarks, *ways):
+        output.talk(str(text))
     possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
     told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
     more = f"no mistakes, {', '.join(told)}" if told else "no problems"

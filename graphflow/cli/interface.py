@@ -132,8 +132,6 @@ def stubs(folder: str) -> int:
     use_project()
     files = writer.project_stubs(root / "interfaces", root / folder)
     workspace = find_workspace(Path.cwd())
-    for package, folder_of_package in workspace.interfaces.items():
-        registry.add_package(package, folder_of_package)
     files |= ros_stubs(workspace.interfaces, (workspace.root if workspace.interfaces else root) / folder)
     if not files:
         where = f"{root / 'interfaces'} has no PACKAGE/msg, PACKAGE/srv or PACKAGE/action with definitions"

@@ -86,6 +86,7 @@ def convert(file: Path, target: Path | None) -> int:
 
     Exit code 0: all of it is there; 1: something is not.
     """
+    from graphflow.graph.model import FROM_LAUNCH
     from graphflow.graph.project import shown
     from graphflow.graph.reading import read
     from graphflow.supervisor.launch_python import described
@@ -98,7 +99,7 @@ def convert(file: Path, target: Path | None) -> int:
     if target is not None and target.exists():
         raise UsageFault(f"{target} is there already; remove it, or name another file")
     top = read(file, shown(file), complain, complain, described)
-    text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top)}"
+    text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top.without(FROM_LAUNCH))}"
     if target is None:
         output.lines(text.rstrip("\n").split("\n"))
     else:

@@ -50,8 +50,8 @@ class Arguments:
         for name, item in fixed.items():
             if name not in specs:
                 help_ = did_you_mean(name, specs) or "; it declares none of that name under args:"
-                self._problems.add(item.at, f"the included file has no argument {name!r}{help_}")
-        found = dict(outer)
+                self._problems.add_unless_ros(item.at, f"the included file has no argument {name!r}{help_}")
+        found = {**outer, **{name: item.plain() for name, item in fixed.items() if name not in specs}}
         for name, spec in specs.items():
             if name in fixed:
                 found[name] = self._checked(name, fixed[name].plain(), spec, fixed[name].place)

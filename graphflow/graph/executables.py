@@ -13,13 +13,16 @@ from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
+from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
-from graphflow.graph.workspace import Workspace, find_workspace, uses_rclpy
+from graphflow.graph.workspace import Package, Workspace, find_workspace, uses_rclpy
 from graphflow.names import did_you_mean
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
     ("turtlesim", "turtle_teleop_key"): "nodes.turtle_teleop:TurtleTeleop",
+    ("turtlesim", "mimic"): "nodes.mimic:Mimic",
+    ("turtlesim", "draw_square"): "nodes.draw_square:DrawSquare",
     ("demo_nodes_cpp", "talker"): "nodes.talker:Talker",
     ("demo_nodes_cpp", "listener"): "nodes.listener:Listener",
     ("demo_nodes_py", "talker"): "nodes.talker:Talker",
@@ -33,7 +36,7 @@ EXECUTABLES = {
     ("lifecycle_py", "lifecycle_talker"): "nodes.lifecycle_talker:LifecycleTalker",
 }
 """Executables of ROS 2's packages whose nodes come with graphflow."""
-_NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle"} | {
+_NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "mimic": "turtle_mimic"} | {
     "lifecycle_talker": "lc_talker",
     "lifecycle_listener": "lc_listener",
 }
@@ -187,7 +190,9 @@ def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | No
         env: The environment.
     """
     own, sourced = package_folder(package, root), _sourced(package, env)
-    return own or (sourced / "share" / package if sourced else _python_package(package))
+    if own is not None:
+        return share_folder(Package(package, own))
+    return sourced / "share" / package if sourced else _python_package(package)
 
 
 def package_prefix(package: str, root: Path, env: Mapping[str, str]) -> Path | None:

@@ -25,6 +25,7 @@ from graphflow.graph.faults import Problems, example, unknown_key, validated
 from graphflow.graph.model import (
     BLOCKS,
     FROM_GROUPS,
+    FROM_LAUNCH,
     TOP_KEYS,
     ForBlock,
     GroupBlock,
@@ -110,7 +111,9 @@ class Expansion:
     def _file(self, top: Item, path: Path, scope: _Scope, fixed: Mapping[str, Item]) -> Mapping[str, Item]:
         """Take in a file; returns its templates."""
         self.files[top.place.file] = path.resolve()
-        entries = top.entries
+        if FROM_LAUNCH in top.entries:
+            self._problems.launch_files.add(top.place.file)
+        entries = top.without(FROM_LAUNCH).entries
         if entries.get("args") is None or isinstance(entries["args"].value, dict):
             outer = scope
 

@@ -22,12 +22,25 @@ class Problems(list[Problem]):
     def __init__(self) -> None:
         super().__init__()
         self._unknown: set[Place] = set()
+        self.launch_files: set[str] = set()
+        """Files of ROS's, whose users expect that what ROS lets pass is let pass."""
+        self.remarks: list[Problem] = []
+        """What was let pass."""
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
         problem = Problem(place, message)
         if place not in self._unknown and problem not in self:  # each round of a loop has the same
             self.append(problem)
+
+    def add_unless_ros(self, place: Place, message: str) -> bool:
+        """Add what ROS lets pass: a remark in a launch file of ROS's, else a problem. Whether it is let pass."""
+        passes = place.file in self.launch_files
+        if not passes:
+            self.add(place, message)
+        elif Problem(place, message) not in self.remarks:
+            self.remarks.append(Problem(place, message))
+        return passes
 
     def add_unknown(self, place: Place, message: str) -> None:
         """Add a problem that leaves the value unknown: further reports about it would only confuse."""

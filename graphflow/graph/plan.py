@@ -159,6 +159,8 @@ class Plan:
     """Whether nodes may be loaded and unloaded over the network."""
     console: dict[str, Any] | None = None
     """The windows and panes that a console opens with, as `graph.console` reads them."""
+    remarks: tuple[str, ...] = ()
+    """What is odd in launch files of ROS's, which lets it pass, each with its place."""
 
     def only(self, names: Iterable[str]) -> Plan:
         """The part of the graph that some nodes need: they, and what comes before them.
@@ -199,9 +201,10 @@ class Plan:
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Plan:
         return cls(
-            **{k: v for k, v in data.items() if k not in ("nodes", "steps")},
+            **{k: v for k, v in data.items() if k not in ("nodes", "steps", "remarks")},
             nodes=tuple(node_from_json(n) for n in data["nodes"]),
             steps=tuple(_step(s) for s in data["steps"]),
+            remarks=tuple(data["remarks"]),
         )
 
     def __str__(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from graphflow.graph.workspace import find_workspace
 from graphflow.msgs import registry
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -29,10 +30,11 @@ def project_root(path: Path) -> Path:
 
 
 def add_interfaces(root: Path) -> None:
-    """Make the messages, services and actions in a project's `interfaces/` available."""
+    """Make the messages, services and actions in a project's `interfaces/` available, and those of its workspace."""
     folder = root / "interfaces"
     if folder.is_dir():
         registry.add_root(folder)
+    registry.add_later(lambda: find_workspace(root).interfaces)
 
 
 def demos_root() -> Path:

@@ -110,6 +110,7 @@ def _resolve(
         strategy=model.strategy,
         allow_control=model.net.allow_control,
         console=console,
+        remarks=tuple(map(str, problems.remarks)),
     )
 
 
@@ -145,6 +146,8 @@ class _ParamsFiles:
     def __init__(self, src: Source, graph_files: Mapping[str, Path], problems: Problems) -> None:
         self._src, self._graph_files, self._problems = src, graph_files, problems
         self._files: dict[Path, list[Section]] = {}
+        self._strict: set[Path] = set()
+        """Those whose sections must all be for nodes of the graph; ROS does not look at that."""
 
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
         """What a node's files have for it, later files first."""
@@ -154,9 +157,11 @@ class _ParamsFiles:
             if path not in self._files:
                 self._files[path] = self._read(path, place)
             sections = self._files[path]
+            if place.file not in self._problems.launch_files:
+                self._strict.add(path)
             if sections and not any(s.fits(node) for s in sections):
                 patterns = [s.pattern for s in sections]
-                self._problems.add(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
+                self._problems.add_unless_ros(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
             found |= params_file.params_for(sections, node)
         return found
 
@@ -166,7 +171,7 @@ class _ParamsFiles:
         for path, place in found:
             if path not in self._files:
                 self._read(path, place)
-        return tuple(str(path) for path, _ in found)
+        return tuple(str(path) for path, _ in found if path.is_file())
 
     def _named(self, spec: NodeSpec, at: source.Path) -> list[tuple[str, Place]]:
         names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
@@ -178,7 +183,7 @@ class _ParamsFiles:
     def _read(self, path: Path, place: Place) -> list[Section]:
         if not path.is_file():
             near = did_you_mean(path.name, [f.name for f in path.parent.glob("*.yaml")])
-            self._problems.add(place, f"there is no file {shown(path)}{near}")
+            self._problems.add_unless_ros(place, f"there is no file {shown(path)}{near}")
             return []
         try:
             return params_file.read(path, shown(path))
@@ -188,7 +193,7 @@ class _ParamsFiles:
 
     def refuse_strays(self, nodes: list[str]) -> None:
         """Report sections for nodes that the graph does not have."""
-        for sections in self._files.values():
+        for sections in (self._files[path] for path in self._strict):
             self._problems += params_file.strays(sections, nodes)
 
 

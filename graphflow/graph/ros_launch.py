@@ -22,6 +22,7 @@ from typing import Any
 
 from graphflow.errors import Place
 from graphflow.graph import executables
+from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.ros_attributes import children, items, says
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
@@ -62,6 +63,8 @@ _ELSEWHERE = {
     "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
+_OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
+"""The keys of a graph file for ROS 2's options."""
 _SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
 
 
@@ -112,9 +115,8 @@ class _Translation:
 
     def file(self, top: Item) -> Item:
         body = self._block(top.entries["launch"].value)
-        if self._args:
-            body = {"args": Item(self._args, top.place), **body}
-        return top._replace(value=body)
+        args = {"args": Item(self._args, top.place)} if self._args else {}
+        return top._replace(value={FROM_LAUNCH: Item(True, top.place), **args, **body})
 
     # lists of actions
 
@@ -262,10 +264,14 @@ class _Translation:
         if period is None:
             self._complain(item.at, "timer: the attribute 'period' is missing")
             return
+        inner = self._block(children(item))
+        if typed(period).value == 0:
+            if inner:
+                _add(body, "group", item._replace(value={**self._conditions(item), **inner}))
+            return
         step = f"timer_{self._next('timer')}"
         delay = item._replace(value={"delay": typed(period), **self._conditions(item)})
         _put(body, "steps", step, delay)
-        inner = self._block(children(item))
         after = Item(step, item.place, item.place)
         for section in ("nodes", "steps"):
             for name, entry in inner.get(section, Item({}, item.place)).entries.items():
@@ -352,14 +358,26 @@ class _Translation:
             entries["params"] = Item(values, place, place)
 
     def _words(self, item: Item, entries: dict[str, Item]) -> None:
-        """What `args` and `ros_args` say, as far as it is the level of the log."""
+        """What `args` and `ros_args` say in ROS 2's words: remaps, parameters, and the level of the log."""
         for key in ("args", "ros_args"):
             given = item.entries.get(key)
-            words = [word for word in words_of(given) if word != "--ros-args"]
-            if words[:1] == ["--log-level"] and len(words) == 2 and given is not None:
-                entries["log_level"] = Item(words[1].lower(), given.place, given.key)
-            elif words and given is not None:
-                self._complain(given.at, f"{key}: a node is given no words; write params: and remap: in a graph file")
+            if given is None:
+                continue
+            words = [word for word in words_of(given) if word not in ("--ros-args", "--")]
+            for option, value in zip(words[::2], [*words[1::2], ""][: len(words[::2])], strict=True):
+                self._option(option, value, Item(value, given.place, given.key), key, entries)
+
+    def _option(self, option: str, value: str, at: Item, key: str, entries: dict[str, Item]) -> None:
+        name, arrow, said = value.partition(":=")
+        section = _OPTIONS.get(option)
+        if option == "--log-level" and value and not arrow:
+            entries["log_level"] = at._replace(value=value.lower())
+        elif section is not None and name and arrow and not name.startswith("__"):
+            before = entries.get(section, Item({}, at.place, at.key))
+            made = typed(at._replace(value=said)) if section == "params" else at._replace(value=said)
+            entries[section] = before._replace(value={**before.entries, name: made})
+        else:
+            self._note(at.key or at.place, f"{key}: the node here does not know {option}; it is left out")
 
     def _executable(self, item: Item, body: dict[str, Item]) -> None:
         command = item.entries.get("cmd")
@@ -392,7 +410,10 @@ class _Translation:
         entries = {"command": Item([Item(word, command.place) for word in words], command.place, item.at), **entries}
         own = item.entries.get("name")
         base = Path(words[0]).name.replace("-", "_").replace(".", "_")
-        key = str(own.value) if own is not None else f"{base}_{self._next(base)}"
+        key = f"{base}_{self._next(base)}"
+        if own is not None:  # a label, which several may have
+            count = self._next(f"label {own.value}")
+            key = str(own.value) if count == 1 else f"{own.value}_{count}"
         self._add_node(body, key, item._replace(value=entries))
 
     def _common(self, item: Item) -> dict[str, Item]:

@@ -49,7 +49,7 @@ class Package:
     @property
     def has_modules(self) -> bool:
         """Whether Python imports from it: a folder of its name, or one that CMake installs as a package of modules."""
-        text = _without_comments(_text(self.folder / "CMakeLists.txt"))
+        text = cmake_text(self.folder)
         names = {self.name, *(n.replace("${PROJECT_NAME}", self.name) for n in _MODULES.findall(text))}
         return any(next((self.folder / name).glob("*.py"), None) is not None for name in names)
 
@@ -184,8 +184,9 @@ def _text(file: Path) -> str:
         return ""
 
 
-def _without_comments(cmake: str) -> str:
-    return re.sub(r"#.*", "", cmake)
+def cmake_text(folder: Path) -> str:
+    """The `CMakeLists.txt` of a package without its comments."""
+    return re.sub(r"#.*", "", _text(folder / "CMakeLists.txt"))
 
 
 def _of_setup_cfg(file: Path) -> dict[str, EntryPoint]:
@@ -209,23 +210,38 @@ def _of_setup_py(file: Path) -> dict[str, EntryPoint]:
         tree = ast.parse(_text(file))
     except (SyntaxError, ValueError):
         return {}
-    known: dict[str, str] = {}
-    for statement in tree.body:
-        match statement:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                text = _constant(value, known)
-                if text is not None:
-                    known[name] = text
+    known = constants(tree)
     found = {}
-    for node in ast.walk(tree):
-        text = _constant(node, known)
+    for node in _of_console_scripts(tree):
+        text = constant_text(node, known)
         script = None if text is None else _script(text)
         if script is not None:
             found[script[0]] = script[1]
     return found
 
 
-def _constant(node: ast.AST, known: Mapping[str, str]) -> str | None:
+def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
+    """What stands under `console_scripts`; all of a file where nothing does."""
+    dicts = (node for node in ast.walk(tree) if isinstance(node, ast.Dict))
+    pairs = (pair for one in dicts for pair in zip(one.keys, one.values, strict=True))
+    lists = [value for key, value in pairs if isinstance(key, ast.Constant) and key.value == "console_scripts"]
+    tops: list[ast.AST] = [*lists] or [tree]
+    return (node for top in tops for node in ast.walk(top))
+
+
+def constants(tree: ast.Module) -> dict[str, str]:
+    """The names of a module that stand for texts."""
+    known: dict[str, str] = {}
+    for statement in tree.body:
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                text = constant_text(value, known)
+                if text is not None:
+                    known[name] = text
+    return known
+
+
+def constant_text(node: ast.AST, known: Mapping[str, str]) -> str | None:
     """The text that an expression is; None where that is not plain to see."""
     match node:
         case ast.Constant(value=str(text)):
@@ -233,19 +249,22 @@ def _constant(node: ast.AST, known: Mapping[str, str]) -> str | None:
         case ast.Name(id=name):
             return known.get(name)
         case ast.JoinedStr(values=values):
-            parts = [_constant(value, known) for value in values]
+            parts = [constant_text(value, known) for value in values]
             return None if any(part is None for part in parts) else "".join(part or "" for part in parts)
         case ast.FormattedValue(value=value):
-            return _constant(value, known)
+            return constant_text(value, known)
         case ast.BinOp(left=left, op=ast.Add(), right=right):
-            one, other = _constant(left, known), _constant(right, known)
+            one, other = constant_text(left, known), constant_text(right, known)
             return None if one is None or other is None else one + other
+        case ast.Call(func=ast.Attribute(attr="join"), args=[_, *_] as parts):
+            texts = [constant_text(part, known) for part in parts]
+            return None if None in texts else os.path.join(*map(str, texts))
     return None
 
 
 def _of_cmake(folder: Path) -> Iterator[tuple[str, Path]]:
     """The programs that `CMakeLists.txt` installs below `lib/`."""
-    text = _without_comments(_text(folder / "CMakeLists.txt"))
+    text = cmake_text(folder)
     for installed in _INSTALL.findall(text):
         words = installed.replace('"', " ").split()
         upper = [word.upper() for word in words]

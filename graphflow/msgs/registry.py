@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,8 @@ _SAME_DEFINITIONS = {"turtlesim_msgs": "turtlesim"}
 _roots: list[Path] = []
 _packages: dict[str, Path] = {}
 """Folders of single packages."""
+_later: list[Callable[[], Mapping[str, Path]]] = []
+"""What finds folders of more packages, and takes a while."""
 _given: dict[str, str] = {}
 """Definitions from elsewhere, by name."""
 
@@ -41,6 +43,20 @@ def add_root(folder: Path) -> None:
 def add_package(name: str, folder: Path) -> None:
     """Make the definitions in a folder known as those of a package."""
     _packages.setdefault(name, folder)
+
+
+def add_later(find: Callable[[], Mapping[str, Path]]) -> None:
+    """Ask `find` for the folders of more packages once one is wanted that is not known."""
+    _later.append(find)
+
+
+def _look_further() -> bool:
+    """Take what there is to be found; whether anybody was asked."""
+    asked = bool(_later)
+    while _later:
+        for name, folder in _later.pop()().items():
+            add_package(name, folder)
+    return asked
 
 
 def adopt(name: str, digest: str, sources: Mapping[str, str]) -> None:
@@ -109,11 +125,13 @@ def package_folders(package: str) -> list[Path]:
     folders = [root / name for root in roots()]
     if name in _packages:
         folders.append(_packages[name])
-    return [f for f in folders if any((f / kind).is_dir() for kind in KINDS)]
+    found = [f for f in folders if any((f / kind).is_dir() for kind in KINDS)]
+    return package_folders(package) if not found and _look_further() else found
 
 
 def packages() -> list[str]:
     """The names of all packages that can be found."""
+    _look_further()
     found = {f.name for root in roots() for f in root.iterdir() if f.is_dir() and package_folders(f.name)}
     found |= _packages.keys()
     found |= {alias for alias, name in _SAME_DEFINITIONS.items() if name in found}

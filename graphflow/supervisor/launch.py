@@ -390,12 +390,14 @@ async def _keep_reachable(
 
 
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Once the graph is up, report the deadlocks that its source shows."""
+    """Once the graph is up, report what is odd in its files, and the deadlocks that its source shows."""
     import asyncio
 
     from graphflow.graph.static import findings, warnings
 
     await supervisor.up.wait()
+    for remark in plan.remarks:
+        supervisor.note(remark)
     if plan.deadlock != "off":
         ways = await asyncio.to_thread(findings, plan, interfaces)
         for text in warnings(ways, plan.file):

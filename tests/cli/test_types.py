@@ -40,3 +40,20 @@ def test_the_projects_own_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.chdir(tmp_path / "nodes")
     use_project()
     assert registry.definition_file("own_types/msg/Thing") == folder / "Thing.msg"
+
+
+def test_those_of_a_workspace_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From any folder of it; it is looked through once somebody wants a package that is not known."""
+    monkeypatch.setattr(registry, "_packages", {})
+    monkeypatch.setattr(registry, "_later", [])
+    package = tmp_path / "src" / "lamp_interfaces"
+    (package / "action").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>lamp_interfaces</name></package>")
+    (package / "action" / "Fade.action").write_text("int32 to\n---\n---\n")
+    monkeypatch.chdir(package)
+    use_project()
+    assert registry.full_name("std_msgs/String") == "std_msgs/msg/String"
+    assert registry._later
+    assert registry.full_name("lamp_interfaces/Fade") == "lamp_interfaces/action/Fade"
+    assert not registry._later
+    assert "lamp_interfaces" in registry.packages()

@@ -47,7 +47,8 @@ def root(tmp_path: Path) -> Path:
         ("my_robot", "two", None),
         ("my_robot", "broken", None),
         ("my_robot", "gone", None),
-        ("turtlesim", "mimic", None),
+        ("turtlesim", "mimic", Executable("nodes.mimic:Mimic", "turtle_mimic")),
+        ("turtlesim", "circle", None),
         ("nav2", "planner", None),
     ],
 )

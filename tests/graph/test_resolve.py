@@ -609,7 +609,7 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
     [
         ("{pkg: lamp, exec: shin}", "the package 'lamp' has no executable 'shin'; did you mean 'shine'?"),
         ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
-        ("{pkg: turtlesim, exec: sim}", "graphflow has no executable 'sim' of the package 'turtlesim'; there is turt"),
+        ("{pkg: turtlesim, exec: sim}", "graphflow has no executable 'sim' of the package 'turtlesim'; there is draw"),
         ("{pkg: lamp, exec: shine, params_file: q.yaml}", "there is no file "),
         ("{pkg: lamp, exec: shine, remap: {__ns: /x}}", "'__ns' cannot be remapped"),
     ],

@@ -9,6 +9,7 @@ import pytest
 
 from graphflow.errors import GraphFileError
 from graphflow.graph import ros_launch, source
+from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.resolve import load
 from graphflow.graph.ros_commands import OUR_ROS2
 from graphflow.graph.tree import tree
@@ -93,7 +94,8 @@ def native(text: str, root: Path = Path("/nowhere")) -> tuple[Any, list[str], li
     made = ros_launch.native(
         top, root, lambda at, said: complaints.append(f"{at}: {said}"), lambda at, said: notes.append(said)
     )
-    return made.plain(), complaints, notes
+    assert made.entries[FROM_LAUNCH].value is True
+    return made.without(FROM_LAUNCH).plain(), complaints, notes
 
 
 TURTLE = "node: {pkg: turtlesim, exec: turtlesim_node}"
@@ -251,10 +253,6 @@ def test_lifecycle_nodes() -> None:
         ('executable: {cmd: "a \'b"}', "f.yaml:1:29: cmd: No closing quotation"),
         ("executable: {cmd: 'ros2 service call /a b/srv/C {d'}", "f.yaml:1:29: the request '{d'"),
         ("timer: {children: []}", "f.yaml:1:11: timer: the attribute 'period' is missing"),
-        (
-            "node: {pkg: turtlesim, exec: turtlesim_node, args: --fast}",
-            "f.yaml:1:56: args: a node is given no words; write params: and remap: in a graph file",
-        ),
     ],
 )
 def test_what_has_no_words(action: str, complaint: str) -> None:
@@ -293,6 +291,62 @@ def test_a_program_of_the_workspace(tmp_path: Path) -> None:
     made, complaints, notes = native("launch: [{node: {pkg: lamp, exec: shine.py, name: big}}]", tmp_path)
     assert (complaints, notes) == ([], [])
     assert made["nodes"]["big"] == {"pkg": "lamp", "exec": "shine.py"}
+
+
+def test_words_of_a_node() -> None:
+    """Those of ROS 2 are its remaps, parameters and level; others are left out, as a node of ROS's would."""
+    words = "[--ros-args, -r, a:=b, -p, background_r:=3, --param, name:=leo, --log-level, WARN, --fast]"
+    made, complaints, notes = native(f"launch: [{{node: {{pkg: turtlesim, exec: turtlesim_node, ros_args: {words}}}}}]")
+    assert made["nodes"]["turtlesim"] == {
+        "class": "nodes.turtlesim:TurtleSim",
+        "remap": {"a": "b"},
+        "params": {"background_r": 3, "name": "leo"},
+        "log_level": "warn",
+    }
+    assert (complaints, notes) == ([], ["ros_args: the node here does not know --fast; it is left out"])
+
+
+def test_what_several_programs_may_be_called() -> None:
+    """The name of a program is a label."""
+    echo = "{executable: {cmd: echo, name: e}}"
+    made, _, _ = native(f"launch: [{echo}, {echo}]")
+    assert list(made["nodes"]) == ["e", "e_2"]
+
+
+def test_a_timer_of_no_time() -> None:
+    """Its actions are there at once, under its condition."""
+    timer = f"{{timer: {{period: 0.0, children: [{{{TURTLE}}}]}}}}"
+    made, complaints, _ = native(f"launch: [{timer}]\n")
+    node = {"nodes": {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}}
+    assert (made, complaints) == ({"group": node}, [])
+
+
+LENIENT = """\
+launch:
+- include: {file: inner.launch.yaml, arg: [{name: nobodys, value: '3'}]}
+- node: {pkg: turtlesim, exec: turtlesim_node, name: sim, param: [{from: none.yaml}, {from: others.yaml}]}
+"""
+
+
+def test_what_ros_lets_pass(tmp_path: Path) -> None:
+    """It is remarked, with its place; in a graph file it is a mistake."""
+    (tmp_path / "inner.launch.yaml").write_text(f"launch: [{{{TURTLE}}}]\n")
+    (tmp_path / "others.yaml").write_text("/other: {ros__parameters: {a: 1}}\n")
+    (tmp_path / "outer.launch.yaml").write_text(LENIENT)
+    found = load(tmp_path / "outer.launch.yaml", [], {})
+    assert [node.name for node in found.nodes] == ["/turtlesim", "/sim"]
+    assert [remark.rpartition("yaml:")[2] for remark in found.remarks] == [
+        "2:51: the included file has no argument 'nobodys'; it declares none of that name under args:",
+        f"3:74: there is no file {tmp_path / 'none.yaml'}; did you mean 'others.yaml'?",
+        "3:93: others.yaml has nothing for /sim; there is /other",
+    ]
+    (tmp_path / "strict.yaml").write_text(
+        "nodes: {sim: {class: nodes.turtlesim:TurtleSim, params_file: [none.yaml, others.yaml]}}\n"
+        "include: {file: inner.launch.yaml, args: {nobodys: 3}}\n"
+    )
+    with pytest.raises(GraphFileError) as caught:
+        load(tmp_path / "strict.yaml", [], {})
+    assert len(caught.value.problems) == 4
 
 
 def test_a_program_without_a_name(tmp_path: Path) -> None:

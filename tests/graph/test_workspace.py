@@ -146,3 +146,10 @@ def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, ve
     """By their imports."""
     (tmp_path / "a.py").write_text(text)
     assert uses_rclpy(tmp_path / "a.py") is verdict
+
+
+def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:
+    """Those of extensions look the same; an entry in a file without `console_scripts` counts."""
+    groups = "{'ros2cli.command': ['x = a.x:X'], 'console_scripts': ['go = ' + 'a.go:main']}"
+    folder = package(tmp_path / "a", "a", setup_dot_py=f"setup(entry_points={groups})")
+    assert find_workspace(folder).packages["a"].executables == ["go"]

@@ -1,6 +1,6 @@
 """Packages and their folders: those of the workspace that the program is in, and what is installed.
 
-Nothing is built, so the `share` folder of a workspace's package is the package itself.
+Nothing is built: the `share` folder of a workspace's package is the package itself, or one of links to its files.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from graphflow.graph.executables import package_prefix, package_share
+from graphflow.graph.share import share_folder
 from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.names import did_you_mean
 
@@ -48,7 +49,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     _check(package_name)
     workspace = _workspace()
     own = workspace.packages.get(package_name)
-    folder = own.folder if own is not None else package_share(package_name, workspace.root, os.environ)
+    folder = share_folder(own) if own is not None else package_share(package_name, workspace.root, os.environ)
     if folder is None:
         raise _missing(package_name, workspace)
     return str(folder)
