@@ -37,6 +37,7 @@ GraphflowError
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 from unicodedata import category
@@ -155,6 +156,9 @@ LONGEST_TEXT = 4_000
 """Characters of another process's text that an error repeats at most."""
 
 
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+
+
 def printable(text: str) -> str:
     """A text from another process, safe to put in an error: of bounded length, and harmless."""
     return harmless(text[:LONGEST_TEXT])
@@ -165,6 +169,11 @@ def harmless(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() or c in "\n\t" or category(c) == "Zs" else repr(c)[1:-1] for c in text)
+
+
+def uncoloured(text: str) -> str:
+    """A line of a log, `harmless` and without the colours that a program has given it."""
+    return harmless(_COLOUR.sub("", text) if "\x1b" in text else text)
 
 
 class Abort(GraphflowError):

@@ -21,6 +21,7 @@ from graphflow.errors import (
     RemoteError,
     SupervisorError,
     printable,
+    uncoloured,
 )
 
 ESCAPE = "\x1b[2J\x9b31m\a"
@@ -167,3 +168,9 @@ def test_an_error_reply_of_another_form_is_the_message(payload: bytes, message: 
     error = RemoteError.from_payload(payload, "/add")
 
     assert (error.type, error.message) == ("Error", message)
+
+
+def test_a_line_of_a_log_has_no_colours() -> None:
+    """Those that a program gives it are left out; what else a terminal would obey is shown."""
+    assert uncoloured("\x1b[1;32mgreen\x1b[0m \x1b[2J") == "green \\x1b[2J"
+    assert uncoloured("plain") == "plain"

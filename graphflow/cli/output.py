@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from graphflow.errors import harmless
+from graphflow.errors import harmless, uncoloured
 
 
 def is_terminal() -> bool:
@@ -43,7 +43,7 @@ def listing(names: Iterable[str], *, json: bool) -> None:
 def colored(head: str, colour: int, texts: Iterable[str]) -> None:
     """Several lines, each with a head in a colour of the terminal, from 31 to 36."""
     for text in texts:
-        print(f"\x1b[{colour}m{harmless(head)}\x1b[0m{harmless(text)}")
+        print(f"\x1b[{colour}m{harmless(head)}\x1b[0m{uncoloured(text)}")
     sys.stdout.flush()
 
 

@@ -48,7 +48,9 @@ class Package:
 
     @property
     def has_modules(self) -> bool:
-        """Whether Python imports from it: a folder of its name, or one that CMake installs as a package of modules."""
+        """Whether Python imports from it: a folder of its name or that CMake installs, or modules of executables."""
+        if any(self.file_of(entry).is_file() for entry in self.entry_points.values()):
+            return True
         text = cmake_text(self.folder)
         names = {self.name, *(n.replace("${PROJECT_NAME}", self.name) for n in _MODULES.findall(text))}
         return any(next((self.folder / name).glob("*.py"), None) is not None for name in names)

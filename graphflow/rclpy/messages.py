@@ -21,7 +21,7 @@ from graphflow.rclpy.values import SEQUENCE_CODES, Check, checker, rosidl_type
 from graphflow.wire.cdr import Codec
 from graphflow.wire.codegen import Types
 from graphflow.wire.profile import wire_profile, wire_type
-from graphflow.wire.schema import INTEGER_RANGES, Action, Field, FieldType, Message, Service
+from graphflow.wire.schema import INTEGER_RANGES, Action, Constant, Field, FieldType, Message, Service
 
 
 class _Generated(type):
@@ -89,7 +89,7 @@ def message_class(name: str) -> type[StrictMessage]:
         "__module__": f"{package}.{kind}",
         "__doc__": f"{name}: {', '.join(f'{f.type} {f.name}' for f in schema.fields) or 'no fields'}.",
         "SCHEMA": schema,
-        **{constant.name: constant.value for constant in schema.constants},
+        **{constant.name: constant_value(constant) for constant in schema.constants},
     }
     lines = [f"def __init__({', '.join(['SELF', '*', *(f'{f.name}=ABSENT' for f in schema.fields), '**OTHERS'])}):"]
     lines[0] = lines[0].replace("*, **OTHERS", "**OTHERS")
@@ -104,6 +104,12 @@ def message_class(name: str) -> type[StrictMessage]:
     made: Any = _Generated(base, (StrictMessage,), body)
     cls: type[StrictMessage] = made
     return cls
+
+
+def constant_value(constant: Constant) -> Any:
+    """The value of a constant: of a byte, as its fields take it."""
+    value = constant.value
+    return bytes([value]) if constant.type == "byte" and isinstance(value, int) else value
 
 
 def _class_of(type_: FieldType) -> type | None:

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from graphflow.msgs import registry
+from graphflow.rclpy.messages import constant_value
 from graphflow.rclpy.values import SEQUENCE_CODES
 from graphflow.wire.schema import INTEGER_RANGES, Action, FieldType, Message, Service
 
@@ -76,7 +77,7 @@ def _message(message: Message) -> str:
     module, _, name = message.name.rpartition("/")
     lines = [f"class {name}:"]
     for constant in message.constants:
-        value = constant.value
+        value = constant_value(constant)
         literal = json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
         lines.append(f"    {constant.name}: Final = {literal}")
     for field in message.fields:

@@ -10,7 +10,7 @@ import sys
 import threading
 from typing import TYPE_CHECKING, Any
 
-from graphflow.errors import GraphflowError, harmless
+from graphflow.errors import GraphflowError, uncoloured
 from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
 from graphflow.runtime import unawaited
@@ -35,7 +35,7 @@ class ConsoleFormatter(logging.Formatter):
         line = f"[{word}] [{record.created:.9f}] [{name}]: {record.getMessage()}"
         if record.exc_info and record.exc_info[0] is not None:
             line += "\n" + self.formatException(record.exc_info)
-        return harmless(line)
+        return uncoloured(line)
 
 
 def log_level(word: str) -> int:

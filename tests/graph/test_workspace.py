@@ -153,3 +153,12 @@ def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:
     groups = "{'ros2cli.command': ['x = a.x:X'], 'console_scripts': ['go = ' + 'a.go:main']}"
     folder = package(tmp_path / "a", "a", setup_dot_py=f"setup(entry_points={groups})")
     assert find_workspace(folder).packages["a"].executables == ["go"]
+
+
+def test_a_module_beside_setup_py(tmp_path: Path) -> None:
+    """It is imported from the package's folder, in which there is no other."""
+    groups = "{'console_scripts': ['teleop = teleop:main']}"
+    folder = package(tmp_path / "teleop", "teleop", setup_dot_py=f"setup(py_modules=['teleop'], entry_points={groups})")
+    assert find_workspace(folder).import_roots == []
+    (folder / "teleop.py").touch()
+    assert find_workspace(folder).import_roots == [folder]

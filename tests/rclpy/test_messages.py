@@ -104,3 +104,11 @@ def test_services_and_actions_hold_their_messages_and_are_none() -> None:
     for kind in (service, action):
         with pytest.raises(NotImplementedError, match="can not be instantiated"):
             kind()
+
+
+def test_constants_are_what_their_fields_take() -> None:
+    """Those of bytes are bytes."""
+    status = cls("diagnostic_msgs/msg/DiagnosticStatus")
+    assert status.ERROR == b"\2"
+    assert status(level=status.ERROR).level == b"\2"
+    assert cls("rcl_interfaces/msg/ParameterType").PARAMETER_BOOL == 1

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
+import logging
 import signal
 import threading
+import time
 from types import FrameType
 from typing import Any
 from weakref import WeakSet
@@ -21,6 +24,11 @@ __all__ = [
 _watched: WeakSet[Context] = WeakSet()
 _former: dict[int, Any] = {}
 _options = SignalHandlerOptions.NO
+PUT_OFF = 0.002
+"""Seconds after which a signal that came in the middle of logging is handled."""
+PUT_OFF_BOUND = 50
+"""How often that is done again: logging itself may block."""
+_put_off: dict[int, int] = {}
 _NUMBERS = {
     SignalHandlerOptions.NO: (),
     SignalHandlerOptions.SIGINT: (signal.SIGINT,),
@@ -62,12 +70,32 @@ def uninstall_signal_handlers() -> None:
         del _former[number]
 
 
+def _is_in_logging(frame: FrameType) -> bool:
+    """Whether Python's logging was interrupted. An exception there would leave a lock held that other threads need."""
+    seen: FrameType | None = frame
+    while seen is not None:
+        if seen.f_code.co_filename == logging.__file__:
+            return True
+        seen = seen.f_back
+    return False
+
+
+def _again(number: int) -> None:
+    time.sleep(PUT_OFF)
+    _thread.interrupt_main(signal.Signals(number))
+
+
 def _caught(number: int, frame: FrameType | None) -> None:
+    if frame is not None and _is_in_logging(frame) and _put_off.get(number, 0) < PUT_OFF_BOUND:
+        _put_off[number] = _put_off.get(number, 0) + 1
+        _thread.start_new_thread(_again, (number,))
+        return
+    _put_off.pop(number, None)
     for context in list(_watched):
         life = context.life
         if life is not None and life.end():
-            # What it calls may take long, or wait for what this thread holds.
-            threading.Thread(target=context.finish, name="graphflow-shutdown", daemon=True).start()
+            # What it calls may take long, or wait for what this thread holds; so does `Thread.start`.
+            _thread.start_new_thread(context.finish, ())
     former = _former.get(number)
     is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for the network to be left
     if callable(former) and not is_ending:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import threading
@@ -25,6 +26,29 @@ def test_sigint_ends_the_context_and_then_does_what_it_did() -> None:
     assert told.wait(5)
     with pytest.raises(RuntimeError, match="already called"):
         rclpy.shutdown()
+
+
+def test_logging_is_not_torn_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An exception in the middle of it would keep a lock that other threads wait for: it comes a little later."""
+    rclpy.init()
+    inside: list[bool] = []
+
+    class Interrupted(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            os.kill(os.getpid(), signal.SIGINT)
+            inside.append(rclpy.ok())
+
+    logger = logging.getLogger("interrupted")
+    logger.addHandler(Interrupted())
+    with pytest.raises(KeyboardInterrupt):
+        logger.error("x")
+        inside.append(True)
+        threading.Event().wait(5)
+    assert inside == [True, True]
+    monkeypatch.setattr(signals, "PUT_OFF_BOUND", 0)
+    with pytest.raises(KeyboardInterrupt):
+        logger.error("x")
+    rclpy.try_shutdown()
 
 
 def test_while_the_interpreter_ends_another_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
