@@ -5,10 +5,8 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
-from graphflow.graph.executables import without_ros
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep, Setting
 from graphflow.interface import COMMON_PARAMETERS, EndpointKind, GroupInfo, Interface, may_make
 from graphflow.msgs.base import Message
@@ -23,7 +21,7 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     """Every problem of a plan, in the order of its file."""
     problems: list[Problem] = []
     for node in plan.nodes:
-        problems += _check_program(node, plan.root) if node.command else _check_node(node, interfaces)
+        problems += _check_program(node) if node.command else _check_node(node, interfaces)
     problems += _check_lifecycle(plan, interfaces)
     problems += _check_optional(plan, interfaces)
     problems += _check_shared_rules(plan, interfaces)
@@ -33,14 +31,15 @@ def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     return problems
 
 
-def _check_program(node: PlannedNode, root: str) -> Iterator[Problem]:
+def _check_program(node: PlannedNode) -> Iterator[Problem]:
     program = node.command[0]
     if program == "graphflow":
         return
     if shutil.which(program, path=node.env.get("PATH")) is not None:
         return
     if node.executable:
-        yield Problem(node.class_place, without_ros(node.command[2], Path(root)))
+        text = f"there is no package {node.command[2]!r} in the workspace, and no ROS 2 is sourced"
+        yield Problem(node.class_place, text)
     else:
         where = "there is no such file, or it cannot be run" if "/" in program else "it is not on the PATH"
         yield Problem(node.class_place, f"the program {program!r} cannot be started: {where}")
@@ -123,7 +122,9 @@ def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
         if isinstance(interface, Problem) or interface.dynamic_names is True:
             return
         known.update(p.name for p in interface.params)
-    optional = {(n, s.place) for node in plan.nodes for n, s in node.params.items() if s.is_optional}
+    optional = {
+        (n, s.place) for node in plan.nodes for n, s in node.params.items() if s.is_optional and not s.is_unchecked
+    }
     for name, place in sorted(optional):
         if name not in known:
             yield Problem(place, f"no node of this graph has a parameter {name!r}{did_you_mean(name, known)}")

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.workspace import Package, Workspace, find_workspace, uses_rclpy
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
@@ -42,6 +42,8 @@ _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "
 }
 """Names of nodes that are not those of their executables."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+SLIP = 0.8
+"""How alike two names are, from 0 to 1, if one is taken for a slip of the other."""
 _SEARCH_DEPTH = 4
 """Folders below a project's root in which packages are looked for."""
 
@@ -87,38 +89,50 @@ def as_class(node: Item, root: Path) -> Item:
     )
 
 
-def command_of(package: str, name: str, workspace: Workspace) -> tuple[str, ...]:
+class NoExecutable(LookupError):
+    """There is no executable of that name.
+
+    Attributes:
+        is_slip: Whether it is a mistake in a name, or in the package; else it could be elsewhere.
+    """
+
+    def __init__(self, text: str, *, is_slip: bool) -> None:
+        super().__init__(text)
+        self.is_slip = is_slip
+
+
+def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, str]) -> tuple[str, ...]:
     """The words that run an executable which is no class: of a workspace, or else of a ROS 2.
 
+    Args:
+        env: The environment.
+
     Raises:
-        LookupError: The package has none of that name; the text says which it has.
+        NoExecutable: Nobody here has one of that name; the text says which there are.
     """
     own = workspace.packages.get(package)
     if own is None:
         with_us = [known for at, known in EXECUTABLES if at == package]
+        if shutil.which("ros2", path=env.get("PATH")):
+            return ("ros2", "run", package, name)
         if with_us:
-            near = did_you_mean(name, with_us) or f"; there is {', '.join(with_us)}"
-            raise LookupError(f"graphflow has no executable {name!r} of the package {package!r}{near}")
-        return ("ros2", "run", package, name)
+            text = f"graphflow has no executable {name!r} of the package {package!r}{did_you_mean(name, with_us)}"
+            raise NoExecutable(text, is_slip=nearest(name, with_us) is not None)
+        known_packages = [*workspace.packages, *(known for known, _ in EXECUTABLES)]
+        near = did_you_mean(package, (), hidden=known_packages)
+        text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
+        raise NoExecutable(text, is_slip=nearest(package, known_packages, cutoff=SLIP) is not None)
     known = own.known_as(name)
     if known is None:
+        if name in own.compiled:
+            text = f"{name} of the package {package!r} is C++, which only colcon builds; graphflow runs Python"
+            raise NoExecutable(text, is_slip=False)
         near = did_you_mean(name, own.executables) or f"; there is {', '.join(own.executables) or 'none'}"
-        raise LookupError(f"the package {package!r} has no executable {name!r}{near}")
+        raise NoExecutable(f"the package {package!r} has no executable {name!r}{near}", is_slip=True)
     fault = own.fault_of(known)
     if fault is not None:
-        raise LookupError(fault)
+        raise NoExecutable(fault, is_slip=True)
     return ("graphflow", "run", str(own.folder), known)
-
-
-def without_ros(package: str, root: Path) -> str:
-    """What to say of a package that only a ROS 2 may have, where there is none.
-
-    Args:
-        root: The folder of the project.
-    """
-    workspace = find_workspace(root)
-    near = did_you_mean(package, [*workspace.packages, *(known for known, _ in EXECUTABLES)])
-    return f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
 
 
 class Listed(NamedTuple):

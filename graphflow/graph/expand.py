@@ -33,11 +33,11 @@ from graphflow.graph.model import (
     NodeSpec,
     keys_of,
 )
-from graphflow.graph.project import shown
+from graphflow.graph.project import no_file, shown
 from graphflow.graph.reading import read
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
 from graphflow.graph.tree import Item, first_of, located, merged, source_of
-from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, nearest, split
+from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
 BY_ENTRY = ("params", "remap", "env")
 """Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
@@ -189,11 +189,10 @@ class Expansion:
         return replace(scope, templates={**templates, **scope.templates})
 
     def _read(self, path: Path, place: Place, values: Mapping[str, Any]) -> Item | None:
+        if "$(" in str(path):  # which has been reported
+            return None
         if not path.is_file():
-            stems = {file.stem: file.name for file in path.parent.glob("*.yaml")}
-            found = stems.get(nearest(path.stem, stems) or "")
-            near = f"; did you mean {found!r}?" if found else ""
-            raise GraphFileError([*self._problems, Problem(place, f"there is no file {shown(path)}{near}")])
+            raise GraphFileError([*self._problems, Problem(place, no_file(path))])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
         top = read(path, shown(path), self._problems.add, describe=self._outside.describe, values=values)

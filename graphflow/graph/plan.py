@@ -25,6 +25,8 @@ class Setting:
     place: Place
     is_optional: bool = False
     """Whether nodes without such a parameter ignore it, since it was written for many nodes at once."""
+    is_unchecked: bool = False
+    """Whether it may be that no node has such a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,6 +255,7 @@ class Plan:
                 yield f"  group    {name}: {group}  # {group.place}"
             for name, value in node.env.items():
                 yield f"  env      {name}={value}"
+        yield from self.remarks
         for step in self.steps:
             yield f"step {step.name}"
             yield from _after_line(step.after)
@@ -289,7 +292,7 @@ def node_from_json(data: dict[str, Any]) -> PlannedNode:
         place=Place(*data["place"]),
         class_place=Place(*data["class_place"]),
         lifecycle_place=Place(*data["lifecycle_place"]),
-        params={k: Setting(s["value"], Place(*s["place"]), s["is_optional"]) for k, s in data["params"].items()},
+        params={k: Setting(**{**s, "place": Place(*s["place"])}) for k, s in data["params"].items()},
         remaps=tuple(Rule(**{**rule, "place": Place(*rule["place"])}) for rule in data["remaps"]),
         command=tuple(data["command"]),
         params_files=tuple(data["params_files"]),

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from graphflow.graph.workspace import find_workspace
 from graphflow.msgs import registry
+from graphflow.names import nearest
 
 PACKAGE = Path(__file__).resolve().parents[1]
 INSTALLED_DEMOS = PACKAGE / "demos"
@@ -46,6 +47,13 @@ def bundled_graphs() -> dict[str, Path]:
     """The graphs that come with graphflow, by name: `turtlesim`, `deadlock/crossing_broken`."""
     folder = demos_root() / "graphs"
     return {f.relative_to(folder).with_suffix("").as_posix(): f for f in sorted(folder.rglob("*.yaml"))}
+
+
+def no_file(path: Path) -> str:
+    """What to say of a file that is not there: the one that is most like it."""
+    beside = {file.stem: file.name for file in path.parent.glob("*.*")}
+    found = beside.get(nearest(path.stem, beside) or "")
+    return f"there is no file {shown(path)}" + (f"; did you mean {found!r}?" if found else "")
 
 
 def shown(path: Path) -> str:

@@ -9,19 +9,19 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
-from graphflow.errors import GraphFileError, InvalidName, Place
+from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
 from graphflow.graph import params_file, source
 from graphflow.graph.arguments import given_values
 from graphflow.graph.console import console_section
-from graphflow.graph.executables import command_of
+from graphflow.graph.executables import NoExecutable, command_of
 from graphflow.graph.expand import Expansion
 from graphflow.graph.faults import Problems, example, validated
 from graphflow.graph.model import BLOCKS, FROM_GROUPS, NO_CLASS, GraphFile, GroupSpec, NodeSpec, RestartSpec
 from graphflow.graph.order import ordered
 from graphflow.graph.params_file import Section
 from graphflow.graph.plan import Plan, PlannedGroup, PlannedNode, PlannedStep, Rule, Setting
-from graphflow.graph.project import project_root, shown
+from graphflow.graph.project import no_file, project_root, shown
 from graphflow.graph.reading import Describe, read
 from graphflow.graph.source import Source
 from graphflow.graph.substitutions import Outside, Run
@@ -90,7 +90,13 @@ def _resolve(
         problems.raise_any()
     assert model is not None
     files = _ParamsFiles(src, expansion.files, problems)
-    nodes = _nodes(src, model, files, _Programs(src, outside, problems), problems)
+    programs = _Programs(src, outside, problems)
+    nodes = _nodes(src, model, files, programs, problems)
+    expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
+    if nodes:
+        problems.remarks += programs.left_out.values()
+    else:
+        problems += programs.left_out.values()
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)
@@ -119,20 +125,27 @@ class _Programs:
 
     def __init__(self, src: Source, outside: Outside, problems: Problems) -> None:
         self._src, self._outside, self._problems = src, outside, problems
+        self.left_out: dict[str | int, Problem] = {}
+        """Nodes of launch files, by name, whose programs nobody here has."""
 
     @cached_property
     def _workspace(self) -> Workspace:
         return find_workspace(self._outside.root)
 
-    def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
-        """The words that run a node's program; none for a class."""
+    def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
+        """The words that run a node's program: none for a class, None for one that is left out."""
         if not spec.pkg:
             return tuple(map(str, spec.command))
+        place = self._src.place((*at, "exec"))
         try:
-            command = command_of(spec.pkg, spec.exec_, self._workspace)
-        except LookupError as error:
-            self._problems.add(self._src.place((*at, "exec")), str(error))
-            return ()
+            command = command_of(spec.pkg, spec.exec_, self._workspace, self._outside.env)
+        except NoExecutable as error:
+            if not error.is_slip and place.file in self._problems.launch_files:
+                self.left_out[at[-1]] = Problem(place, f"{spec.exec_} is left out: {error}")
+                return None
+            if error.is_slip or spec.pkg in self._workspace.packages:
+                self._problems.add(place, str(error))
+            command = ("ros2", "run", spec.pkg, spec.exec_)
         return (*command, *map(str, spec.args))
 
 
@@ -162,7 +175,10 @@ class _ParamsFiles:
             if sections and not any(s.fits(node) for s in sections):
                 patterns = [s.pattern for s in sections]
                 self._problems.add_unless_ros(place, f"{name} has nothing for {node}{did_you_mean(node, patterns)}")
-            found |= params_file.params_for(sections, node)
+            settings = params_file.params_for(sections, node)
+            if place.file in self._problems.launch_files:  # ROS lets pass what the node does not have
+                settings = {n: replace(s, is_optional=True, is_unchecked=True) for n, s in settings.items()}
+            found |= settings
         return found
 
     def checked(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
@@ -181,9 +197,10 @@ class _ParamsFiles:
         return self._graph_files[place.file].parent / name
 
     def _read(self, path: Path, place: Place) -> list[Section]:
+        if "$(" in path.name or "$(" in str(path.parent):  # which has been reported
+            return []
         if not path.is_file():
-            near = did_you_mean(path.name, [f.name for f in path.parent.glob("*.yaml")])
-            self._problems.add_unless_ros(place, f"there is no file {shown(path)}{near}")
+            self._problems.add_unless_ros(place, no_file(path))
             return []
         try:
             return params_file.read(path, shown(path))
@@ -204,12 +221,15 @@ def _nodes(
     nodes: dict[str, PlannedNode] = {}
     for name, spec in model.nodes.items():
         base: source.Path = ("nodes", name)
+        command = programs.command(spec, base)
+        if command is None:
+            continue
         reads = files.checked(spec, (*base, "params_file")) if spec.pkg else ()
         known = {} if spec.pkg else files.params(spec, (*base, "params_file"), name)
         nodes[name] = PlannedNode(
             name=name,
             class_path="" if spec.class_ == NO_CLASS else spec.class_,
-            command=programs.command(spec, base),
+            command=command,
             executable=f"{spec.pkg} {spec.exec_}" if spec.pkg else "",
             keeps_names=spec.keep_names,
             params_files=reads,

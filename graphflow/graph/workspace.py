@@ -28,6 +28,7 @@ _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
+_COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
 
@@ -75,6 +76,12 @@ class Package:
     def executables(self) -> list[str]:
         """The names of all."""
         return sorted({*self.entry_points, *self.programs})
+
+    @property
+    def compiled(self) -> set[str]:
+        """The executables that only a compiler makes."""
+        names = _COMPILED.findall(cmake_text(self.folder))
+        return {name.replace("${PROJECT_NAME}", self.name) for name in names}
 
     @property
     def faults(self) -> list[str]:

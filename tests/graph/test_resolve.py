@@ -546,6 +546,7 @@ def lamps(tmp_path: Path) -> Path:
     (folder / "scripts").mkdir()
     (folder / "package.xml").write_text("<package><name>lamp</name></package>")
     (folder / "setup.py").write_text("setup(entry_points={'console_scripts': ['shine = lamp.a:main', 'b = lamp.b:f']})")
+    (folder / "CMakeLists.txt").write_text("add_executable(glow src/glow.cpp)")
     (folder / "lamp" / "a.py").write_text("import rclpy\n")
     (folder / "scripts" / "blink.py").write_text("import rclpy\n")
     (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {level: 2}}\n")
@@ -608,8 +609,13 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
     ("node", "said"),
     [
         ("{pkg: lamp, exec: shin}", "the package 'lamp' has no executable 'shin'; did you mean 'shine'?"),
+        ("{pkg: lmp, exec: shine}", "there is no package 'lmp' in WORKSPACE, and no ROS 2 is sourced; did you mean"),
+        ("{pkg: lamp, exec: glow}", "glow of the package 'lamp' is C++, which only colcon builds; graphflow runs Pyth"),
         ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
-        ("{pkg: turtlesim, exec: sim}", "graphflow has no executable 'sim' of the package 'turtlesim'; there is draw"),
+        (
+            "{pkg: turtlesim, exec: turtlesim_nod}",
+            "graphflow has no executable 'turtlesim_nod' of the package 'turtlesim'; did",
+        ),
         ("{pkg: lamp, exec: shine, params_file: q.yaml}", "there is no file "),
         ("{pkg: lamp, exec: shine, remap: {__ns: /x}}", "'__ns' cannot be remapped"),
     ],
@@ -631,6 +637,24 @@ def test_parameters_that_only_a_program_may_have(lamps: Path) -> None:
 def test_packages_that_only_ros_may_have(lamps: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where there is no ROS 2, the plan can be looked at, but not started."""
     monkeypatch.setenv("PATH", "/nowhere")
-    [problem] = check(planned(lamps, "nodes: {a: {pkg: lmp, exec: shine}}"), {})
-    said = f"there is no package 'lmp' in {lamps}, and no ROS 2 is sourced; did you mean 'lamp'?"
+    [problem] = check(planned(lamps, "nodes: {a: {pkg: nav2, exec: planner}}"), {})
+    said = "there is no package 'nav2' in the workspace, and no ROS 2 is sourced"
     assert (problem.message, str(problem.place)) == (said, "f.yaml:1:18")
+
+
+def test_what_nobody_here_has_is_left_out_of_launch_files(lamps: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So the rest starts without ROS, and it is remarked. Slips are mistakes, and so is a file without a rest."""
+    monkeypatch.setenv("PATH", "/nowhere")
+    nodes = "{node: {pkg: lamp, exec: shine}}, {node: {pkg: rviz2, exec: rviz2}}, {node: {pkg: lamp, exec: glow}}"
+    (lamps / "f.launch.yaml").write_text(f"launch: [{nodes}]\n")
+    found = load(lamps / "f.launch.yaml")
+    assert [node.name for node in found.nodes] == ["/shine"]
+    assert [remark.partition(": ")[2] for remark in found.remarks] == [
+        f"rviz2 is left out: there is no package 'rviz2' in {lamps}, and no ROS 2 is sourced",
+        "glow is left out: glow of the package 'lamp' is C++, which only colcon builds; graphflow runs Python",
+    ]
+    assert set(found.remarks) <= set(found.lines())
+    for node in ("{pkg: lamp, exec: shin}", "{pkg: lmp, exec: shine}", "{pkg: rviz2, exec: rviz2}"):
+        (lamps / "f.launch.yaml").write_text(f"launch: [{{node: {node}}}]\n")
+        with pytest.raises(GraphFileError):
+            load(lamps / "f.launch.yaml")
