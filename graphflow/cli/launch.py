@@ -43,11 +43,9 @@ def start(words: tuple[str, ...], show_args: bool, is_shown: bool, noninteractiv
     from graphflow.cli.graphs import up
 
     file, given = _file_of(words)
-    if is_shown:
-        code = plan.main([file, *given], standalone_mode=False)
-    else:
-        options = ["-s"] if show_args else ["--no-console"] if noninteractive else []
-        code = up.main([*options, file, *given], prog_name="graphflow up", standalone_mode=False)
+    options = [] if is_shown else ["-s"] if show_args else ["--no-console"] if noninteractive else []
+    verb, top = plan if is_shown else up, click.get_current_context().find_root()
+    code = verb.main([*options, file, *given], prog_name=verb.name, standalone_mode=False, parent=top)
     return code if isinstance(code, int) else exits.OK
 
 

@@ -67,9 +67,9 @@ def enable() -> str:
     from graphflow.rclpy.stubs import stubs
 
     path = file()
-    write(stubs(registry.packages(), Path(typings())))
     with open(path, "w", encoding="utf-8") as opened:
         opened.write(LINES)
+    write(stubs(registry.packages(), Path(typings())))
     return path
 
 

@@ -147,6 +147,7 @@ def test_stubs_of_a_workspace(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Under the names that ROS's code imports them by, in the workspace."""
+    monkeypatch.setattr(registry, "_packages", {})
     package = tmp_path / "src" / "lamp_interfaces"
     (package / "msg").mkdir(parents=True)
     (package / "package.xml").write_text("<package><name>lamp_interfaces</name></package>")

@@ -82,7 +82,11 @@ def _is_in_logging(frame: FrameType) -> bool:
 
 def _again(number: int) -> None:
     time.sleep(PUT_OFF)
-    _thread.interrupt_main(signal.Signals(number))
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, number)  # which ends a wait as well
+    else:
+        _thread.interrupt_main(signal.Signals(number))
 
 
 def _caught(number: int, frame: FrameType | None) -> None:
