@@ -153,18 +153,18 @@ class Executor(AbstractContextManager["Executor"]):
         """Run callbacks until a future is done, at most `timeout_sec` seconds."""
         future._when_done(self.wake)
         if timeout_sec is None or timeout_sec < 0:
-            while self._may_go_on(future):
+            while self._graphflow_may_go_on(future):
                 self.spin_once_until_future_complete(future, timeout_sec)
             return
         until = time.monotonic() + timeout_sec
         limit = TimeoutObject(timeout_sec)
-        while self._may_go_on(future):
+        while self._graphflow_may_go_on(future):
             self.spin_once_until_future_complete(future, limit)
             limit.timeout = until - time.monotonic()
             if limit.timeout <= 0:
                 return
 
-    def _may_go_on(self, future: Future[Any]) -> bool:
+    def _graphflow_may_go_on(self, future: Future[Any]) -> bool:
         is_over = future.done() or future.cancelled()
         return self._context.ok() and not is_over and not self._graphflow.is_shutdown
 
@@ -224,7 +224,9 @@ _NOTHING_TO_DO = (ShutdownException, TimeoutException, ConditionReachedException
 class SingleThreadedExecutor(Executor):
     """Runs callbacks one after the other, in the thread that spins."""
 
-    def _do_one(self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False) -> None:
+    def _graphflow_do_one(
+        self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False
+    ) -> None:
         try:
             handler, _, _ = self.wait_for_ready_callbacks(timeout, None, condition)
         except _NOTHING_TO_DO:
@@ -235,13 +237,13 @@ class SingleThreadedExecutor(Executor):
             raise error
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        self._do_one(timeout_sec)
+        self._graphflow_do_one(timeout_sec)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
         future._when_done(self.wake)
-        self._do_one(timeout_sec, lambda: future.done() or future.cancelled())
+        self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 
 
 class _Pool:
@@ -250,7 +252,7 @@ class _Pool:
     def __init__(self, size: int, freed: Callable[[], None]) -> None:
         self._max_workers = size
         self._freed = freed
-        self._work: deque[Callable[[], None]] = deque()
+        self._graphflow_work: deque[Callable[[], None]] = deque()
         self._there = threading.Semaphore(0)
         self._lock = threading.Lock()
         self._threads = self._busy = 0
@@ -262,7 +264,7 @@ class _Pool:
     def submit(self, work: Callable[[], None]) -> None:
         with self._lock:
             self._busy += 1
-            self._work.append(work)
+            self._graphflow_work.append(work)
             is_new = self._threads < min(self._busy, self._max_workers)
             self._threads += is_new
             number = self._threads
@@ -273,7 +275,7 @@ class _Pool:
     def _serve(self) -> None:
         while True:
             self._there.acquire()
-            work = self._work.popleft()
+            work = self._graphflow_work.popleft()
             try:
                 work()
             finally:
@@ -301,37 +303,41 @@ class MultiThreadedExecutor(Executor):
                 stacklevel=2,
             )
         self._executor = _Pool(num_threads, self.wake)
-        self._failures: deque[BaseException] = deque()
+        self._graphflow_failures: deque[BaseException] = deque()
         self._graphflow.has_room = lambda: self._executor.has_room
 
-    def _do_one(self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False) -> None:
+    def _graphflow_do_one(
+        self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False
+    ) -> None:
         try:
-            handler, _, _ = self.wait_for_ready_callbacks(timeout, None, lambda: bool(self._failures) or condition())
+            handler, _, _ = self.wait_for_ready_callbacks(
+                timeout, None, lambda: bool(self._graphflow_failures) or condition()
+            )
         except _NOTHING_TO_DO:
             pass
         else:
-            self._executor.submit(lambda: self._work(handler))
-        if self._failures:
-            raise self._failures.popleft()
+            self._executor.submit(lambda: self._graphflow_work(handler))
+        if self._graphflow_failures:
+            raise self._graphflow_failures.popleft()
 
-    def _work(self, handler: Task[Any]) -> None:
+    def _graphflow_work(self, handler: Task[Any]) -> None:
         try:
             handler()
             error = handler.exception()
         except BaseException as leaving:  # SystemExit and the like, which the spinning thread is to see
             error = leaving
         if error is not None:
-            self._failures.append(error)
+            self._graphflow_failures.append(error)
             self.wake()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        self._do_one(timeout_sec)
+        self._graphflow_do_one(timeout_sec)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
         future._when_done(self.wake)
-        self._do_one(timeout_sec, lambda: future.done() or future.cancelled())
+        self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 
 
 def __getattr__(name: str) -> Any:

@@ -112,32 +112,22 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         node = held.open_node(life, node_name, space, remaps, rosout=has_rosout)
         inner = self._graphflow = Inner(context, life, node, bell)
         life.nodes[self] = partial(_destroy, weakref.ref(self))
-        self._handle_of_node = Handle(partial(_close, life, node))
+        self._graphflow_handle_of_node = Handle(partial(_close, life, node))
         overrides: dict[str, Parameter[Any]] = {
             name: Parameter(name, value=value) for name, (value, _) in values.items()
         }
         overrides |= {p.name: p for p in parameter_overrides or ()}
         inner.parameters = NodeParameters(
-            overrides, self._parameters_changed, allows_undeclared=allow_undeclared_parameters
+            overrides, self._graphflow_parameters_changed, allows_undeclared=allow_undeclared_parameters
         )
         attend(life)
-        self._open_parameters(start_parameter_services)
+        self._graphflow_open_parameters(start_parameter_services)
         if enable_logger_service:
             LoggingService(self)
         if automatically_declare_parameters_from_overrides:
-            self._declare_overrides()
+            self._graphflow_declare_overrides()
 
     # what it has
-
-    @property
-    def bell(self) -> NodeBell:
-        """graphflow's: what its arrivals ring."""
-        return self._graphflow.bell
-
-    @property
-    def held(self) -> HeldNode:
-        """graphflow's node behind this one."""
-        return self._graphflow.node
 
     @property
     def executor(self) -> Executor | None:
@@ -170,7 +160,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     @property
     def handle(self) -> Handle:
-        return self._handle_of_node
+        return self._graphflow_handle_of_node
 
     @handle.setter
     def handle(self, value: object) -> None:
@@ -197,7 +187,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     # names
 
-    def _resolved(self, name: str, kind: Any = "topic", *, only_expand: bool = False) -> str:
+    def _graphflow_resolved(self, name: str, kind: Any = "topic", *, only_expand: bool = False) -> str:
         inner = self._graphflow
         full = expand_topic_name(name, inner.node.name, inner.node.namespace)
         validate_full_topic_name(full, is_service=kind == "service")
@@ -206,12 +196,12 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """The full name of a topic; remapped, unless it is only to be expanded."""
         with self.handle:
-            return self._resolved(topic, only_expand=only_expand)
+            return self._graphflow_resolved(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """The full name of a service; remapped, unless it is only to be expanded."""
         with self.handle:
-            return self._resolved(service, "service", only_expand=only_expand)
+            return self._graphflow_resolved(service, "service", only_expand=only_expand)
 
     # making and destroying
 
@@ -229,7 +219,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         """A publisher of messages of a class. `callback_group` is that of its events."""
         qos = validated(qos_profile)
         group = callback_group or self.default_callback_group
-        name = self._topic(msg_type, topic)
+        name = self._graphflow_topic(msg_type, topic)
         if qos_overriding_options is not None:
             _declare_qos_parameters(Publisher, self, name, qos, qos_overriding_options)
         inner = self._graphflow
@@ -248,7 +238,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             callbacks,
             group,
             life=inner.life,
-            handle=self._withdraws(endpoint),
+            handle=self._graphflow_withdraws(endpoint),
             event_handlers=handlers,
         )
         inner.publishers.append(made)
@@ -276,7 +266,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         """
         qos = validated(qos_profile)
         group = callback_group or self.default_callback_group
-        name = self._topic(msg_type, topic)
+        name = self._graphflow_topic(msg_type, topic)
         if qos_overriding_options is not None:
             _declare_qos_parameters(Subscription, self, name, qos, qos_overriding_options)
         inner = self._graphflow
@@ -288,7 +278,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
                 inner.node,
                 lambda core: ThreadedSubscription(core, msg_type, name, to_graphflow(qos), inner.bell, mark, told),
             )
-        handle = self._withdraws(endpoint)
+        handle = self._graphflow_withdraws(endpoint)
         made = Subscription(
             endpoint, msg_type, topic, callback, group, qos, raw, callbacks, handle=handle, event_handlers=handlers
         )
@@ -298,20 +288,20 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         for handler in handlers:
             self.add_waitable(handler)
         mark()
-        self._look_again()
+        self._graphflow_look_again()
         return made
 
-    def _topic(self, msg_type: Any, topic: str) -> str:
+    def _graphflow_topic(self, msg_type: Any, topic: str) -> str:
         check_is_valid_msg_type(msg_type)
         validate_topic_name(topic)
-        return self._resolved(topic)
+        return self._graphflow_resolved(topic)
 
-    def _service(self, srv_type: Any, srv_name: str) -> str:
+    def _graphflow_service(self, srv_type: Any, srv_name: str) -> str:
         check_is_valid_srv_type(srv_type)
         validate_topic_name(srv_name, is_service=True)
-        return self._resolved(srv_name, "service")
+        return self._graphflow_resolved(srv_name, "service")
 
-    def _withdraws(self, endpoint: Any) -> Handle:
+    def _graphflow_withdraws(self, endpoint: Any) -> Handle:
         life = self._graphflow.life
         return Handle(partial(_remove, life, endpoint))
 
@@ -325,7 +315,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     ) -> Client:
         """A client of a service. Its answers need a place in its group."""
         group = callback_group or self.default_callback_group
-        name, inner = self._service(srv_type, srv_name), self._graphflow
+        name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(messages.type_name(srv_type))
         mark, changed = _Mark(inner.bell), dict[Any, None]()
 
@@ -338,7 +328,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
         with self.handle:
             endpoint = held.add(inner.node, make)
-        handle = self._withdraws(endpoint)
+        handle = self._graphflow_withdraws(endpoint)
         made = Client(
             self.context,
             endpoint,
@@ -366,7 +356,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     ) -> Service:
         """Have `callback(request, response)` answer the requests of a service; it returns the response."""
         group = callback_group or self.default_callback_group
-        name, inner = self._service(srv_type, srv_name), self._graphflow
+        name, inner = self._graphflow_service(srv_type, srv_name), self._graphflow
         type_ = registry.interface_class(messages.type_name(srv_type))
         mark = _Mark(inner.bell)
         with self.handle:
@@ -374,7 +364,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
                 inner.node,
                 lambda core: ThreadedService(core, type_, name, to_graphflow(qos_profile), inner.bell, mark),
             )
-        handle = self._withdraws(endpoint)
+        handle = self._graphflow_withdraws(endpoint)
         made = Service(endpoint, srv_type, srv_name, callback, group, qos_profile, life=inner.life, handle=handle)
         mark.entity = made
         group.add_entity(made)
@@ -405,7 +395,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         )
         group.add_entity(made)
         inner.timers.append(made)
-        self._look_again()
+        self._graphflow_look_again()
         return made
 
     def create_guard_condition(

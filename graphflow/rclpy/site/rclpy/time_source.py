@@ -152,7 +152,7 @@ class _Hearing:
             made.is_inner = True
             return made
 
-        self._endpoint = held.add(node.held, make)
+        self._endpoint = held.add(node._graphflow.node, make)
         threading.Thread(target=self._listen, name="graphflow-clock", daemon=True).start()
 
     def _listen(self) -> None:

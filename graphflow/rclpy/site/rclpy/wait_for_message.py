@@ -40,7 +40,9 @@ def wait_for_message(
     check_is_valid_msg_type(msg_type)
     life, wake, name = node.context.life, Wake(), node.resolve_topic_name(topic)
     bell, qos = _Waking(wake), to_graphflow(validated(qos_profile))
-    endpoint = held.add(node.held, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing))
+    endpoint = held.add(
+        node._graphflow.node, lambda core: ThreadedSubscription(core, msg_type, name, qos, bell, _nothing)
+    )
     life.on_end(wake)
 
     def is_over() -> bool:

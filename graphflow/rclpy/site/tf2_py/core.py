@@ -53,30 +53,30 @@ class BufferCore:
 
     def __init__(self, cache_time: Duration | None = None) -> None:
         kept = 10 * 10**9 if cache_time is None else cache_time.nanoseconds
-        self._frames = Frames(kept)
-        self._authorities: dict[str, str] = {}
-        self._lock = threading.Lock()
+        self._graphflow_frames = Frames(kept)
+        self._graphflow_authorities: dict[str, str] = {}
+        self._graphflow_lock = threading.Lock()
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         """Put in where a frame is; what makes no sense is left out, and told in the log."""
-        self._put(transform, authority, is_static=False)
+        self._graphflow_put(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         """Put in where a frame is for ever."""
-        self._put(transform, authority, is_static=True)
+        self._graphflow_put(transform, authority, is_static=True)
 
-    def _put(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
+    def _graphflow_put(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
         parent, frame = transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/")
         pose = pose_of(transform.transform)
         fault = _fault(frame, parent, pose)
         if fault is not None:
             get_logger("tf2").error(f"transform from {authority!r} is left out: {fault}", throttle_duration_sec=1.0)
             return
-        with self._lock:
+        with self._graphflow_lock:
             stamp = nanoseconds(transform.header.stamp)
-            is_kept = self._frames.put(frame, parent, stamp, pose, is_static=is_static)
+            is_kept = self._graphflow_frames.put(frame, parent, stamp, pose, is_static=is_static)
             if is_kept:
-                self._authorities[frame] = authority
+                self._graphflow_authorities[frame] = authority
         if not is_kept:
             text = (
                 f"transform of {frame!r} from {authority!r} is left out: it is older than what is kept, or one too many"
@@ -94,8 +94,8 @@ class BufferCore:
         """
         _check(target_frame, "target_frame")
         _check(source_frame, "source_frame")
-        with self._lock:
-            pose, stamp = self._frames.find(target_frame, source_frame, nanoseconds(time))
+        with self._graphflow_lock:
+            pose, stamp = self._graphflow_frames.find(target_frame, source_frame, nanoseconds(time))
         return message(pose, target_frame, source_frame, stamp)
 
     def lookup_transform_full_core(
@@ -104,9 +104,9 @@ class BufferCore:
         """The same between two times; `fixed_frame` is what has not moved between them."""
         for name, role in ((target_frame, "target"), (source_frame, "source"), (fixed_frame, "fixed")):
             _check(name, f"{role}_frame")
-        with self._lock:
-            first, _ = self._frames.find(fixed_frame, source_frame, nanoseconds(source_time))
-            second, stamp = self._frames.find(target_frame, fixed_frame, nanoseconds(target_time))
+        with self._graphflow_lock:
+            first, _ = self._graphflow_frames.find(fixed_frame, source_frame, nanoseconds(source_time))
+            second, stamp = self._graphflow_frames.find(target_frame, fixed_frame, nanoseconds(target_time))
         return message(second.of(first), target_frame, source_frame, stamp)
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
@@ -123,44 +123,44 @@ class BufferCore:
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """The latest time of which all on the way between two frames is known. Raises TransformException."""
-        with self._lock:
-            return Time(nanoseconds=self._frames.latest_common(target_frame, source_frame))
+        with self._graphflow_lock:
+            return Time(nanoseconds=self._graphflow_frames.latest_common(target_frame, source_frame))
 
     def clear(self) -> None:
         """Forget all."""
-        with self._lock:
-            self._frames.clear()
-            self._authorities.clear()
+        with self._graphflow_lock:
+            self._graphflow_frames.clear()
+            self._graphflow_authorities.clear()
 
     def all_frames_as_string(self) -> str:
         """A line for each frame that has a parent."""
-        with self._lock:
-            known = [(f, h.parents[-1]) for f, h in sorted(self._frames.histories.items())]
+        with self._graphflow_lock:
+            known = [(f, h.parents[-1]) for f, h in sorted(self._graphflow_frames.histories.items())]
         return "".join(f"Frame {frame} exists with parent {parent}.\n" for frame, parent in known)
 
     def all_frames_as_yaml(self) -> str:
         """For each frame that has a parent: that, who says so, how often, and over what times."""
-        with self._lock:
-            known = sorted(self._frames.histories.items())
+        with self._graphflow_lock:
+            known = sorted(self._graphflow_frames.histories.items())
             lines = []
             for frame, history in known:
                 span = (history.stamps[-1] - history.stamps[0]) / 1e9
                 rate = 10000.0 if span <= 0 else (len(history.stamps) - 1) / span
                 lines += [f"{frame}: ", f"  parent: '{history.parents[-1]}'"]
-                lines += [f"  broadcaster: '{self._authorities.get(frame, '')}'", f"  rate: {rate:.3f}"]
+                lines += [f"  broadcaster: '{self._graphflow_authorities.get(frame, '')}'", f"  rate: {rate:.3f}"]
                 lines += [f"  most_recent_transform: {history.stamps[-1] / 1e9:.6f}"]
                 lines += [f"  oldest_transform: {history.stamps[0] / 1e9:.6f}", f"  buffer_length: {span:.3f}"]
         return "".join(f"{line}\n" for line in lines) or "{}"
 
     def _frameExists(self, frame_id: str) -> bool:  # noqa: N802 - tf2's name
         """Whether a frame has been heard of."""
-        with self._lock:
-            return self._frames.has(frame_id)
+        with self._graphflow_lock:
+            return self._graphflow_frames.has(frame_id)
 
     def _getFrameStrings(self) -> list[str]:  # noqa: N802 - tf2's name
         """All frames that have been heard of."""
-        with self._lock:
-            return self._frames.names()
+        with self._graphflow_lock:
+            return self._graphflow_frames.names()
 
 
 def _can(look_up: Callable[[], object]) -> tuple[bool, str]:

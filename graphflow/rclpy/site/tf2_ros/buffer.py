@@ -27,31 +27,31 @@ class Buffer(BufferCore, BufferInterface):
     def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
-        self._changed = threading.Condition()
-        self._waiting: dict[Future[Any], Callable[[], tuple[bool, str]]] = {}
-        self._node = node
+        self._graphflow_changed = threading.Condition()
+        self._graphflow_waiting: dict[Future[Any], Callable[[], tuple[bool, str]]] = {}
+        self._graphflow_node = node
         if node is not None:
-            self.srv = node.create_service(FrameGraph, "tf2_frames", self._answer_frames)
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_answer_frames)
 
-    def _answer_frames(self, request: Any, response: Any) -> Any:
+    def _graphflow_answer_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
     def set_transform(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         super().set_transform(transform, authority)
-        self._tell()
+        self._graphflow_tell()
 
     def set_transform_static(self, transform: TransformStamped, authority: str = "default_authority") -> None:
         super().set_transform_static(transform, authority)
-        self._tell()
+        self._graphflow_tell()
 
-    def _tell(self) -> None:
+    def _graphflow_tell(self) -> None:
         """Let those who wait look again."""
-        with self._changed:
-            self._changed.notify_all()
-            ready = [future for future, can in self._waiting.items() if can()[0]]
+        with self._graphflow_changed:
+            self._graphflow_changed.notify_all()
+            ready = [future for future, can in self._graphflow_waiting.items() if can()[0]]
             for future in ready:
-                del self._waiting[future]
+                del self._graphflow_waiting[future]
         for future in ready:
             future.set_result(True)
 
@@ -92,7 +92,7 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Whether there is that transform, after waiting for it; with `return_debug_tuple` also why not."""
-        answer = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        answer = self._graphflow_wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
@@ -107,41 +107,41 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Any:
         """Whether there is that transform between two times, after waiting for it."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        answer = self._wait(lambda: self.can_transform_full_core(*asked), timeout)
+        answer = self._graphflow_wait(lambda: self.can_transform_full_core(*asked), timeout)
         return answer if return_debug_tuple else answer[0]
 
-    def _wait(self, can: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
+    def _graphflow_wait(self, can: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
         until = clocks.monotonic() + timeout.nanoseconds / 1e9
-        with self._changed:
+        with self._graphflow_changed:
             while True:
                 answer = can()
                 left = until - clocks.monotonic()
-                is_over = self._node is not None and not self._node.context.ok()
+                is_over = self._graphflow_node is not None and not self._graphflow_node.context.ok()
                 if answer[0] or left <= 0 or is_over:
                     return answer
-                self._changed.wait(min(left, 0.1))  # the end of a context tells nobody
+                self._graphflow_changed.wait(min(left, 0.1))  # the end of a context tells nobody
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[bool]:
         """A future that is done as soon as there is that transform."""
-        return self._when(lambda: self.can_transform_core(target_frame, source_frame, time))
+        return self._graphflow_when(lambda: self.can_transform_core(target_frame, source_frame, time))
 
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[bool]:
         """A future that is done as soon as there is that transform between two times."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        return self._when(lambda: self.can_transform_full_core(*asked))
+        return self._graphflow_when(lambda: self.can_transform_full_core(*asked))
 
-    def _when(self, can: Callable[[], tuple[bool, str]]) -> Future[bool]:
+    def _graphflow_when(self, can: Callable[[], tuple[bool, str]]) -> Future[bool]:
         future: Future[bool] = Future()
-        with self._changed:
+        with self._graphflow_changed:
             is_ready = can()[0]
             if not is_ready:
-                self._waiting[future] = can
+                self._graphflow_waiting[future] = can
         if is_ready:
             future.set_result(True)
         else:
-            future.add_done_callback(lambda done: self._waiting.pop(done, None))
+            future.add_done_callback(lambda done: self._graphflow_waiting.pop(done, None))
         return future
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> TransformStamped:

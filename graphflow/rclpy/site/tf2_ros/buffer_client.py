@@ -66,7 +66,7 @@ class BufferClient(BufferInterface):
             TransformException: One of its kinds says why there is none; TimeoutException if the server is not there.
         """
         goal = LookupTransform.Goal(target_frame=target_frame, source_frame=source_frame, source_time=_message(time))
-        return self._ask(goal, timeout)
+        return self._graphflow_ask(goal, timeout)
 
     def lookup_transform_full(
         self,
@@ -86,7 +86,7 @@ class BufferClient(BufferInterface):
             fixed_frame=fixed_frame,
             advanced=True,
         )
-        return self._ask(goal, timeout)
+        return self._graphflow_ask(goal, timeout)
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE) -> bool:
         """Whether `lookup_transform` gives one."""
@@ -116,7 +116,7 @@ class BufferClient(BufferInterface):
         """Ask no more."""
         self.action_client.destroy()
 
-    def _ask(self, goal: Any, timeout: Duration) -> TransformStamped:
+    def _graphflow_ask(self, goal: Any, timeout: Duration) -> TransformStamped:
         goal.timeout = timeout.to_msg()
         if not self.action_client.server_is_ready():
             raise TimeoutException("The BufferServer is not ready.")

@@ -108,7 +108,7 @@ class BufferInterface:
         """
         header = object_stamped.header
         found = self.lookup_transform(target_frame, header.frame_id, Time.from_msg(header.stamp), timeout)
-        return self._apply(object_stamped, found, new_type)
+        return self._graphflow_apply(object_stamped, found, new_type)
 
     def transform_full(
         self,
@@ -123,9 +123,9 @@ class BufferInterface:
         header = object_stamped.header
         stamp = Time.from_msg(header.stamp)
         found = self.lookup_transform_full(target_frame, target_time, header.frame_id, stamp, fixed_frame, timeout)
-        return self._apply(object_stamped, found, new_type)
+        return self._graphflow_apply(object_stamped, found, new_type)
 
-    def _apply(self, object_stamped: Any, found: Any, new_type: type | None) -> Any:
+    def _graphflow_apply(self, object_stamped: Any, found: Any, new_type: type | None) -> Any:
         moved = self.registration.get(type(object_stamped))(object_stamped, found)
         return moved if new_type is None else convert(moved, new_type)
 

@@ -59,7 +59,7 @@ def test_futures_are_done_when_there_is_one(node: Node, spin: Callable[..., None
     while len(found) < 2 and time.monotonic() < until:
         rclpy.spin_once(node, timeout_sec=0.05)
     assert len(found) == 2
-    assert buffer._waiting == {}
+    assert buffer._graphflow_waiting == {}
     assert buffer.wait_for_transform_async("odom", "base", Time()).done()
 
 

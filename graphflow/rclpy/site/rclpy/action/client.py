@@ -67,19 +67,19 @@ class ClientGoalHandle:
 
     def cancel_goal(self) -> Any:
         """Ask for its cancellation, and block until that is answered: some other thread must be spinning."""
-        return self._action_client.block_on(self.cancel_goal_async())
+        return self._action_client._graphflow_block_on(self.cancel_goal_async())
 
     def cancel_goal_async(self) -> Future[Any]:
         """Ask for its cancellation; the future has the answer, a CancelGoal.Response."""
-        return self._action_client.cancel(self)
+        return self._action_client._graphflow_cancel(self)
 
     def get_result(self) -> Any:
         """Block until it has ended, and return the result: some other thread must be spinning."""
-        return self._action_client.block_on(self.get_result_async())
+        return self._action_client._graphflow_block_on(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
         """The future has `status` and `result` when it has ended."""
-        return self._action_client.result_of(self)
+        return self._action_client._graphflow_result_of(self)
 
 
 class ActionClient(Waitable):
@@ -101,66 +101,78 @@ class ActionClient(Waitable):
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
         check_for_type_support(action_type)
         self._node, self._action_type, self._action_name = node, action_type, action_name
-        self._lock = threading.RLock()
-        self._waiting: dict[tuple[Any, int], tuple[Future[Any], Callable[[Any], Any]]] = {}
+        self._graphflow_lock = threading.RLock()
+        self._graphflow_waiting: dict[tuple[Any, int], tuple[Future[Any], Callable[[Any], Any]]] = {}
         """Calls that were sent: their futures, and what makes a result of the response."""
         self._goal_handles: dict[bytes, ClientGoalHandle] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
-        self._changed: dict[Wake, None] = {}
-        self._is_destroyed = False
+        self._graphflow_changed: dict[Wake, None] = {}
+        self._graphflow_is_destroyed = False
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
-        mark = partial(node.bell.mark, self)
+        mark = partial(node._graphflow.bell.mark, self)
 
         def client(carrier: Any, part: str, qos: QoSProfile) -> Any:
             type_ = registry.interface_class(messages.type_name(carrier))
             full = f"{name}/_action/{part}"
             return held.add(
-                node.held,
-                lambda core: ThreadedClient(core, type_, full, to_graphflow(qos), node.bell, mark, self._look),
+                node._graphflow.node,
+                lambda core: ThreadedClient(
+                    core, type_, full, to_graphflow(qos), node._graphflow.bell, mark, self._graphflow_look
+                ),
             )
 
         def subscription(carrier: Any, part: str, qos: QoSProfile) -> Any:
             full = f"{name}/_action/{part}"
             return held.add(
-                node.held,
+                node._graphflow.node,
                 lambda core: ThreadedSubscription(
-                    core, carrier, full, to_graphflow(qos), node.bell, mark, lambda event: self._look()
+                    core,
+                    carrier,
+                    full,
+                    to_graphflow(qos),
+                    node._graphflow.bell,
+                    mark,
+                    lambda event: self._graphflow_look(),
                 ),
             )
 
-        self._goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
-        self._cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
-        self._results = client(carriers.GetResultService, "get_result", result_service_qos_profile)
-        self._feedback = subscription(carriers.FeedbackMessage, "feedback", feedback_sub_qos_profile)
-        self._status = subscription(carriers.GoalStatusMessage, "status", status_sub_qos_profile)
+        self._graphflow_goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._graphflow_cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._graphflow_results = client(carriers.GetResultService, "get_result", result_service_qos_profile)
+        self._graphflow_feedback = subscription(carriers.FeedbackMessage, "feedback", feedback_sub_qos_profile)
+        self._graphflow_status = subscription(carriers.GoalStatusMessage, "status", status_sub_qos_profile)
         node.add_waitable(self)
 
-    def _look(self) -> None:
+    def _graphflow_look(self) -> None:
         """Something of the server's came or went."""
-        for wake in list(self._changed):
+        for wake in list(self._graphflow_changed):
             wake.set()
 
     # what executors ask
 
     def is_ready(self, wait_set: Any) -> bool:
-        if self._is_destroyed:
+        if self._graphflow_is_destroyed:
             return False
-        clients = (self._goals, self._cancels, self._results)
-        return any(c.inbox.items for c in clients) or self._feedback.waiting > 0 or self._status.waiting > 0
+        clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
+        return (
+            any(c.inbox.items for c in clients)
+            or self._graphflow_feedback.waiting > 0
+            or self._graphflow_status.waiting > 0
+        )
 
     def take_data(self) -> list[Callable[[], Any]]:
         work: list[Callable[[], Any]] = []
-        status = self._status.take()
+        status = self._graphflow_status.take()
         if status is not None:
-            work.append(partial(self._heard_status, status.payload))
-        feedback = self._feedback.take()
+            work.append(partial(self._graphflow_heard_status, status.payload))
+        feedback = self._graphflow_feedback.take()
         if feedback is not None:
-            work.append(partial(self._heard_feedback, feedback.payload))
-        for client in (self._goals, self._cancels, self._results):
+            work.append(partial(self._graphflow_heard_feedback, feedback.payload))
+        for client in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results):
             answered = client.take()
             if answered is not None:
-                work.append(partial(self._settle, client, answered))
+                work.append(partial(self._graphflow_settle, client, answered))
         return work
 
     async def execute(self, taken_data: list[Callable[[], Any]]) -> None:
@@ -175,9 +187,9 @@ class ActionClient(Waitable):
     def add_to_wait_set(self, wait_set: Any) -> None:
         """There are no wait sets."""
 
-    def _settle(self, client: Any, answered: Any) -> None:
-        with self._lock:
-            found = self._waiting.pop((client, answered.sequence), None)
+    def _graphflow_settle(self, client: Any, answered: Any) -> None:
+        with self._graphflow_lock:
+            found = self._graphflow_waiting.pop((client, answered.sequence), None)
         if found is None or found[0].cancelled():
             return
         future, made = found
@@ -186,13 +198,13 @@ class ActionClient(Waitable):
         elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
             future.set_exception(answered.error)
 
-    def _heard_feedback(self, payload: bytes) -> None:
+    def _graphflow_heard_feedback(self, payload: bytes) -> None:
         message = messages.decode(self._action_type.Impl.FeedbackMessage, payload)
         callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))
         if callback is not None:
             callback(message)
 
-    def _heard_status(self, payload: bytes) -> None:
+    def _graphflow_heard_status(self, payload: bytes) -> None:
         message = messages.decode(self._action_type.Impl.GoalStatusMessage, payload)
         for row in message.status_list:
             key = bytes(row.goal_info.goal_id.uuid)
@@ -204,12 +216,12 @@ class ActionClient(Waitable):
 
     # goals
 
-    def _send(self, client: Any, request: Any, made: Callable[[bytes], Any]) -> Future[Any]:
+    def _graphflow_send(self, client: Any, request: Any, made: Callable[[bytes], Any]) -> Future[Any]:
         future: Future[Any] = Future()
-        with self._lock:
+        with self._graphflow_lock:
             with sending():
                 sequence = client.send(messages.encode(request))
-            self._waiting[client, sequence] = (future, made)
+            self._graphflow_waiting[client, sequence] = (future, made)
         return future
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
@@ -226,10 +238,10 @@ class ActionClient(Waitable):
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
-        handle = self.block_on(self.send_goal_async(goal, **kwargs))
+        handle = self._graphflow_block_on(self.send_goal_async(goal, **kwargs))
         return handle.get_result() if handle is not None and handle.accepted else None
 
-    def block_on(self, future: Future[Any]) -> Any:
+    def _graphflow_block_on(self, future: Future[Any]) -> Any:
         """Block until a future is done, or the context was shut down."""
         life, wake = self._node.context.life, Wake()
         future._when_done(wake.set)
@@ -271,9 +283,9 @@ class ActionClient(Waitable):
                 self._feedback_callbacks.pop(key, None)
             return handle
 
-        return self._send(self._goals, carrier.Request(goal_id=goal_id, goal=goal), made)
+        return self._graphflow_send(self._graphflow_goals, carrier.Request(goal_id=goal_id, goal=goal), made)
 
-    def cancel(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _graphflow_cancel(self, goal_handle: ClientGoalHandle) -> Future[Any]:
         """Ask for the cancellation of a goal. Raises TypeError for no goal."""
         from action_msgs.srv import CancelGoal
 
@@ -281,9 +293,11 @@ class ActionClient(Waitable):
             raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
         request = CancelGoal.Request()
         request.goal_info.goal_id = goal_handle.goal_id
-        return self._send(self._cancels, request, lambda payload: messages.decode(CancelGoal.Response, payload))
+        return self._graphflow_send(
+            self._graphflow_cancels, request, lambda payload: messages.decode(CancelGoal.Response, payload)
+        )
 
-    def result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+    def _graphflow_result_of(self, goal_handle: ClientGoalHandle) -> Future[Any]:
         """Ask for the result of a goal. Raises TypeError for no goal."""
         if not isinstance(goal_handle, ClientGoalHandle):
             raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
@@ -296,36 +310,46 @@ class ActionClient(Waitable):
             goal_handle._status = response.status
             return response
 
-        return self._send(self._results, carrier.Request(goal_id=goal_handle.goal_id), made)
+        return self._graphflow_send(self._graphflow_results, carrier.Request(goal_id=goal_handle.goal_id), made)
 
     # servers
 
     def server_is_ready(self) -> bool:
         """Whether there is a server, with all its parts."""
-        clients = (self._goals, self._cancels, self._results)
-        return all(c.has_server for c in clients) and bool(self._feedback.matched) and bool(self._status.matched)
+        clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
+        return (
+            all(c.has_server for c in clients)
+            and bool(self._graphflow_feedback.matched)
+            and bool(self._graphflow_status.matched)
+        )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block until there is a server, at most `timeout_sec` seconds; whether there is one."""
         life, wake = self._node.context.life, Wake()
-        self._changed[wake] = None
+        self._graphflow_changed[wake] = None
         life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         try:
             return wake.wait_until(lambda: self.server_is_ready() or not life.is_ok, limit) and self.server_is_ready()
         finally:
             life.forget(wake)
-            self._changed.pop(wake, None)
+            self._graphflow_changed.pop(wake, None)
 
     def destroy(self) -> None:
         """Withdraw it. Goals go on."""
-        if self._is_destroyed:
+        if self._graphflow_is_destroyed:
             return
-        self._is_destroyed = True
+        self._graphflow_is_destroyed = True
         if self in self._node.waitables:
             self._node.remove_waitable(self)
         if self._node.context.ok():
-            for endpoint in (self._goals, self._cancels, self._results, self._feedback, self._status):
+            for endpoint in (
+                self._graphflow_goals,
+                self._graphflow_cancels,
+                self._graphflow_results,
+                self._graphflow_feedback,
+                self._graphflow_status,
+            ):
                 held.remove(endpoint)
 
 

@@ -104,7 +104,7 @@ class ServerGoalHandle:
                     f"goal_handle attempted invalid transition from state {self._status.name} with event {event.name}"
                 )
             self._status = following
-        self._action_server.publish_status()
+        self._action_server._graphflow_publish_status()
         if following.is_terminal:
             self._action_server.notify_goal_done()
 
@@ -116,7 +116,7 @@ class ServerGoalHandle:
 
     def publish_feedback(self, feedback: Any) -> None:
         """Tell the client how it is going. Raises TypeError if that is no feedback of the action's."""
-        self._action_server.publish_feedback(self, feedback)
+        self._action_server._graphflow_publish_feedback(self, feedback)
 
     def succeed(self) -> None:
         """It has reached its end. Raises RCLError if it had ended before."""
@@ -132,7 +132,7 @@ class ServerGoalHandle:
 
     def destroy(self) -> None:
         """Forget it."""
-        self._action_server.forget(self)
+        self._action_server._graphflow_forget(self)
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
@@ -189,32 +189,35 @@ class ActionServer(Waitable):
         self.register_execute_callback(execute_callback)
         check_for_type_support(action_type)
         self._node, self._action_type, self._action_name = node, action_type, action_name
-        self._result_timeout = result_timeout
+        self._graphflow_result_timeout = result_timeout
         self._lock = threading.RLock()
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._logger = node.get_logger().get_child("action_server")
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
-        mark = partial(node.bell.mark, self)
+        mark = partial(node._graphflow.bell.mark, self)
 
         def service(carrier: Any, part: str, qos: QoSProfile) -> Any:
             type_ = registry.interface_class(messages.type_name(carrier))
             return held.add(
-                node.held,
-                lambda core: ThreadedService(core, type_, f"{name}/_action/{part}", to_graphflow(qos), node.bell, mark),
+                node._graphflow.node,
+                lambda core: ThreadedService(
+                    core, type_, f"{name}/_action/{part}", to_graphflow(qos), node._graphflow.bell, mark
+                ),
             )
 
         def publisher(carrier: Any, part: str, qos: QoSProfile) -> Any:
             return held.add(
-                node.held, lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos))
+                node._graphflow.node,
+                lambda core: ThreadedPublisher(core, carrier, f"{name}/_action/{part}", to_graphflow(qos)),
             )
 
-        self._feedback = publisher(carriers.FeedbackMessage, "feedback", feedback_pub_qos_profile)
-        self._status = publisher(carriers.GoalStatusMessage, "status", status_pub_qos_profile)
-        self._cancels = service(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
-        self._results = service(carriers.GetResultService, "get_result", result_service_qos_profile)
-        self._goals = service(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
-        self._is_destroyed = False
+        self._graphflow_feedback = publisher(carriers.FeedbackMessage, "feedback", feedback_pub_qos_profile)
+        self._graphflow_status = publisher(carriers.GoalStatusMessage, "status", status_pub_qos_profile)
+        self._graphflow_cancels = service(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._graphflow_results = service(carriers.GetResultService, "get_result", result_service_qos_profile)
+        self._graphflow_goals = service(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._graphflow_is_destroyed = False
         node.add_waitable(self)
 
     @property
@@ -224,10 +227,16 @@ class ActionServer(Waitable):
     # what executors ask
 
     def is_ready(self, wait_set: Any) -> bool:
-        return not self._is_destroyed and any(s.inbox.items for s in (self._goals, self._cancels, self._results))
+        return not self._graphflow_is_destroyed and any(
+            s.inbox.items for s in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
+        )
 
     def take_data(self) -> list[tuple[Callable[[Asked], Any], Asked]]:
-        services = ((self._goals, self._goal), (self._cancels, self._cancel), (self._results, self._result))
+        services = (
+            (self._graphflow_goals, self._graphflow_goal),
+            (self._graphflow_cancels, self._graphflow_cancel),
+            (self._graphflow_results, self._graphflow_result),
+        )
         taken = [(do, service.take()) for service, do in services]
         return [(do, asked) for do, asked in taken if asked is not None]
 
@@ -243,7 +252,7 @@ class ActionServer(Waitable):
 
     # goals
 
-    async def _goal(self, asked: Asked) -> None:
+    async def _graphflow_goal(self, asked: Asked) -> None:
         carrier = self._action_type.Impl.SendGoalService
         request = messages.decode(carrier.Request, asked.payload)
         key = bytes(request.goal_id.uuid)
@@ -258,7 +267,7 @@ class ActionServer(Waitable):
                 self._logger.error(f"Error raised in goal callback: {error}")
                 traceback.print_exc()
                 with sending():
-                    self._goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
+                    self._graphflow_goals.answer(asked, messages.encode(carrier.Response(accepted=False)))
                 raise
             if not isinstance(answer, GoalResponse):
                 self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
@@ -271,9 +280,9 @@ class ActionServer(Waitable):
             handle = ServerGoalHandle(self, GoalInfo(goal_id=request.goal_id, stamp=stamp), request.goal)
             with self._lock:
                 self._goal_handles[key] = handle
-            self.publish_status()
+            self._graphflow_publish_status()
         with sending():
-            self._goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
+            self._graphflow_goals.answer(asked, messages.encode(carrier.Response(accepted=accepted, stamp=stamp)))
         if handle is not None:
             await await_or_execute(self._handle_accepted_callback, handle)
 
@@ -305,23 +314,23 @@ class ActionServer(Waitable):
         carrier = self._action_type.Impl.GetResultService
         response = carrier.Response(status=goal_handle.status, result=result)
         goal_handle._result.set_result(response)
-        if self._result_timeout >= 0:
-            LOOP.soon(self._expire_later, goal_handle)
+        if self._graphflow_result_timeout >= 0:
+            LOOP.soon(self._graphflow_expire_later, goal_handle)
 
-    def _expire_later(self, goal_handle: ServerGoalHandle) -> None:
-        LOOP.start().call_later(self._result_timeout, self.forget, goal_handle)
+    def _graphflow_expire_later(self, goal_handle: ServerGoalHandle) -> None:
+        LOOP.start().call_later(self._graphflow_result_timeout, self._graphflow_forget, goal_handle)
 
-    def forget(self, goal_handle: ServerGoalHandle) -> None:
+    def _graphflow_forget(self, goal_handle: ServerGoalHandle) -> None:
         """Keep a goal, and its result, no longer."""
         with self._lock:
             self._goal_handles.pop(bytes(goal_handle.goal_id.uuid), None)
 
-    async def _cancel(self, asked: Asked) -> None:
+    async def _graphflow_cancel(self, asked: Asked) -> None:
         from action_msgs.msg import GoalInfo
         from action_msgs.srv import CancelGoal
 
         request = messages.decode(CancelGoal.Request, asked.payload)
-        code, wanted = self._to_cancel(request.goal_info)
+        code, wanted = self._graphflow_to_cancel(request.goal_info)
         response = CancelGoal.Response(return_code=int(code))
         for goal in wanted:
             answer = await await_or_execute(self._cancel_callback, goal)
@@ -335,9 +344,9 @@ class ActionServer(Waitable):
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
         with sending():
-            self._cancels.answer(asked, messages.encode(response))
+            self._graphflow_cancels.answer(asked, messages.encode(response))
 
-    def _to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
+    def _graphflow_to_cancel(self, info: Any) -> tuple[CancelCode, list[ServerGoalHandle]]:
         """The goals that a request means: one by its id, those up to a time, or all. Source: CancelGoal.srv."""
         key, until_ns = bytes(info.goal_id.uuid), Time.from_msg(info.stamp).nanoseconds
         with self._lock:
@@ -356,28 +365,28 @@ class ActionServer(Waitable):
         ]
         return CancelCode.NONE, found
 
-    async def _result(self, asked: Asked) -> None:
+    async def _graphflow_result(self, asked: Asked) -> None:
         carrier = self._action_type.Impl.GetResultService
         request = messages.decode(carrier.Request, asked.payload)
         goal = self._goal_handles.get(bytes(request.goal_id.uuid))
         if goal is None:
             self._logger.debug("Sending result response for unknown goal ID")
             with sending():
-                self._results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
+                self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
             return
-        goal._result._when_done(partial(self._answer_result, asked, goal))
+        goal._result._when_done(partial(self._graphflow_answer_result, asked, goal))
 
-    def _answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
-        if not self._is_destroyed:
+    def _graphflow_answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
+        if not self._graphflow_is_destroyed:
             with sending():
-                self._results.answer(asked, messages.encode(goal._result.result()))
+                self._graphflow_results.answer(asked, messages.encode(goal._result.result()))
 
     def notify_goal_done(self) -> None:
         """A goal has ended: results are kept from then on for their time."""
 
     # topics
 
-    def publish_status(self) -> None:
+    def _graphflow_publish_status(self) -> None:
         """Publish the states of all goals that are known."""
         from action_msgs.msg import GoalInfo
         from action_msgs.msg import GoalStatus as StatusMessage
@@ -388,19 +397,19 @@ class ActionServer(Waitable):
             StatusMessage(goal_info=GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
             for goal in goals
         ]
-        if not self._is_destroyed:
+        if not self._graphflow_is_destroyed:
             message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
             with sending():
-                self._status.put(messages.encode(message))
+                self._graphflow_status.put(messages.encode(message))
 
-    def publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
+    def _graphflow_publish_feedback(self, goal_handle: ServerGoalHandle, feedback: Any) -> None:
         """Publish feedback on a goal. Raises TypeError if it is none of the action's."""
         if not isinstance(feedback, self._action_type.Feedback):
             raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}")
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
-        if not self._is_destroyed:
+        if not self._graphflow_is_destroyed:
             with sending():
-                self._feedback.put(messages.encode(message))
+                self._graphflow_feedback.put(messages.encode(message))
 
     # callbacks
 
@@ -422,15 +431,21 @@ class ActionServer(Waitable):
 
     def destroy(self) -> None:
         """Withdraw it. Goals that run go on, and their results are lost."""
-        if self._is_destroyed:
+        if self._graphflow_is_destroyed:
             return
-        self._is_destroyed = True
+        self._graphflow_is_destroyed = True
         with self._lock:
             self._goal_handles.clear()
         if self in self._node.waitables:
             self._node.remove_waitable(self)
         if self._node.context.ok():
-            for endpoint in (self._goals, self._results, self._cancels, self._feedback, self._status):
+            for endpoint in (
+                self._graphflow_goals,
+                self._graphflow_results,
+                self._graphflow_cancels,
+                self._graphflow_feedback,
+                self._graphflow_status,
+            ):
                 held.remove(endpoint)
 
 

@@ -19,7 +19,7 @@ class DestroyMethods:
 
     _graphflow: Inner
 
-    def _look_again(self) -> None:
+    def _graphflow_look_again(self) -> None:
         """Have the executor see what there is."""
         executor = self._graphflow.executor()
         if executor is not None:
@@ -28,15 +28,15 @@ class DestroyMethods:
     def add_waitable(self, waitable: Any) -> None:
         """Have the executor look after it."""
         self._graphflow.waitables.append(waitable)
-        self._look_again()
+        self._graphflow_look_again()
 
     def remove_waitable(self, waitable: Any) -> None:
         """Have the executor look after it no longer."""
         self._graphflow.waitables.remove(waitable)
         self._graphflow.bell.ready.pop(waitable, None)
-        self._look_again()
+        self._graphflow_look_again()
 
-    def _destroy(self, things: list[Any], thing: Any) -> bool:
+    def _graphflow_destroy(self, things: list[Any], thing: Any) -> bool:
         if thing not in things:
             return False
         things.remove(thing)
@@ -47,26 +47,26 @@ class DestroyMethods:
             thing.destroy()
         except InvalidHandle:
             return False
-        self._look_again()
+        self._graphflow_look_again()
         return True
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
-        return self._destroy(self._graphflow.publishers, publisher)
+        return self._graphflow_destroy(self._graphflow.publishers, publisher)
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
-        return self._destroy(self._graphflow.subscriptions, subscription)
+        return self._graphflow_destroy(self._graphflow.subscriptions, subscription)
 
     def destroy_client(self, client: Client) -> bool:
-        return self._destroy(self._graphflow.clients, client)
+        return self._graphflow_destroy(self._graphflow.clients, client)
 
     def destroy_service(self, service: Service) -> bool:
-        return self._destroy(self._graphflow.services, service)
+        return self._graphflow_destroy(self._graphflow.services, service)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        return self._destroy(self._graphflow.timers, timer)
+        return self._graphflow_destroy(self._graphflow.timers, timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        return self._destroy(self._graphflow.guards, guard)
+        return self._graphflow_destroy(self._graphflow.guards, guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         timer = rate._timer

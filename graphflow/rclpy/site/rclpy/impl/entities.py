@@ -42,7 +42,7 @@ def role_of(entity: Any) -> Role:
     if isinstance(entity, Client):
         return Role("reply", entity._endpoint.name)
     if isinstance(entity, ActionClient):
-        return Role("reply", entity._goals.name.partition("/_action/")[0])
+        return Role("reply", entity._graphflow_goals.name.partition("/_action/")[0])
     if isinstance(entity, ActionServer):
         return Role("action", name_of(entity._execute_callback) or entity._action_name)
     kind = next((word for cls, word in _KINDS.items() if isinstance(entity, cls)), "waitable")
@@ -71,12 +71,18 @@ def arrived(entity: Any) -> tuple[tuple[str, ...], int]:
     if isinstance(entity, Service):
         return _requests(entity._endpoint)
     if isinstance(entity, ActionServer):
-        parts = [_requests(endpoint) for endpoint in (entity._goals, entity._cancels, entity._results)]
+        parts = [
+            _requests(endpoint)
+            for endpoint in (entity._graphflow_goals, entity._graphflow_cancels, entity._graphflow_results)
+        ]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
     if isinstance(entity, Client):
         return _answers(entity._endpoint)
     if isinstance(entity, ActionClient):
-        parts = [_answers(endpoint) for endpoint in (entity._goals, entity._cancels, entity._results)]
+        parts = [
+            _answers(endpoint)
+            for endpoint in (entity._graphflow_goals, entity._graphflow_cancels, entity._graphflow_results)
+        ]
         return tuple(call for calls, _ in parts for call in calls), sum(number for _, number in parts)
     waiting = getattr(getattr(entity, "_endpoint", None), "waiting", 0)
     return (), waiting if isinstance(waiting, int) else 0

@@ -25,13 +25,13 @@ class GraphMethods:
     """A node's methods for the graph; for `Node` to derive from."""
 
     _graphflow: Inner
-    _handle_of_node: Handle
+    _graphflow_handle_of_node: Handle
 
-    def _graph(self, look: Callable[[GraphCache], Any]) -> Any:
-        with self._handle_of_node:
+    def _graphflow_graph(self, look: Callable[[GraphCache], Any]) -> Any:
+        with self._graphflow_handle_of_node:
             return LOOP.call(look, self._graphflow.core.context.cache)
 
-    def _of_node(self, node_name: str, node_namespace: str, kind: Kind) -> list[tuple[str, list[str]]]:
+    def _graphflow_of_node(self, node_name: str, node_namespace: str, kind: Kind) -> list[tuple[str, list[str]]]:
         full = f"{node_namespace.rstrip('/')}/{node_name}"
         _refuse_names(node_name, node_namespace)
 
@@ -43,7 +43,7 @@ class GraphMethods:
                 found.setdefault(entity.name, set()).add(entity.type)
             return [(name, sorted(types)) for name, types in sorted(found.items())]
 
-        rows = self._graph(look)
+        rows = self._graphflow_graph(look)
         if rows is None:
             raise NodeNameNonExistentError(f"Cannot get information about node {full}: it does not exist")
         found: list[tuple[str, list[str]]] = rows
@@ -53,32 +53,32 @@ class GraphMethods:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> list[tuple[str, list[str]]]:
         """The topics that a node publishes, with their types. Raises NodeNameNonExistentError."""
-        return self._of_node(node_name, node_namespace, Kind.PUBLISHER)
+        return self._graphflow_of_node(node_name, node_namespace, Kind.PUBLISHER)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> list[tuple[str, list[str]]]:
-        return self._of_node(node_name, node_namespace, Kind.SUBSCRIPTION)
+        return self._graphflow_of_node(node_name, node_namespace, Kind.SUBSCRIPTION)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> list[tuple[str, list[str]]]:
-        return self._of_node(node_name, node_namespace, Kind.SERVICE)
+        return self._graphflow_of_node(node_name, node_namespace, Kind.SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> list[tuple[str, list[str]]]:
-        return self._of_node(node_name, node_namespace, Kind.CLIENT)
+        return self._graphflow_of_node(node_name, node_namespace, Kind.CLIENT)
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> list[tuple[str, list[str]]]:
         """All topics, with their types."""
-        rows: dict[str, list[str]] = self._graph(lambda cache: cache.topics(hidden=True))
+        rows: dict[str, list[str]] = self._graphflow_graph(lambda cache: cache.topics(hidden=True))
         return list(rows.items())
 
     def get_service_names_and_types(self) -> list[tuple[str, list[str]]]:
         """All services, with their types."""
-        rows: dict[str, list[str]] = self._graph(lambda cache: cache.services(hidden=True))
+        rows: dict[str, list[str]] = self._graphflow_graph(lambda cache: cache.services(hidden=True))
         return list(rows.items())
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """All nodes."""
-        names: list[str] = self._graph(lambda cache: cache.nodes())
+        names: list[str] = self._graphflow_graph(lambda cache: cache.nodes())
         return [(name.rpartition("/")[2], name.rpartition("/")[0] or "/") for name in names]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
@@ -88,36 +88,36 @@ class GraphMethods:
         return [name for name, _ in self.get_node_names_and_namespaces()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
-        found: list[str] = self._graph(lambda cache: cache.nodes())
+        found: list[str] = self._graphflow_graph(lambda cache: cache.nodes())
         return found
 
-    def _count(self, name: str, kind: Kind, of: Any) -> int:
+    def _graphflow_count(self, name: str, kind: Kind, of: Any) -> int:
         if not isinstance(name, str):
             raise TypeError(f"a name is a str, not {type(name)}")
         inner = self._graphflow
         full = expand_topic_name(name, inner.node.name, inner.node.namespace)
         full = inner.core.names.resolve(full, of)
-        return int(self._graph(lambda cache: len(cache.endpoints(kind, full))))
+        return int(self._graphflow_graph(lambda cache: len(cache.endpoints(kind, full))))
 
     def count_publishers(self, topic_name: str) -> int:
-        return self._count(topic_name, Kind.PUBLISHER, "topic")
+        return self._graphflow_count(topic_name, Kind.PUBLISHER, "topic")
 
     def count_subscribers(self, topic_name: str) -> int:
-        return self._count(topic_name, Kind.SUBSCRIPTION, "topic")
+        return self._graphflow_count(topic_name, Kind.SUBSCRIPTION, "topic")
 
     def count_clients(self, service_name: str) -> int:
-        return self._count(service_name, Kind.CLIENT, "service")
+        return self._graphflow_count(service_name, Kind.CLIENT, "service")
 
     def count_services(self, service_name: str) -> int:
-        return self._count(service_name, Kind.SERVICE, "service")
+        return self._graphflow_count(service_name, Kind.SERVICE, "service")
 
-    def _info(self, topic_name: str, kind: Kind, no_mangle: bool) -> list[TopicEndpointInfo]:
+    def _graphflow_info(self, topic_name: str, kind: Kind, no_mangle: bool) -> list[TopicEndpointInfo]:
         if not isinstance(topic_name, str):
             raise TypeError(f"a topic's name is a str, not {type(topic_name)}")
-        full = topic_name if no_mangle else self._expanded(topic_name)
-        return [_endpoint_info(entity) for entity in self._graph(lambda cache: cache.endpoints(kind, full))]
+        full = topic_name if no_mangle else self._graphflow_expanded(topic_name)
+        return [_endpoint_info(entity) for entity in self._graphflow_graph(lambda cache: cache.endpoints(kind, full))]
 
-    def _expanded(self, topic_name: str) -> str:
+    def _graphflow_expanded(self, topic_name: str) -> str:
         inner = self._graphflow
         try:
             full = expand_topic_name(topic_name, inner.node.name, inner.node.namespace)
@@ -128,11 +128,11 @@ class GraphMethods:
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """What is known of a topic's publishers."""
-        return self._info(topic_name, Kind.PUBLISHER, no_mangle)
+        return self._graphflow_info(topic_name, Kind.PUBLISHER, no_mangle)
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """What is known of a topic's subscriptions."""
-        return self._info(topic_name, Kind.SUBSCRIPTION, no_mangle)
+        return self._graphflow_info(topic_name, Kind.SUBSCRIPTION, no_mangle)
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Block until a node is there, at most `timeout` seconds; whether it is."""

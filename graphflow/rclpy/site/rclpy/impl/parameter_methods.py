@@ -25,14 +25,14 @@ class ParameterMethods:
     _graphflow: Inner
 
     @property
-    def _as_node(self) -> Any:
+    def _graphflow_as_node(self) -> Any:
         return self
 
-    def _open_parameters(self, has_services: bool) -> None:
+    def _graphflow_open_parameters(self, has_services: bool) -> None:
         from rcl_interfaces.msg import ParameterEvent
         from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 
-        inner, node = self._graphflow, self._as_node
+        inner, node = self._graphflow, self._graphflow_as_node
         inner.events = node.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
         inner.time_source = TimeSource(node=self)
         inner.time_source.attach_clock(inner.clock)
@@ -45,11 +45,11 @@ class ParameterMethods:
             LOOP.call(answers.serve, inner.core)
             options: dict[str, Any] = {"qos_profile": qos_profile_parameters}
             base = node.get_name()
-            node.create_service(SetParameters, f"{base}/set_parameters", self._asked_to_set, **options)
+            node.create_service(SetParameters, f"{base}/set_parameters", self._graphflow_asked_to_set, **options)
             all_name = f"{base}/set_parameters_atomically"
-            node.create_service(SetParametersAtomically, all_name, self._asked_to_set_all, **options)
+            node.create_service(SetParametersAtomically, all_name, self._graphflow_asked_to_set_all, **options)
 
-    def _declare_overrides(self) -> None:
+    def _graphflow_declare_overrides(self) -> None:
         from rcl_interfaces.msg import ParameterDescriptor
 
         parameters = self._graphflow.parameters
@@ -186,7 +186,7 @@ class ParameterMethods:
         found: ParameterValue = self._graphflow.parameters.set_descriptor(name, descriptor, alternative_value)
         return found
 
-    def _parameters_changed(self, parameters: list[Parameter[Any]], former: Any) -> None:
+    def _graphflow_parameters_changed(self, parameters: list[Parameter[Any]], former: Any) -> None:
         from rcl_interfaces.msg import ParameterEvent
 
         events = self._graphflow.events
@@ -204,15 +204,15 @@ class ParameterMethods:
                 event.new_parameters.append(message)
         events.publish(event)
 
-    def _asked_to_set(self, request: Any, response: Any) -> Any:
-        response.results = [self._asked([parameter]) for parameter in request.parameters]
+    def _graphflow_asked_to_set(self, request: Any, response: Any) -> Any:
+        response.results = [self._graphflow_asked([parameter]) for parameter in request.parameters]
         return response
 
-    def _asked_to_set_all(self, request: Any, response: Any) -> Any:
-        response.result = self._asked(request.parameters)
+    def _graphflow_asked_to_set_all(self, request: Any, response: Any) -> Any:
+        response.result = self._graphflow_asked(request.parameters)
         return response
 
-    def _asked(self, given: Sequence[Any]) -> Any:
+    def _graphflow_asked(self, given: Sequence[Any]) -> Any:
         from rcl_interfaces.msg import SetParametersResult
 
         try:

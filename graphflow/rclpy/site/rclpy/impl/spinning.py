@@ -13,7 +13,6 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.task import Task
 
 if TYPE_CHECKING:
-    from graphflow.rclpy.held import NodeBell
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
 
@@ -56,9 +55,7 @@ class SpunNode(Protocol):
     """A node, as an executor sees it."""
 
     executor: Any
-
-    @property
-    def bell(self) -> NodeBell: ...
+    _graphflow: Any
 
     @property
     def timers(self) -> Any: ...
@@ -222,7 +219,7 @@ class Spinning:
         for node in chosen:
             self._round.extend((timer, node) for timer in list(node.timers) if timer.has_work())
         for node in chosen:
-            bell = node.bell
+            bell = node._graphflow.bell
             bell.attend()
             ready = bell.ready
             for waitable in list(node.waitables):

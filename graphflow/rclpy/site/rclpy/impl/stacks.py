@@ -16,8 +16,8 @@ from rclpy.impl.spinning import Run, Spinning
 _STEP = Run._step.__code__
 _NEXT = Spinning.next.__code__
 _SPINS = (
-    SingleThreadedExecutor._do_one.__code__,
-    MultiThreadedExecutor._do_one.__code__,
+    SingleThreadedExecutor._graphflow_do_one.__code__,
+    MultiThreadedExecutor._graphflow_do_one.__code__,
     Executor.spin_until_future_complete.__code__,
 )
 _OURS = ("graphflow-", "executor-")

@@ -345,7 +345,7 @@ class _Look:
                 if sequence is not None:
                     return self._of_call(entity._endpoint, sequence)
             elif isinstance(entity, ActionClient):
-                found = next((key for key, (f, _) in list(entity._waiting.items()) if f is future), None)
+                found = next((key for key, (f, _) in list(entity._graphflow_waiting.items()) if f is future), None)
                 if found is not None:
                     return self._of_call(*found)
         return self._closed_world(level, future, node, run)
@@ -458,7 +458,7 @@ def executors() -> list[Executor]:
 
 
 def _name(node: Any) -> str:
-    return "" if node is None else str(node.held.full_name)
+    return "" if node is None else str(node._graphflow.node.full_name)
 
 
 def _called(group: Any, node: Any) -> str:

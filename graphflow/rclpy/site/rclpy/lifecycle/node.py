@@ -84,68 +84,68 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("enable_communication_interface must be a bool")
         self._managed_entities: dict[ManagedEntity, None] = {self: None}
         self._state_machine = _StateMachine(has_services=enable_communication_interface)
-        self._transition_event: Any = None
+        self._graphflow_transition_event: Any = None
         if enable_communication_interface:
-            self._open_services(callback_group)
+            self._graphflow_open_services(callback_group)
 
-    def _open_services(self, group: CallbackGroup | None) -> None:
+    def _graphflow_open_services(self, group: CallbackGroup | None) -> None:
         from lifecycle_msgs import msg, srv
 
         node: Any = self
         group = group or node.default_callback_group
-        self._transition_event = node.create_publisher(msg.TransitionEvent, "~/transition_event", 10)
+        self._graphflow_transition_event = node.create_publisher(msg.TransitionEvent, "~/transition_event", 10)
 
         def service(type_: Any, name: str, callback: Callable[[Any, Any], Any]) -> Any:
             return node.create_service(type_, f"~/{name}", callback, callback_group=group)
 
-        self._service_change_state = service(srv.ChangeState, "change_state", self._asked_to_change)
-        self._service_get_state = service(srv.GetState, "get_state", self._asked_for_state)
+        self._service_change_state = service(srv.ChangeState, "change_state", self._graphflow_asked_to_change)
+        self._service_get_state = service(srv.GetState, "get_state", self._graphflow_asked_for_state)
         self._service_get_available_states = service(
-            srv.GetAvailableStates, "get_available_states", self._asked_for_states
+            srv.GetAvailableStates, "get_available_states", self._graphflow_asked_for_states
         )
         self._service_get_available_transitions = service(
-            srv.GetAvailableTransitions, "get_available_transitions", self._asked_for_transitions
+            srv.GetAvailableTransitions, "get_available_transitions", self._graphflow_asked_for_transitions
         )
         self._service_get_transition_graph = service(
-            srv.GetAvailableTransitions, "get_transition_graph", self._asked_for_graph
+            srv.GetAvailableTransitions, "get_transition_graph", self._graphflow_asked_for_graph
         )
 
     # transitions
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure. Raises RCLError if that cannot be done from here."""
-        return self._trigger("configure")
+        return self._graphflow_trigger("configure")
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Clean up. Raises RCLError if that cannot be done from here."""
-        return self._trigger("cleanup")
+        return self._graphflow_trigger("cleanup")
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Shut down. Raises RCLError if that cannot be done from here."""
-        return self._trigger("shutdown")
+        return self._graphflow_trigger("shutdown")
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Activate. Raises RCLError if that cannot be done from here."""
-        return self._trigger("activate")
+        return self._graphflow_trigger("activate")
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Deactivate. Raises RCLError if that cannot be done from here."""
-        return self._trigger("deactivate")
+        return self._graphflow_trigger("deactivate")
 
-    def _trigger(self, wanted: int | str) -> TransitionCallbackReturn:
+    def _graphflow_trigger(self, wanted: int | str) -> TransitionCallbackReturn:
         machine = self._state_machine
         transition = asked(machine.state, wanted)
         if transition is None:
             raise RCLError(f"Transition is not registered: {wanted!r} from state {machine.state.label}")
         former = machine.state
-        self._go(transition)
-        outcome = self._run_hook(former)
-        self._go(after(machine.state, outcome))
+        self._graphflow_go(transition)
+        outcome = self._graphflow_run_hook(former)
+        self._graphflow_go(after(machine.state, outcome))
         if machine.state is State.ERRORPROCESSING:
-            self._go(after(machine.state, self._run_hook(former)))
+            self._graphflow_go(after(machine.state, self._graphflow_run_hook(former)))
         return TransitionCallbackReturn(int(outcome))
 
-    def _run_hook(self, former: State) -> Outcome:
+    def _graphflow_run_hook(self, former: State) -> Outcome:
         hook, state = self._state_machine.state.hook, LifecycleState(former.label, int(former))
         for entity in list(self._managed_entities):
             try:
@@ -161,9 +161,9 @@ class LifecycleNodeMixin(ManagedEntity):
                 return Outcome(answer.value)
         return Outcome.SUCCESS
 
-    def _go(self, transition: Transition) -> None:
+    def _graphflow_go(self, transition: Transition) -> None:
         self._state_machine.state = transition.goal
-        if self._transition_event is None:
+        if self._graphflow_transition_event is None:
             return
         from lifecycle_msgs.msg import State as StateMessage
         from lifecycle_msgs.msg import Transition as TransitionMessage
@@ -176,7 +176,7 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         if hasattr(event, "timestamp"):
             event.timestamp = node.get_clock().now().nanoseconds
-        self._transition_event.publish(event)
+        self._graphflow_transition_event.publish(event)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Tell an entity of transitions too, after the node's own callbacks."""
@@ -223,31 +223,31 @@ class LifecycleNodeMixin(ManagedEntity):
 
     # what others ask
 
-    def _asked_to_change(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_to_change(self, request: Any, response: Any) -> Any:
         wanted = request.transition
         state = self._state_machine.state
         known = asked(state, wanted.label) if wanted.label else asked(state, wanted.id)
         response.success = False
         if known is not None:
-            response.success = self._trigger(known.id) is TransitionCallbackReturn.SUCCESS
+            response.success = self._graphflow_trigger(known.id) is TransitionCallbackReturn.SUCCESS
         return response
 
-    def _asked_for_state(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_state(self, request: Any, response: Any) -> Any:
         response.current_state.id, response.current_state.label = self._state_machine.current_state
         return response
 
-    def _asked_for_states(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_states(self, request: Any, response: Any) -> Any:
         from lifecycle_msgs.msg import State as StateMessage
 
         rows = self._state_machine.available_states
         response.available_states = [StateMessage(id=number, label=label) for number, label in rows]
         return response
 
-    def _asked_for_transitions(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_transitions(self, request: Any, response: Any) -> Any:
         response.available_transitions = _described(available(self._state_machine.state))
         return response
 
-    def _asked_for_graph(self, request: Any, response: Any) -> Any:
+    def _graphflow_asked_for_graph(self, request: Any, response: Any) -> Any:
         response.available_transitions = _described(TRANSITIONS)
         return response
 

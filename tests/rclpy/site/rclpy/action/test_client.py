@@ -73,7 +73,7 @@ def test_what_is_no_goal_is_refused(node: Node) -> None:
     for wrong in (lambda: client.send_goal("x"), lambda: client.send_goal_async("x")):
         with pytest.raises(TypeError):
             wrong()
-    for refuse in (client.cancel, client.result_of):
+    for refuse in (client._graphflow_cancel, client._graphflow_result_of):
         with pytest.raises(TypeError):
             refuse("x")  # type: ignore[arg-type]
     client.destroy()

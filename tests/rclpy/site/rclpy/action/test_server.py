@@ -111,7 +111,7 @@ def test_cancel_requests_mean_one_goal_some_or_all(node: Node, spin: Spinner) ->
         info.goal_id.uuid = list(key)
         if stamp is not None:
             info.stamp = stamp
-        return [kept.index(goal) for goal in server._to_cancel(info)[1]]
+        return [kept.index(goal) for goal in server._graphflow_to_cancel(info)[1]]
 
     assert meant(bytes(16), None) == [0, 1, 2]
     assert meant(bytes(16), kept[1].stamp) == [0, 1]
