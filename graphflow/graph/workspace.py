@@ -29,7 +29,7 @@ _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
 _COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
-_MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)", re.IGNORECASE)
+_MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
 
 
@@ -48,13 +48,15 @@ class Package:
     folder: Path
 
     @property
-    def has_modules(self) -> bool:
-        """Whether Python imports from it: a folder of its name or that CMake installs, or modules of executables."""
+    def import_roots(self) -> list[Path]:
+        """The folders that Python imports from: of a package of its name or that CMake installs, of executables."""
+        folders = {self.folder / self.name}
+        for name, folder in _MODULES.findall(cmake_text(self.folder)):
+            folders.add(self.folder / (folder or name).replace("${PROJECT_NAME}", self.name).strip('"'))
+        roots = {folder.parent for folder in folders if next(folder.glob("*.py"), None) is not None}
         if any(self.file_of(entry).is_file() for entry in self.entry_points.values()):
-            return True
-        text = cmake_text(self.folder)
-        names = {self.name, *(n.replace("${PROJECT_NAME}", self.name) for n in _MODULES.findall(text))}
-        return any(next((self.folder / name).glob("*.py"), None) is not None for name in names)
+            roots.add(self.folder)
+        return sorted(roots)
 
     @property
     def has_interfaces(self) -> bool:
@@ -125,7 +127,7 @@ class Workspace:
     @property
     def import_roots(self) -> list[Path]:
         """The folders of packages from which Python imports."""
-        return [p.folder for p in self.packages.values() if p.has_modules]
+        return [root for package in self.packages.values() for root in package.import_roots]
 
     @property
     def interfaces(self) -> dict[str, Path]:

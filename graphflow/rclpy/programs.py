@@ -14,6 +14,7 @@ from graphflow.errors import UsageFault
 from graphflow.graph.workspace import EntryPoint, Package, Workspace, find_workspace, uses_rclpy
 from graphflow.names import did_you_mean
 from graphflow.rclpy import enabling, finder
+from graphflow.wire.profile import wire_profile
 
 
 class Program(NamedTuple):
@@ -94,6 +95,7 @@ def run(program: Program) -> None:
         UsageFault: It has not the function that it is said to be.
     """
     make_importable(program.workspace)
+    os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     sys.argv = [str(program.file), *program.words]
     if program.entry is None:
         if program.file.suffix != ".py" and not _is_python(program.file):

@@ -21,6 +21,7 @@ from typing import Any
 from graphflow.graph.workspace import find_workspace
 from graphflow.supervisor.launch_actions import actions, number_targets
 from graphflow.supervisor.launch_stand_ins import RECORDING, StandIns, as_text
+from graphflow.wire.profile import wire_profile
 
 
 class _Environment(dict[str, str]):
@@ -41,6 +42,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         RECORDING.values = {name: as_text(value) for name, value in values.items()}
     sys.meta_path.insert(0, StandIns())
     sys.path[:0] = [str(folder) for folder in find_workspace(Path(path)).import_roots]
+    os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
     found: list[dict[str, Any]] = []
     try:

@@ -162,3 +162,12 @@ def test_a_module_beside_setup_py(tmp_path: Path) -> None:
     assert find_workspace(folder).import_roots == []
     (folder / "teleop.py").touch()
     assert find_workspace(folder).import_roots == [folder]
+
+
+def test_modules_that_cmake_installs_from_elsewhere(tmp_path: Path) -> None:
+    """They are imported from the folder that theirs lies in."""
+    cmake = "ament_python_install_package(${PROJECT_NAME} PACKAGE_DIR src/${PROJECT_NAME})"
+    folder = package(tmp_path / "a", "filters", CMakeLists_dot_txt=cmake)
+    (folder / "src" / "filters").mkdir(parents=True)
+    (folder / "src" / "filters" / "__init__.py").touch()
+    assert find_workspace(folder).import_roots == [folder / "src"]

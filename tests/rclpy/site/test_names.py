@@ -73,7 +73,7 @@ class CarelessClient(ActionClient):
 
     def __init__(self, node: Node) -> None:
         super().__init__(node, Fibonacci, "fib")
-        self._status = self._goals = self._results = self._lock = 3  # type: ignore[assignment]
+        self._status = self._goals = self._results = self._lock = 3
 
 
 def test_a_careless_program_runs() -> None:

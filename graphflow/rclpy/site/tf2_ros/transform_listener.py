@@ -12,6 +12,8 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 
+DEFAULT_TF_TOPIC = "/tf"
+DEFAULT_STATIC_TF_TOPIC = "/tf_static"
 DEPTH = 100
 
 
@@ -32,6 +34,8 @@ class TransformListener:
         qos: QoSProfile | int | None = None,
         static_qos: QoSProfile | int | None = None,
         static_only: bool = False,
+        tf_topic: str = DEFAULT_TF_TOPIC,
+        tf_static_topic: str = DEFAULT_STATIC_TF_TOPIC,
     ) -> None:
         self.buffer, self.node = buffer, node
         self.group = ReentrantCallbackGroup()
@@ -41,10 +45,10 @@ class TransformListener:
         self.tf_sub = None
         if not static_only:
             self.tf_sub = node.create_subscription(
-                TFMessage, "/tf", self.callback, DEPTH if qos is None else qos, callback_group=self.group
+                TFMessage, tf_topic, self.callback, DEPTH if qos is None else qos, callback_group=self.group
             )
         self.tf_static_sub = node.create_subscription(
-            TFMessage, "/tf_static", self.static_callback, static_qos, callback_group=self.group
+            TFMessage, tf_static_topic, self.static_callback, static_qos, callback_group=self.group
         )
         self.executor: SingleThreadedExecutor | None = None
         if spin_thread:

@@ -18,7 +18,11 @@ from rclpy.impl.stacks import Level
 from rclpy.task import Future
 from rclpy.timer import Rate, Timer
 
-_FUTURES = (Client.call.__code__, ActionClient._graphflow_block_on.__code__, Executor.spin_until_future_complete.__code__)
+_FUTURES = (
+    Client.call.__code__,
+    ActionClient._graphflow_block_on.__code__,
+    Executor.spin_until_future_complete.__code__,
+)
 """Functions that block until a future is done, which they call `future`."""
 _SLEEP = Rate.sleep.__code__
 _SEARCHED = (*_FUTURES, _SLEEP)

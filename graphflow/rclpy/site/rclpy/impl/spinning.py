@@ -31,9 +31,6 @@ class ShutdownException(Exception):
 class ExternalShutdownException(Exception):
     """The context was shut down while an executor was spinning."""
 
-    def __init__(self, *args: object) -> None:
-        super().__init__(*(args or ("The passed context is invalid",)))
-
 
 class ConditionReachedException(Exception):
     """What was waited for has come about."""

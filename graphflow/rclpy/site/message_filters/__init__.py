@@ -1,0 +1,208 @@
+"""Filters that messages pass: kept for a while, or held until those of other topics belong to them.
+
+Source: the Python API of message_filters.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from itertools import product
+from typing import Any
+
+from rclpy.clock import ROSClock
+from rclpy.duration import Duration
+from rclpy.logging import get_logger
+from rclpy.time import Time
+
+__all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+
+
+class SimpleFilter:
+    """Passes messages on to callbacks, other filters among them."""
+
+    def __init__(self) -> None:
+        self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
+
+    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:  # noqa: N802 - its name there
+        """Have `cb` called with each message that comes out, and `args` behind it; returns its number."""
+        number = len(self.callbacks)
+        self.callbacks[number] = (cb, args)
+        return number
+
+    def signalMessage(self, *msg: Any) -> None:  # noqa: N802 - its name there
+        """Pass messages on."""
+        for callback, args in list(self.callbacks.values()):
+            callback(*msg, *args)
+
+
+class Subscriber(SimpleFilter):
+    """What arrives on a topic. Its arguments are the node, and those of `create_subscription` without the callback."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__()
+        self.node, self.topic = args[0], args[2]
+        kwargs.setdefault("qos_profile", 10)
+        self.sub = self.node.create_subscription(*args[1:], self.callback, **kwargs)
+
+    def callback(self, msg: Any) -> None:
+        """A message has arrived."""
+        self.signalMessage(msg)
+
+    def getTopic(self) -> str:  # noqa: N802 - its name there
+        """The topic, as it was given."""
+        topic: str = self.topic
+        return topic
+
+    def __getattr__(self, key: str) -> Any:
+        """What a subscription has."""
+        return getattr(self.__dict__["sub"], key)
+
+
+class Cache(SimpleFilter):
+    """The last messages of a filter, with their times.
+
+    Args:
+        f: The filter.
+        cache_size: How many are kept.
+        allow_headerless: Whether messages without a header are kept, too, with the time of their arrival.
+    """
+
+    def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
+        super().__init__()
+        self.cache_size, self.allow_headerless = cache_size, allow_headerless
+        self.cache_msgs: list[Any] = []
+        self.cache_times: list[Time] = []
+        self.connectInput(f)
+
+    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802 - its name there
+        """Take messages from a filter."""
+        self.incoming_connection = f.registerCallback(self.add)
+
+    def add(self, msg: Any) -> None:
+        """Keep a message, and pass it on."""
+        stamp = _stamp(msg, self.allow_headerless, "message_filters_cache")
+        if stamp is None:
+            return
+        self.cache_msgs.append(msg)
+        self.cache_times.append(stamp)
+        del self.cache_msgs[: -self.cache_size], self.cache_times[: -self.cache_size]
+        self.signalMessage(msg)
+
+    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802 - its name there
+        """The messages of a span of time, both ends included."""
+        assert from_stamp <= to_stamp
+        return [msg for msg, time in self._kept() if from_stamp <= time <= to_stamp]
+
+    def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802 - its name there
+        """The first message that is not before a time, or None."""
+        return next((msg for msg, time in self._kept() if time >= stamp), None)
+
+    def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802 - its name there
+        """The last message that is not after a time, or None."""
+        return next((msg for msg, time in reversed(self._kept()) if time <= stamp), None)
+
+    def getLastestTime(self) -> Time | None:  # noqa: N802 - its name there
+        """The time of the last message, or None."""
+        return self.cache_times[-1] if self.cache_times else None
+
+    getLatestTime = getLastestTime  # noqa: N815 - its name there
+
+    def getOldestTime(self) -> Time | None:  # noqa: N802 - its name there
+        """The time of the first message that is kept, or None."""
+        return self.cache_times[0] if self.cache_times else None
+
+    def getLast(self) -> Any:  # noqa: N802 - its name there
+        """The last message, or None."""
+        latest = self.getLastestTime()
+        return None if latest is None else self.getElemAfterTime(latest)
+
+    def _kept(self) -> list[tuple[Any, Time]]:
+        return list(zip(self.cache_msgs, self.cache_times, strict=True))
+
+
+class TimeSynchronizer(SimpleFilter):
+    """Passes on one message of each of several filters, all with the same stamp.
+
+    Args:
+        fs: The filters.
+        queue_size: How many messages of each wait for the others.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+        super().__init__()
+        self.queue_size, self.lock = queue_size, threading.Lock()
+        self.connectInput(fs)
+
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802 - its name there
+        """Take messages from filters."""
+        self.queues: list[dict[int, Any]] = [{} for _ in fs]
+        pairs = enumerate(zip(fs, self.queues, strict=True))
+        self.input_connections = [f.registerCallback(self.add, queue, index) for index, (f, queue) in pairs]
+
+    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+        """A message has come out of a filter."""
+        with self.lock:
+            self._keep(Time.from_msg(msg.header.stamp).nanoseconds, msg, my_queue)
+            common = sorted(set[int].intersection(*(set(queue) for queue in self.queues)))
+            found = [[queue.pop(stamp) for queue in self.queues] for stamp in common]
+        for together in found:
+            self.signalMessage(*together)
+
+    def _keep(self, stamp_ns: int, msg: Any, queue: dict[int, Any]) -> None:
+        queue[stamp_ns] = msg
+        while len(queue) > self.queue_size:
+            del queue[min(queue)]
+
+
+class ApproximateTimeSynchronizer(TimeSynchronizer):
+    """Passes on one message of each of several filters, with stamps that are near to each other.
+
+    Args:
+        fs: The filters.
+        queue_size: How many messages of each wait for the others.
+        slop: Seconds that the stamps of messages which belong together differ at most.
+        allow_headerless: Whether messages without a header count, too, with the time of their arrival.
+    """
+
+    def __init__(
+        self, fs: Sequence[SimpleFilter], queue_size: int, slop: float, allow_headerless: bool = False
+    ) -> None:
+        super().__init__(fs, queue_size)
+        self.slop, self.allow_headerless = Duration(seconds=slop), allow_headerless
+
+    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+        """A message has come out of a filter."""
+        stamp = _stamp(msg, self.allow_headerless, "message_filters_approx")
+        if stamp is None:
+            return
+        with self.lock:
+            self._keep(stamp.nanoseconds, msg, my_queue)
+            stamps = self._nearest(stamp.nanoseconds, my_queue)
+            together = [queue.pop(at) for queue, at in zip(self.queues, stamps, strict=True)] if stamps else []
+        if together:
+            self.signalMessage(*together)
+
+    def _nearest(self, stamp_ns: int, mine: dict[int, Any]) -> Sequence[int]:
+        """The stamps of messages that belong to the one that has come, nearest first; none if one is missing."""
+        slop_ns = self.slop.nanoseconds
+        if stamp_ns not in mine:  # older than all that are kept
+            return ()
+        choices: list[Iterable[int]] = []
+        for queue in self.queues:
+            near = [stamp_ns] if queue is mine else [at for at in queue if abs(at - stamp_ns) <= slop_ns]
+            choices.append(sorted(near, key=lambda at: abs(at - stamp_ns)))
+        return next((stamps for stamps in product(*choices) if max(stamps) - min(stamps) < slop_ns), ())
+
+
+def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Time | None:
+    """When a message was made; None, with a warning, if it does not say."""
+    stamp = getattr(getattr(msg, "header", None), "stamp", None)
+    if stamp is not None:
+        return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
+    if allow_headerless:
+        return ROSClock().now()
+    get_logger(logger).warn(
+        "a message without a stamp is left out; allow_headerless=True takes the time of its arrival"
+    )
+    return None

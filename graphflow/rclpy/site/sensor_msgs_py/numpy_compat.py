@@ -1,0 +1,7 @@
+"""Structured arrays as plain ones; numpy has it."""
+
+from __future__ import annotations
+
+from numpy.lib.recfunctions import structured_to_unstructured
+
+__all__ = ["structured_to_unstructured"]
