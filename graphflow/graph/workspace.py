@@ -232,11 +232,13 @@ def _of_setup_py(file: Path) -> dict[str, EntryPoint]:
 
 
 def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
-    """What stands under `console_scripts`; all of a file where nothing does."""
+    """What stands under `console_scripts`: in a literal list, or else anywhere in a file that has such a group."""
     dicts = (node for node in ast.walk(tree) if isinstance(node, ast.Dict))
     pairs = (pair for one in dicts for pair in zip(one.keys, one.values, strict=True))
     lists = [value for key, value in pairs if isinstance(key, ast.Constant) and key.value == "console_scripts"]
-    tops: list[ast.AST] = [*lists] or [tree]
+    literal = [value for value in lists if isinstance(value, (ast.List, ast.Tuple))]
+    texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str))
+    tops: list[ast.AST] = [*literal] if literal else [tree] if any("console_scripts" in text for text in texts) else []
     return (node for top in tops for node in ast.walk(top))
 
 

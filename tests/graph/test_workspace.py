@@ -149,9 +149,13 @@ def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, ve
 
 
 def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:
-    """Those of extensions look the same; an entry in a file without `console_scripts` counts."""
+    """Those of extensions look the same. A list of `console_scripts` may stand elsewhere in the file."""
     groups = "{'ros2cli.command': ['x = a.x:X'], 'console_scripts': ['go = ' + 'a.go:main']}"
     folder = package(tmp_path / "a", "a", setup_dot_py=f"setup(entry_points={groups})")
+    assert find_workspace(folder).packages["a"].executables == ["go"]
+    (folder / "setup.py").write_text("setup(entry_points={'ros2cli.command': ['x = a.x:X']})")
+    assert find_workspace(folder).packages["a"].executables == []
+    (folder / "setup.py").write_text("s = ['go = a.go:main']\nsetup(entry_points={'console_scripts': s})")
     assert find_workspace(folder).packages["a"].executables == ["go"]
 
 
