@@ -32,9 +32,9 @@ def cases(number: int) -> settings:
     )
 
 
-def sample(names: Sequence[T]) -> Sequence[T]:
-    """One in four of many alike, beginning with the first; all of them with `--cases full`, as in CI."""
-    return names[::4] if _WANTED == "few" else names
+def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
+    """One in `step` of many alike, beginning with the first; all of them with `--cases full`, as in CI."""
+    return names[::step] if _WANTED == "few" else names
 
 
 def limit(number: int) -> pytest.MarkDecorator:
