@@ -8,6 +8,9 @@ import click
 
 from graphflow.cli import exits, output
 
+SHOWN = 4
+"""Names that a cell of the table holds."""
+
 
 @click.command(context_settings={"ignore_unknown_options": True})
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -54,8 +57,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
             output.talk("Nothing has to be built or sourced: what you edit is what runs.")
         heads = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
         body = [
-            (p.name, ", ".join(p.executables) or "-", ", ".join(shown) or "-", str(p.folder.relative_to(found.root)))
-            for p, shown in rows
+            (p.name, _some(p.executables), _some(shown), str(p.folder.relative_to(found.root))) for p, shown in rows
         ]
         output.lines(output.columns([*heads, *body]))
         for fault in faults:
@@ -63,3 +65,9 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
         if not faults and any(p.executables for p, _ in rows):
             output.talk("Start one with: graphflow run PACKAGE EXECUTABLE")
     return exits.FAILED if faults else exits.OK
+
+
+def _some(names: list[str]) -> str:
+    """The first names of a list; `--json` has all."""
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more or "-"

@@ -71,21 +71,13 @@ class MessagePackages:
 
         names = registry.names_in(package, kind)
         if len(rest) > 1:  # rosidl's modules of one class: geometry_msgs.msg._twist
-            names = [name for name in names if f"_{snake(name)}" == rest[1]]
+            names = [name for name in names if f"_{messages.snake(name)}" == rest[1]]
             if not names:
                 raise ModuleNotFoundError(f"No module named {module.__name__!r}", name=module.__name__)
         module.__doc__ = f"The {kind} interfaces of the package {package}."
         module.__dict__["__all__"] = names
         module.__getattr__ = make  # type: ignore[method-assign]
         module.__dir__ = lambda: names  # type: ignore[method-assign]
-
-
-def snake(name: str) -> str:
-    """`LaserScan` as rosidl names its module: `laser_scan`."""
-    import re
-
-    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
-    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
 def is_package(name: str) -> bool:

@@ -9,6 +9,7 @@ such a message is published.
 
 from __future__ import annotations
 
+import re
 from array import array
 from collections.abc import Callable
 from functools import cache
@@ -54,7 +55,8 @@ class StrictMessage(metaclass=_Generated):
 
     def __repr__(self) -> str:
         values = ", ".join(f"{f.name}={_text(getattr(self, f.name))}" for f in self.SCHEMA.fields)
-        return f"{type(self).__module__}.{type(self).__name__}({values})"
+        package, kind, _ = type(self).__module__.split(".")
+        return f"{package}.{kind}.{type(self).__name__}({values})"
 
 
 class _NoInstances(_Generated):
@@ -86,7 +88,7 @@ def message_class(name: str) -> type[StrictMessage]:
     names: dict[str, Any] = {"ABSENT": _ABSENT, "REFUSE": _refuse}
     body: dict[str, Any] = {
         "__slots__": tuple(f"_{f.name}" for f in schema.fields),
-        "__module__": f"{package}.{kind}",
+        "__module__": _module(package, kind, base),
         "__doc__": f"{name}: {', '.join(f'{f.type} {f.name}' for f in schema.fields) or 'no fields'}.",
         "SCHEMA": schema,
         **{constant.name: constant_value(constant) for constant in schema.constants},
@@ -110,6 +112,17 @@ def constant_value(constant: Constant) -> Any:
     """The value of a constant: of a byte, as its fields take it."""
     value = constant.value
     return bytes([value]) if constant.type == "byte" and isinstance(value, int) else value
+
+
+def _module(package: str, kind: str, name: str) -> str:
+    """Where rosidl has a class: `std_srvs.srv._set_bool` for `SetBool` and `SetBool_Request`."""
+    return f"{package}.{kind}._{snake(name.partition('_')[0])}"
+
+
+def snake(name: str) -> str:
+    """`LaserScan` as rosidl names its module: `laser_scan`."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
 def _class_of(type_: FieldType) -> type | None:
@@ -220,7 +233,7 @@ def service_class(name: str) -> type:
     package, kind, base = name.split("/")
     parts = {"Request": schema.request, "Response": schema.response, "Event": schema.event}
     body = {word: message_class(part.name) for word, part in parts.items()}
-    return _NoInstances(base, (), {"__module__": f"{package}.{kind}", "NAME": name, **body})
+    return _NoInstances(base, (), {"__module__": _module(package, kind, base), "NAME": name, **body})
 
 
 @cache
@@ -238,7 +251,7 @@ def action_class(name: str) -> type:
     )
     parts = {"Goal": schema.goal, "Result": schema.result, "Feedback": schema.feedback}
     body: dict[str, Any] = {word: message_class(part.name) for word, part in parts.items()}
-    body |= {"__module__": f"{package}.{kind}", "NAME": name, "Impl": carriers}
+    body |= {"__module__": _module(package, kind, base), "NAME": name, "Impl": carriers}
     return _NoInstances(base, (), body)
 
 

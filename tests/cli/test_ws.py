@@ -41,6 +41,14 @@ def test_what_there_is(machine: Machine, workspace: Path) -> None:
     assert found["packages"][0]["executables"] == ["lamp"]
 
 
+def test_many_interfaces(machine: Machine, workspace: Path) -> None:
+    """The table has the first of them, so that it can be read."""
+    for i in range(6):
+        (workspace / f"src/lamp_interfaces/msg/A{i}.msg").write_text("int32 x\n")
+    assert "msg/A0, msg/A1, msg/A2, msg/A3 and 3 more" in machine.look("ws", cwd=workspace)
+    assert len(json.loads(machine.look("ws", "--json", cwd=workspace))["packages"][1]["interfaces"]) == 7
+
+
 def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
     """An executable without its module, and a definition that is none."""
     (workspace / "src/lamp/lamp/node.py").unlink()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.rclpy import finder
+from graphflow.rclpy import finder, messages
 
 
 def test_bundled_packages_are_found() -> None:
@@ -71,7 +71,7 @@ def test_a_package_with_code_that_python_finds_is_left_to_it(tmp_path: Path, mon
 @pytest.mark.parametrize(("name", "module"), [("LaserScan", "laser_scan"), ("Imu", "imu"), ("MD5Sum", "md5_sum")])
 def test_modules_of_one_class_have_rosidls_names(name: str, module: str) -> None:
     """Snake case."""
-    assert finder.snake(name) == module
+    assert messages.snake(name) == module
 
 
 def test_installing_twice_is_installing_once() -> None:

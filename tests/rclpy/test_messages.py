@@ -86,6 +86,17 @@ def test_messages_can_be_copied_and_pickled() -> None:
     for other in (copy.deepcopy(twist), pickle.loads(pickle.dumps(twist))):
         assert other == twist
         assert other.angular is not twist.angular
+    request = cls("std_srvs/srv/SetBool").Request(data=True)
+    assert pickle.loads(pickle.dumps(request)) == request
+
+
+def test_classes_say_which_module_they_are_from() -> None:
+    """That of rosidl, which programs make names of types from."""
+    assert str(cls("std_msgs/msg/UInt8MultiArray")) == "<class 'std_msgs.msg._u_int8_multi_array.UInt8MultiArray'>"
+    service, action = cls("std_srvs/srv/SetBool"), cls("example_interfaces/action/Fibonacci")
+    assert {c.__module__ for c in (service, service.Request, service.Event)} == {"std_srvs.srv._set_bool"}
+    assert {c.__module__ for c in (action, action.Goal)} == {"example_interfaces.action._fibonacci"}
+    assert repr(service.Request()) == "std_srvs.srv.SetBool_Request(data=False)"
 
 
 def test_constants_and_types_of_fields_are_attributes_of_the_class() -> None:
