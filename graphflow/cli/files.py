@@ -125,7 +125,8 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
 
 def _is_launch_file(file: Path) -> bool:
     """Whether a Python file is a launch file of ROS's."""
-    return file.is_file() and b"def generate_launch_description" in file.read_bytes()
+    named = file.name.endswith((".launch.py", "_launch.py"))
+    return file.is_file() and (named or b"def generate_launch_description" in file.read_bytes())
 
 
 def _has_rclpy(folder: Path) -> bool:

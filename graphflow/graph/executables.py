@@ -42,7 +42,7 @@ _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "
 }
 """Names of nodes that are not those of their executables."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
-SLIP = 0.8
+SLIP = 0.7
 """How alike two names are, from 0 to 1, if one is taken for a slip of the other."""
 _SEARCH_DEPTH = 4
 """Folders below a project's root in which packages are looked for."""

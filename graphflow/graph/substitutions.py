@@ -116,7 +116,7 @@ class Substitutions:
         if name not in self._args and default:
             return _default(default.strip())
         if name not in self._args:
-            help_ = did_you_mean(name, self._args) or "; declare it under args:"
+            help_ = did_you_mean(name, self._args) or "; declare it, under args: or by DeclareLaunchArgument"
             raise SubstitutionError(f"there is no argument {name!r}{help_}")
         value = self._args[name]
         for part in parts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from graphflow.names import did_you_mean
 from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
 
 _numbers: dict[int, int] = {}
@@ -149,15 +150,42 @@ def _process(said: Said) -> dict[str, Any]:
     return {**_common(said), "cmd": [text(word) for word in said.get("cmd", 0, [])]}
 
 
+_OF_NODES = (
+    *("package", "executable", "name", "namespace", "exec_name", "parameters", "remappings", "arguments"),
+    *("ros_arguments", "output", "output_format", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries"),
+    *("cwd", "env", "additional_env", "prefix", "shell", "sigterm_timeout", "sigkill_timeout", "on_exit", "condition"),
+    *("cached_output", "log_cmd", "autostart", "composable_node_descriptions", "plugin", "extra_arguments"),
+)
+"""What a node, or a component, can be given."""
+
+
+def _list(said: Said, key: str, example: str) -> list[Any]:
+    """A list that a node is given; anything else is a problem."""
+    given = said.get(key)
+    if given is None or isinstance(given, (list, tuple)):
+        return list(given or ())
+    RECORDING.problem(said, f"{key}: expected a list, such as {example}, got {given!r}")
+    return []
+
+
 def _node(said: Said) -> dict[str, Any]:
-    found = {**_common(said), "pkg": text(said.get("package")), "exec": text(said.get("executable"))}
+    found = _common(said)
+    for key in sorted(set(said.kwargs) - {*_OF_NODES}):
+        RECORDING.problem(said, f"{said.name} has no argument {key!r}{did_you_mean(key, (), hidden=_OF_NODES)}")
+    for key, ours in (("package", "pkg"), ("executable", "exec")):
+        if said.get(key) is not None:
+            found[ours] = text(said.get(key))
     for key, ours in (("arguments", "args"), ("ros_arguments", "ros_args")):
-        if said.get(key):
-            found[ours] = [text(word) for word in said.get(key)]
-    if said.get("remappings"):
-        found["remap"] = [{"from": text(old), "to": text(new)} for old, new in said.get("remappings")]
+        words = _list(said, key, "['--fast']")
+        if words:
+            found[ours] = [text(word) for word in words]
+    pairs = _list(said, "remappings", "[('from', 'to')]")
+    if any(not isinstance(pair, (list, tuple)) or len(pair) != 2 for pair in pairs):
+        RECORDING.problem(said, f"remappings: expected pairs, such as [('from', 'to')], got {pairs!r}")
+    elif pairs:
+        found["remap"] = [{"from": text(old), "to": text(new)} for old, new in pairs]
     params: list[dict[str, Any]] = []
-    for given in said.get("parameters") or []:
+    for given in _list(said, "parameters", "[{'rate': 2.0}]"):
         if isinstance(given, dict):
             params += [_parameter(key, value) for key, value in given.items()]
         else:

@@ -20,7 +20,7 @@ from typing import Any
 
 from graphflow.graph.workspace import find_workspace
 from graphflow.supervisor.launch_actions import actions, number_targets
-from graphflow.supervisor.launch_stand_ins import RECORDING, StandIns, as_text
+from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
 from graphflow.wire.profile import wire_profile
 
 
@@ -53,6 +53,8 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         if "generate_launch_description" not in space:
             raise NameError("it has no function generate_launch_description()")
         described = space["generate_launch_description"]()
+        if not isinstance(described, Said):
+            raise TypeError(f"generate_launch_description() returned {described!r}, and not a LaunchDescription")
         whole = [described, *described.__dict__.get("added", [])]
         number_targets(whole)
         found = actions(whole)

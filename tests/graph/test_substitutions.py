@@ -162,7 +162,7 @@ def test_what_cannot_be_substituted(text: str, message: str) -> None:
 
 def test_no_argument_to_be_near_to() -> None:
     """In a file without arguments, the way out is to declare one."""
-    with pytest.raises(SubstitutionError, match="there is no argument 'x'; declare it under args:"):
+    with pytest.raises(SubstitutionError, match="there is no argument 'x'; declare it, under args: or by"):
         Substitutions({}, Path("/"), Outside({})).apply("$(var x)")
 
 

@@ -52,3 +52,24 @@ def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
         {"line": 1, "message": "3 is no action"},
         {"line": 7, "message": "PushMatrix has no words in a graph file"},
     ]
+
+
+@pytest.mark.parametrize(
+    ("given", "said_of_it"),
+    [
+        ({"nam": "x"}, "Node has no argument 'nam'; did you mean 'name'?"),
+        ({"wheels": 4}, "Node has no argument 'wheels'"),
+        ({"parameters": {"rate": 2.0}}, "parameters: expected a list, such as [{'rate': 2.0}], got {'rate': 2.0}"),
+        ({"arguments": "--fast"}, "arguments: expected a list, such as ['--fast'], got '--fast'"),
+        ({"remappings": ["a"]}, "remappings: expected pairs, such as [('from', 'to')], got ['a']"),
+    ],
+)
+def test_what_a_node_cannot_be_given(given: dict[str, Any], said_of_it: str, problems: list[dict[str, Any]]) -> None:
+    """It is told with the line; ROS would have failed, or done something else."""
+    actions([said("Node", package="p", executable="e", **given)])
+    assert problems == [{"line": 7, "message": said_of_it}]
+
+
+def test_what_a_node_must_be_given() -> None:
+    """Nothing is made up in its place."""
+    assert actions([said("Node", package="p")]) == [{"node": {"pkg": "p", "line": 7}}]

@@ -169,7 +169,11 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
         ("x = 1\n", 1, "NameError: it has no function generate_launch_description()"),
         ("import numpyy\n", 1, "ModuleNotFoundError: No module named 'numpyy'"),
         ("def generate_launch_description():\n    open('/nowhere/x')\n", 2, "FileNotFoundError: [Errno 2]"),
-        ("def generate_launch_description():\n    return 3\n", 1, "AttributeError: "),
+        (
+            "def generate_launch_description():\n    return 3\n",
+            1,
+            "TypeError: generate_launch_description() returned 3",
+        ),
     ],
 )
 def test_files_that_fail(tmp_path: Path, text: str, line: int, message: str) -> None:
