@@ -11,6 +11,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from glob import glob
 from pathlib import Path, PurePosixPath
 
@@ -27,7 +28,8 @@ def share_folder(package: Package) -> Path:
     moved = {there: file for there, file in _installed(package) if file != package.folder / there}
     if not moved:
         return package.folder
-    digest = hashlib.sha256(str(package.folder).encode()).hexdigest()[:16]
+    folders = sorted({str(there.parent) for there in moved})  # with others, names that are folders here are links there
+    digest = hashlib.sha256("\n".join([str(package.folder), *folders]).encode()).hexdigest()[:16]
     folder = state_root() / "share" / digest / package.name
     try:
         _link(folder, package.folder, moved)
@@ -55,11 +57,13 @@ def _link(folder: Path, source: Path, moved: Mapping[PurePosixPath, Path]) -> No
     wanted |= {there.name: file for there, file in moved.items() if len(there.parts) == 1}
     folder.mkdir(parents=True, exist_ok=True)
     for entry in folder.iterdir():
-        if entry.is_symlink() and (entry.name in inner or wanted.get(entry.name) != Path(os.readlink(entry))):
-            entry.unlink()
+        with suppress(FileNotFoundError):  # another process does the same
+            if entry.is_symlink() and wanted.get(entry.name) != Path(os.readlink(entry)):
+                entry.unlink()
     for name, target in wanted.items():
         if name not in inner and not (folder / name).is_symlink():
-            (folder / name).symlink_to(target)
+            with suppress(FileExistsError):
+                (folder / name).symlink_to(target)
     for name, files in inner.items():
         _link(folder / name, source / name, files)
 

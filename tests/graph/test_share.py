@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -125,3 +126,16 @@ def test_where_there_is_no_place_for_links(package: Package, monkeypatch: pytest
     (package.folder / "setup.py").write_text(SETUP)
     monkeypatch.setenv("XDG_STATE_HOME", "/proc/nowhere")
     assert share_folder(package) == package.folder
+
+
+def test_several_processes_make_it_at_once(package: Package) -> None:
+    """As the nodes of a launch file do; and a layout that changes leaves nothing behind that is wrong."""
+    (package.folder / "setup.py").write_text(SETUP)
+    with ThreadPoolExecutor(8) as pool:
+        shares = set(pool.map(lambda _: share_folder(package), range(40)))
+    assert len(shares) == 1
+    assert (shares.pop() / "config" / "a.yaml").read_text() == "params/a.yaml"
+    (package.folder / "setup.py").write_text("setup(data_files=[('share/robot', ['params/a.yaml'])])")
+    share = share_folder(package)
+    assert (share / "a.yaml").read_text() == "params/a.yaml"
+    assert not (share / "config" / "a.yaml").exists()
