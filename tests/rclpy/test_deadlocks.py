@@ -90,13 +90,24 @@ def test_a_ring_with_a_node_of_graphflows(machine: Machine) -> None:
     )
 
 
-@slow
-def test_the_remedy_of_a_ring_ends_it(machine: Machine) -> None:
-    """Nobody blocks, and it goes all the way round."""
-    programs = ring(machine, "a b later starts", "b a later")
+REMEDIES = [
+    *(("later", "ab"), ("later", "abc"), ("apart", "ab"), ("apart", "abc"), ("goals", "ab")),
+    ("later beside graphflow's", "a"),
+]
+
+
+@pytest.mark.parametrize("case", some(REMEDIES, REMEDIES[2]), ids="-".join)
+def test_the_remedy_of_a_ring_ends_it(machine: Machine, case: tuple[str, str]) -> None:
+    """Nobody blocks, or nobody holds what another needs; it goes all the way round, and nothing is told."""
+    how, names = case
+    members = [f"{name} {names[(i + 1) % len(names)]} {how}" for i, name in enumerate(names)]
+    programs = []
+    if "beside" in how:
+        programs, members = [machine.start("run", "native.py", cwd=PROGRAMS)], ["a b later"]
+    programs = [*ring(machine, f"{members[0]} starts", *members[1:]), *programs]
     programs[0].wait_for("all the way round")
     read(programs, 1.0)
-    assert "DEADLOCK" not in programs[0].text + programs[1].text
+    assert "DEADLOCK" not in "".join(program.text for program in programs)
 
 
 NOBODY = [("calls", "spin_until_future_complete"), ("polls", "spin_until_future_complete"), ("sleeps", "target=")]
