@@ -105,7 +105,7 @@ SAID = [
         "requester: making request: turtlesim.srv.Kill_Request(name='turtle2')\n\n"
         "response:\nturtlesim.srv.Kill_Response()\n\n",
     ),
-    ("ros2 pkg executables turtlesim", "turtle_teleop_key\nturtlesim_node\n"),
+    ("ros2 pkg executables turtlesim", "draw_square\nmimic\nturtle_teleop_key\nturtlesim_node\n"),
 ]
 
 
