@@ -64,7 +64,8 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
             if trace.tb_frame.f_code.co_filename == path:
                 line = trace.tb_lineno
             trace = trace.tb_next
-        RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}"})
+        hint = f"; if it is on PyPI: pip install {error.name}" if isinstance(error, ModuleNotFoundError) else ""
+        RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
     return {"actions": found, "problems": RECORDING.problems}
 
 
