@@ -197,7 +197,7 @@ class _ParamsFiles:
         return self._graph_files[place.file].parent / name
 
     def _read(self, path: Path, place: Place) -> list[Section]:
-        if "$(" in path.name or "$(" in str(path.parent):  # which has been reported
+        if "$(" in str(path):  # which has been reported
             return []
         if not path.is_file():
             self._problems.add_unless_ros(place, no_file(path))
