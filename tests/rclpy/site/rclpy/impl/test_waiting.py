@@ -121,7 +121,7 @@ RIGHT = [(way, a) for way in waiting_programs.WAYS for a in waiting_programs.ARR
 RIGHT += [(way, a) for way in waiting_programs.AWAITS for a in waiting_programs.ARRANGEMENTS[:3]]
 
 
-@pytest.mark.parametrize(("way", "arrangement"), sample(RIGHT, 9), ids="-".join)
+@pytest.mark.parametrize(("way", "arrangement"), sample(RIGHT, 9), ids=str)
 def test_who_merely_waits_is_not_called_stuck(
     caplog: pytest.LogCaptureFixture, network: object, way: str, arrangement: str
 ) -> None:
