@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import runpy
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -95,6 +96,8 @@ def run(program: Program) -> None:
         UsageFault: It has not the function that it is said to be.
     """
     make_importable(program.workspace)
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts jobs; rclpy ends all the same
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     sys.argv = [str(program.file), *program.words]
     if program.entry is None:
