@@ -1,5 +1,7 @@
 """Nodes written for rclpy, ended by Ctrl-C at random moments: each must end by itself, at once and without a word.
 
+Half of them shut down, as tutorials have it, and half just end. Several run at once, so that ends are slow.
+
     python -m benchmarks.rclpy_ends 100
 
 Goal: 100 of 100 clean ends.
@@ -14,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from benchmarks.peers import rendezvous
@@ -34,10 +37,13 @@ try:
     rclpy.spin(node)
 except KeyboardInterrupt:
     pass
-finally:
-    node.destroy_node()
-    rclpy.try_shutdown()
 """
+SHUTDOWN = """\
+node.destroy_node()
+rclpy.try_shutdown()
+"""
+AT_ONCE = 4
+"""Nodes that run at the same time."""
 LONGEST = 0.3
 """Seconds within which the moment is chosen."""
 LIMIT = 15.0
@@ -65,9 +71,11 @@ def main(count: int) -> None:
     """End so many, and print what came of them."""
     keep = rendezvous()
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "ender.py")
-        file.write_text(PROGRAM)
-        ends = [end(file) for _ in range(count)]
+        tidy, careless = Path(folder, "tidy.py"), Path(folder, "careless.py")
+        tidy.write_text(PROGRAM + SHUTDOWN)
+        careless.write_text(PROGRAM)
+        with ThreadPoolExecutor(AT_ONCE) as runner:
+            ends = list(runner.map(end, [(tidy, careless)[turn % 2] for turn in range(count)]))
     clean = [seconds for is_clean, seconds, _ in ends if is_clean]
     for _, _, said in [e for e in ends if not e[0]][:3]:
         print(f"not clean: {said[-300:]}")

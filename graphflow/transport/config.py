@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Callable, Sequence
 from functools import cache
 
@@ -22,6 +23,8 @@ os.environ.setdefault("ZENOH_RUNTIME", "(net: (worker_threads: 2))")
 
 CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
+CALLBACK_LIMIT = 1.0
+"""Seconds that Zenoh's callback threads have to end, at exit, when their sessions have been closed."""
 OPEN_LIMIT = 10.0
 """Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
 them starting, an impatient one would never get a connection."""
@@ -134,7 +137,7 @@ def before_closing_at_exit(what: Callable[[], None]) -> None:
 def _wait_for_main() -> None:
     global _closer
     if _closer is None:
-        _closer = threading.Thread(target=_close_after_main, name="graphflow-exit")
+        _closer = threading.Thread(target=_close_after_main, name="graphflow-exit", daemon=False)
         _closer.start()
 
 
@@ -146,3 +149,15 @@ def _close_after_main() -> None:
         session = _to_close.pop()
         if not session.is_closed():
             close_session(session)
+    limit = time.monotonic() + CALLBACK_LIMIT
+    for thread in callback_threads():
+        thread.join(max(limit - time.monotonic(), 0))
+
+
+def callback_threads() -> list[threading.Thread]:
+    """The threads of Zenoh's that call back, one per subscriber or queryable, known by their name.
+
+    They end soon after their session was closed. Those that were started from a daemon thread are daemons, which the
+    interpreter does not wait for; and one that asks for the GIL when the interpreter has gone aborts the process.
+    """
+    return [thread for thread in threading.enumerate() if thread.name.endswith("(pyo3-closure)")]

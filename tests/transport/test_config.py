@@ -37,3 +37,33 @@ def test_zenoh_has_two_threads_for_what_may_wait_for_the_gil() -> None:
     for more, expected in (({}, "(net: (worker_threads: 2))"), ({"ZENOH_RUNTIME": own}, own)):
         said = subprocess.check_output([sys.executable, "-c", program], env=plain | more, text=True, timeout=60)
         assert said.strip() == expected
+
+
+ENDING = """
+import threading, time, zenoh
+from graphflow.transport.config import callback_threads, close_at_exit, config, open_session
+
+called = threading.Event()
+
+def heard(sample):
+    called.set()
+    time.sleep(0.3)
+    print("heard", flush=True)
+
+def listen():
+    global session, subscriber
+    session = open_session(config("peer"))
+    subscriber = session.declare_subscriber("a/b", heard)
+    assert [thread.daemon for thread in callback_threads()] == [True]
+    close_at_exit(session)
+    session.put("a/b", b"")
+
+threading.Thread(target=listen, daemon=True).start()
+assert called.wait(20)
+"""
+
+
+def test_zenohs_callback_threads_end_before_the_interpreter() -> None:
+    """They are daemons when a daemon started them. One that asks for the GIL too late aborts the process."""
+    run = subprocess.run([sys.executable, "-c", ENDING], capture_output=True, text=True, timeout=60)
+    assert (run.returncode, run.stdout, run.stderr) == (0, "heard\n", "")
