@@ -12,7 +12,6 @@ import asyncio
 import concurrent.futures
 import contextlib
 import gc
-import inspect
 import queue
 import sys
 import threading
@@ -20,6 +19,8 @@ from asyncio import AbstractEventLoop
 from collections.abc import Iterable, Iterator
 from types import CodeType, FrameType, FunctionType, MethodType
 from typing import Any, Literal, NamedTuple
+
+from graphflow.deadlock.user_code import is_users
 
 FUTURE = ("set_result", "set_exception", "cancel")
 """Methods that end a future."""
@@ -113,6 +114,11 @@ def files_entered(coroutine: Any) -> Iterator[str]:
             yield getattr(sys.modules.get(type(context).__module__), "__file__", None) or ""
 
 
+def may_give_up(task: Any) -> bool:
+    """Whether a suspended task has entered something of the user's by `with`, in which there may be a timeout."""
+    return any(is_users(file) for coroutine in coroutines(task) for file in files_entered(coroutine))
+
+
 def _is_method_of(function: FunctionType, thing: object) -> bool:
     return any(vars(cls).get(function.__name__) is function for cls in type(thing).__mro__)
 
@@ -125,11 +131,6 @@ def stack_of(thread: int) -> list[FrameType]:
         frames.append(frame)
         frame = frame.f_back
     return frames[::-1]
-
-
-def is_coroutine(frame: FrameType) -> bool:
-    """Whether `await` is allowed in the code of a frame."""
-    return bool(frame.f_code.co_flags & inspect.CO_COROUTINE)
 
 
 def waiter_of(task: Any) -> Any:

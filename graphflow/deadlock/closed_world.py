@@ -45,6 +45,7 @@ from graphflow.deadlock.source import (
     source_of,
 )
 from graphflow.deadlock.syntax import FunctionNode, is_nested, walk
+from graphflow.deadlock.user_code import Pause
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
 from graphflow.msgs.base import Message
@@ -80,6 +81,8 @@ class Setters(NamedTuple):
     """Whether a deadline ends the wait for good, and not only this attempt."""
     module: str = ""
     """The module that holds what is set, if it is not the node that does."""
+    pause: Pause | None = None
+    """Where the loop pauses, if one polls."""
 
     def is_shared(self, node: Subject, nodes: Iterable[Subject]) -> bool:
         """Whether other nodes of the process may end the wait too: those whose methods are in that module."""
@@ -286,10 +289,11 @@ class Question:
                 changing.add(use.method)
         what = " and ".join([*(f"self.{name}" for name in sorted(attributes)), *sorted(conditions.names)])
         if conditions.tasks and not changing - beginnings_of(self._node):
-            return Setters(what, frozenset(), tasks=tuple(conditions.tasks))
+            return Setters(what, frozenset(), tasks=tuple(conditions.tasks), pause=_pause(loop, place.frame))
         found = self._reached(what, changing)
         module = place.frame.f_globals["__name__"] if conditions.names else ""
-        return None if found is None else found._replace(tasks=tuple(conditions.tasks), module=module)
+        tasks, pause = tuple(conditions.tasks), _pause(loop, place.frame)
+        return found and found._replace(tasks=tasks, module=module, pause=pause)
 
     def _changes(self, name: str) -> Iterator[Use]:
         """The uses of an attribute that may change it."""
@@ -345,6 +349,13 @@ class Question:
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
         """The handlers and tasks that call those methods, if nothing else does."""
         return handlers_above(what, methods, self._node)
+
+
+def _pause(loop: Loop, frame: FrameType) -> Pause | None:
+    """Where a loop pauses, if it does so in one line."""
+    calls = [node for node in ast.walk(loop) if isinstance(node, ast.Call)]
+    lines = {call.lineno for call in calls if ast.unparse(call.func).split(".")[-1] == "sleep"}
+    return Pause(frame, lines.pop()) if len(lines) == 1 else None
 
 
 def handlers_above(what: str, methods: Iterable[str], node: Subject) -> Setters | None:

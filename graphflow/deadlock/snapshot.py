@@ -24,9 +24,9 @@ from graphflow.deadlock.held import setters
 from graphflow.deadlock.openings import start_of, unopened
 from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.user_code import called_in, innermost, is_users
+from graphflow.deadlock.user_code import Pause, where
 from graphflow.deadlock.watchdog import Watchdog
-from graphflow.errors import DecodeError, Place
+from graphflow.errors import DecodeError
 from graphflow.executor.activity import Activity
 from graphflow.executor.clock import ClockTimeout, WallClock
 from graphflow.executor.groups import HandlerGroup
@@ -124,6 +124,8 @@ class _Look:
         self._seen: set[tuple[str, Condition]] = set()
         self._limit_ns: int | None = None
         """When the activity being looked at gives up waiting."""
+        self._pause: Pause | None = None
+        """Where the loop pauses in which it waits."""
 
     @cached_property
     def _servers(self) -> Counter[str]:
@@ -237,12 +239,11 @@ class _Look:
         *,
         is_inner: bool = False,
     ) -> None:
-        self._limit_ns = None
-        frames = self._frames_of(task)
-        frame = innermost(frames)
+        self._limit_ns = self._pause = None
         wait = self._condition(task, _Way(node, task))
         self._seen.add((id_, wait))
         age, left = self._times(id_, wait, task)
+        found = where(self._frames_of(task), node.instance, self._pause)
         self._activities[id_] = ActivityView(
             id_,
             label,
@@ -250,14 +251,14 @@ class _Look:
             holds,
             wait,
             serves,
-            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
-            "" if frame is None else frame.f_code.co_name,
+            found.place,
+            found.function,
             age,
             left,
             self._zid,
             is_inner,
-            frame is not None and aio.is_coroutine(frame),
-            called_in(frames, node.instance),
+            found.is_async,
+            found.called,
         )
 
     def _times(self, id_: str, wait: Condition, task: Any) -> tuple[float, float | None]:
@@ -304,7 +305,7 @@ class _Look:
             return FREE
         frames = self._frames_of(task)
         limit_ns = self._limit_of(task)
-        is_bounded = way.is_bounded or limit_ns is not None or _may_give_up(task)
+        is_bounded = way.is_bounded or limit_ns is not None or aio.may_give_up(task)
         way = _Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
         if limit_ns is not None:
             self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
@@ -385,6 +386,7 @@ class _Look:
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or found.is_shared(way.node, self._nodes) or any(task.done() for task in found.tasks):
             return FREE
+        self._pause = found.pause
         ends = [self._of_future(task, way) for task in found.tasks]
         if found.handlers or not ends:
             ends.insert(0, self._set_by(found, way))
@@ -454,13 +456,14 @@ class _Look:
     def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Any) -> str:
         stack = aio.stack_of(self._ledger.thread)
         id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
-        frame = innermost(stack)
         way = _Way(node, run, tuple(stack))
+        self._pause = None
         if self._ledger.blocking is None:
             wait = self._closed_world(way, None)
         else:
             wait = self._of_future(self._ledger.blocking, way)
         self._seen.add((id_, wait))
+        found = where(stack, node.instance, self._pause)
         self._activities[id_] = ActivityView(
             id_,
             runner.title,
@@ -468,13 +471,13 @@ class _Look:
             self._slots(node, runner, runner.group),
             wait,
             self._call_of(runner, item),
-            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
-            "" if frame is None else frame.f_code.co_name,
+            found.place,
+            found.function,
             self._watchdog.blocked_for,
             None,
             self._zid,
             is_async=False,
-            called=called_in(stack, node.instance),
+            called=found.called,
         )
         return id_
 
@@ -492,8 +495,3 @@ class _Way:
     """The ids of those tasks."""
     is_bounded: bool = False
     """Whether one of them gives up after some time, or may."""
-
-
-def _may_give_up(task: Any) -> bool:
-    """Whether a task has entered something of the user's by `with`, in which there may be a timeout."""
-    return any(is_users(file) for coroutine in aio.coroutines(task) for file in aio.files_entered(coroutine))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 import sysconfig
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePath
 from types import FrameType, TracebackType
+from typing import NamedTuple
 
 from graphflow.errors import Place
 
@@ -50,8 +52,44 @@ def innermost(frames: Iterable[FrameType]) -> FrameType | None:
     return found
 
 
-def called_in(frames: Iterable[FrameType], instance: object) -> str:
-    """The line by which an object's method came to wait elsewhere: `drive.py:12 in tick`; empty if it waits itself."""
+class Pause(NamedTuple):
+    """Where a loop that polls pauses. A thread that runs it may be seen anywhere in it, but is there nearly always."""
+
+    frame: FrameType
+    line: int
+
+
+class Where(NamedTuple):
+    """Where something waits, for reports."""
+
+    place: Place
+    """The user's own code."""
+    function: str
+    is_async: bool
+    """Whether `await` is allowed there."""
+    called: str
+    """The line by which the node's method came to wait elsewhere: `drive.py:12 in tick`; empty if it waits itself."""
+
+
+def where(frames: Sequence[FrameType], instance: object, pause: Pause | None = None) -> Where:
+    """Where code waits whose frames, the outermost first, these are.
+
+    Args:
+        instance: The node.
+        pause: That of the loop in which it waits, if one of the frames is the loop's.
+    """
+    line = None
+    if pause is not None and pause.frame in frames:
+        frames, line = frames[: frames.index(pause.frame) + 1], pause.line
+    frame = innermost(frames)
+    if frame is None:
+        return Where(Place(""), "", False, "")
+    place = Place(frame.f_code.co_filename, line or frame.f_lineno)
+    is_async = bool(frame.f_code.co_flags & inspect.CO_COROUTINE)
+    return Where(place, frame.f_code.co_name, is_async, _called_in(frames, instance))
+
+
+def _called_in(frames: Iterable[FrameType], instance: object) -> str:
     own = [frame for frame in frames if is_users(frame.f_code.co_filename)]
     of_it = [frame for frame in own if frame.f_locals.get("self") is instance]
     if not of_it or of_it[0] is own[-1]:

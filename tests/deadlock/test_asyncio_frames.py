@@ -144,16 +144,6 @@ async def test_fut_waiter(graphflow_runner: asyncio.Runner) -> None:
     assert aio.waiter_of(task) is aio.waiter_of(activity) is None
 
 
-async def test_is_coroutine(graphflow_runner: asyncio.Runner) -> None:
-    """Only the code of an `async def` has `CO_COROUTINE` among its flags."""
-
-    def plain() -> FrameType:
-        return sys._getframe()
-
-    assert aio.is_coroutine(sys._getframe())
-    assert not aio.is_coroutine(plain())
-
-
 async def test_is_done(graphflow_runner: asyncio.Runner) -> None:
     """Futures of asyncio and of threads, and tasks, tell whether they are done."""
     futures: list[Any] = [asyncio.get_running_loop().create_future(), concurrent.futures.Future[None]()]

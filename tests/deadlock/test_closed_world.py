@@ -240,7 +240,24 @@ async def test_a_lock_that_is_entered(
         await thing.acquire()
     found = await scene.found()
 
-    assert found == (f"self.{lock}", frozenset(), thing, places, (), "releases", False, "")
+    assert found == Setters(f"self.{lock}", frozenset(), thing, places, deed="releases")
+
+
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [("", 2), ("print()\n        ", 3), ("await asyncio.sleep(1)\n        ", None)],
+)
+async def test_where_a_loop_pauses(
+    graphflow_runner: asyncio.Runner, written: Written, more: str, line: int | None
+) -> None:
+    """In the only line in which it sleeps, so that a thread is not reported where it happened to be seen."""
+    polls = POLL.replace("    await", f"    {more}await")
+    scene = Scene(written, f"{polls}\ndef on_arrive(self): self.there = True")
+    found = await scene.found()
+    assert found is not None
+    begin = type(scene.node).on_go.__code__.co_firstlineno
+    assert (found.pause and found.pause.line) == (line and begin + line)
+    assert found.pause is None or found.pause.frame.f_code is type(scene.node).on_go.__code__
 
 
 async def test_a_lock_that_is_released_by_hand(graphflow_runner: asyncio.Runner, written: Written) -> None:

@@ -463,6 +463,56 @@ async def test_a_loop_that_is_blocked(graphflow_runner: asyncio.Runner, monkeypa
     assert (view.place.file, view.function) == (__file__, "blocks")
 
 
+POLLS = """
+import time
+
+
+class N:
+    there = False
+
+    def on_go(self, _):
+        while not self.there:
+            self.look()
+            time.sleep(60)
+
+    def look(self):
+        LOOKED_AT.set()
+        LOOKER.join()
+
+    def on_arrive(self):
+        self.there = True
+"""
+
+
+async def test_a_loop_that_polls(
+    graphflow_runner: asyncio.Runner, written: Written, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is shown where it pauses, though it may be seen doing something else."""
+    module: Any = written(POLLS)
+    node = module.N()
+    scene = Scene(node)
+    monkeypatch.setattr(Watchdog, "blocked_for", 3.0)
+    scene.stage.handler(scene.actor, "on_arrive")
+    found: list[Any] = []
+
+    def pause(seconds: float) -> None:
+        node.there = True
+
+    def watch() -> None:
+        module.LOOKED_AT.wait(20)
+        found.append(scene.snapshot.take())
+
+    module.LOOKED_AT, module.LOOKER = threading.Event(), threading.Thread(target=watch)
+    module.LOOKER.start()
+    monkeypatch.setattr("time.sleep", pause)
+    await begin(scene.stage.handler(scene.actor, "on_go", node.on_go), "message")
+
+    [view] = found[0].activities.values()
+    assert isinstance(view.wait, SetBy)
+    first = type(node).on_go.__code__.co_firstlineno
+    assert (view.place.line, view.function, view.called) == (first + 3, "on_go", "")
+
+
 SHARED = """
 import asyncio
 

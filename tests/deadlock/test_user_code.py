@@ -6,6 +6,7 @@ import json
 import re
 import sys
 import sysconfig
+import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -15,7 +16,8 @@ import pytest
 
 import graphflow
 from graphflow import names
-from graphflow.deadlock.user_code import innermost, is_users, place_in, users_part
+from graphflow.deadlock.user_code import Pause, innermost, is_users, place_in, users_part, where
+from graphflow.errors import Place
 
 STDLIB = Path(sysconfig.get_path("stdlib"))
 OURS = Path(graphflow.__file__).parent
@@ -63,6 +65,44 @@ def test_the_innermost_line_of_the_users() -> None:
     assert innermost([*frames, library[0]]) is frames[-1]
     assert innermost(library) is None
     assert innermost([]) is None
+
+
+class Driver:
+    """Polls, and does something else in between."""
+
+    def drive(self) -> list[FrameType]:
+        while not (frames := self.look()):
+            time.sleep(0.1)
+        return frames
+
+    def look(self) -> list[FrameType]:
+        return frames_inside()
+
+
+def test_where_a_loop_that_polls_is() -> None:
+    """At its pause, wherever it was seen."""
+    driver = Driver()
+    frames = driver.drive()
+    loop = next(frame for frame in frames if frame.f_code is Driver.drive.__code__)
+    first = Driver.drive.__code__.co_firstlineno
+
+    seen = where(frames, driver)
+    assert (seen.place.file, seen.function) == (__file__, "called")
+    assert seen.called == f"test_user_code.py:{first + 3} in drive"  # where it is by now
+
+    assert where(frames, driver, Pause(loop, first + 2)) == (Place(__file__, first + 2), "drive", False, "")
+    assert where(frames[:3], driver, Pause(loop, first + 2)) == where(frames[:3], driver)
+    assert where([], driver) == (Place(""), "", False, "")
+
+
+def test_where_one_may_await() -> None:
+    """In the code of an `async def`."""
+
+    async def waits() -> None: ...
+
+    waiting: Any = waits()
+    assert where([waiting.cr_frame], None).is_async
+    waiting.close()
 
 
 def raised_in_the_library() -> Exception:

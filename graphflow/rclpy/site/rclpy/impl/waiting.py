@@ -20,8 +20,8 @@ from weakref import WeakKeyDictionary
 
 from graphflow.deadlock.asyncio_frames import know_futures
 from graphflow.deadlock.held import setters
-from graphflow.deadlock.user_code import called_in
-from graphflow.errors import ClosedError, Place
+from graphflow.deadlock.user_code import Pause, where
+from graphflow.errors import ClosedError
 from graphflow.machines.wait_graph import (
     FREE,
     ActivityView,
@@ -142,6 +142,8 @@ class _Look:
         self._groups: dict[str, GroupView] = {}
         self._queues: dict[str, QueueView] = {}
         self._activities: dict[str, ActivityView] = {}
+        self._pause: Pause | None = None
+        """Where the loop pauses in which the run waits that is looked at."""
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
         self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
@@ -236,7 +238,7 @@ class _Look:
             holding = [*group, *(() if spun is run.executor else self._executor(run.executor, self._node_of(run)))]
             wait, left = self._wait(level, self._node_of(run), run)
             if inner is not None:
-                wait, left = Join(self._id(inner.run)), None
+                wait, left, self._pause = Join(self._id(inner.run)), None, None
             self._add_run(run, level, (*holding, *(held if place == 0 else ())), wait, self._age(stack), left)
 
     def _age(self, stack: Stack) -> float:
@@ -245,8 +247,8 @@ class _Look:
     def _add_run(
         self, run: Run, level: Level, holding: tuple[str, ...], wait: Condition, age: float, left: float | None
     ) -> None:
-        node, frame = self._node_of(run), level.innermost
-        name, role = self._id(run), self._role(run)
+        node, name, role = self._node_of(run), self._id(run), self._role(run)
+        found = where(level.frames, node, self._pause)
         self._activities[name] = ActivityView(
             name,
             role.label,
@@ -254,14 +256,14 @@ class _Look:
             holding,
             wait,
             served(run),
-            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
-            "" if frame is None else frame.f_code.co_name,
+            found.place,
+            found.function,
             age,
             left if left is None else max(0.0, left - age),
             self._zid,
             is_inner=role.is_inner,
             is_async=run.thread == 0,
-            called=called_in(level.frames, node),
+            called=found.called,
         )
 
     def _add_thread(self, stack: Stack, level: Level, holding: tuple[str, ...]) -> None:
@@ -269,7 +271,8 @@ class _Look:
         selves = [frame.f_locals.get("self") for frame in level.frames]
         node = next((n for n in self._nodes if any(own is n for own in selves)), first)
         wait, left = self._wait(level, node, None)
-        frame, age, name = level.innermost, self._age(stack), self._id(stack.thread, "t")
+        age, name = self._age(stack), self._id(stack.thread, "t")
+        found = where(level.frames, node, self._pause)
         self._activities[name] = ActivityView(
             name,
             f"thread {stack.thread.name}",
@@ -277,8 +280,8 @@ class _Look:
             holding,
             wait,
             "",
-            Place("") if frame is None else Place(frame.f_code.co_filename, frame.f_lineno),
-            "" if frame is None else frame.f_code.co_name,
+            found.place,
+            found.function,
             age,
             left if left is None else max(0.0, left - age),
             self._zid,
@@ -293,6 +296,7 @@ class _Look:
     def _add_suspended(self, run: Run) -> None:
         """A run that no thread steps just now: it waits for a future, or for a thread."""
         level = Level(run, list(frames_of(run)))
+        self._pause = None
         group = self._callback_group(run.group, run.node) if run.group is not None else ()
         future = run._awaits
         if future is None or future.done() or future.cancelled():
@@ -323,6 +327,7 @@ class _Look:
 
     def _wait(self, level: Level, node: Any, run: Run | None) -> tuple[Condition, float | None]:
         """What code on a thread waits for, and for how many seconds at most from when it began to."""
+        self._pause = None
         found = blocked(level)
         if found.future is not None:
             return self._of_future(found.future, level, node, run), found.timeout
@@ -387,6 +392,7 @@ class _Look:
             return FREE
         if found.is_shared(subject, others):  # type: ignore[arg-type]
             return FREE
+        self._pause = found.pause
         queues = [
             self._id(entity, "q")
             for entity, role in self._roles.items()
