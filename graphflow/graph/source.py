@@ -125,6 +125,8 @@ def read(text: str, file: str) -> Source:
             place = Place(file, len(lines), len(lines[-1]) + 1) if lines else Place(file, 1, 1)
         else:
             place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
+        if "nesting depth" in str(error.problem):  # libyaml, which reads ahead, has a limit of its own
+            raise _error(place, f"nested more than {MAX_DEPTH} deep") from None
         raise _error(place, f"not valid YAML: {error.problem}{_hint(text, error)}") from None
     except yaml.YAMLError as error:
         raise _error(Place(file), f"not valid YAML: {' '.join(str(error).split())}") from None

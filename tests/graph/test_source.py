@@ -136,7 +136,8 @@ def test_the_top_may_be_anything(text: str, value: Any) -> None:
 BOMB = "\n".join(
     ["a0: &a0 [lol, lol]", *(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 10)), "nodes: *a9"]
 )
-NESTED = 5000
+NESTED = 900
+"""Fewer than libyaml takes."""
 
 
 @pytest.mark.parametrize(
@@ -175,6 +176,11 @@ NESTED = 5000
 def test_what_is_unsafe_or_ambiguous_is_refused(text: str, problem: str) -> None:
     """Aliases, tags, depth, size, twice the same key, keys that are no text: refused at the place they stand."""
     assert refused(text) == problem
+
+
+def test_what_is_nested_deeper_than_libyaml_takes() -> None:
+    """It reads ahead and, since 0.2.6, refuses that itself: at another place."""
+    assert refused("[" * 5000 + "]" * 5000).endswith(f": nested more than {MAX_DEPTH} deep")
 
 
 @pytest.mark.parametrize(
