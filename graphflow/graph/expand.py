@@ -270,11 +270,9 @@ class Expansion:
         if not isinstance(name.value, str) or not name.value.isidentifier():
             self._problems.add(name.place, f"var: expected a name for the loop's values, got {name.plain()!r}")
             return
+        body = block.without("var", "in", "if", "unless")
         for value in self._rounds_of(over):
-            self._group(
-                block.without("var", "in", "if", "unless"),
-                replace(scope, values={**scope.values, name.value: value}),
-            )
+            self._group(body, replace(scope, values={**scope.values, name.value: value}))
 
     def _rounds_of(self, over: Item) -> Iterator[Any]:
         """The values of a loop."""
@@ -323,8 +321,10 @@ class Expansion:
         if self._is_left_out(item, scope):
             self.left_out[name] = item.at
             return
-        if name in self.nodes and "keep_names" in item.entries:  # the name is that of the process alone
-            name = next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
+        if name in self.nodes and (item.at.file in self._problems.launch_files or "keep_names" in item.entries):
+            taken, name = name, next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
+            if "keep_names" not in item.entries:  # else the name is that of the process alone
+                self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
         if self._is_taken(name, item, self.nodes, "nodes"):
             return
         item = self._substituted(item.without("if", "unless", "template", "namespace"), scope)

@@ -325,6 +325,7 @@ LENIENT = """\
 launch:
 - include: {file: inner.launch.yaml, arg: [{name: nobodys, value: '3'}]}
 - node: {pkg: turtlesim, exec: turtlesim_node, name: sim, param: [{from: none.yaml}, {from: others.yaml}]}
+- node: {pkg: turtlesim, exec: turtlesim_node, name: sim}
 """
 
 
@@ -334,9 +335,10 @@ def test_what_ros_lets_pass(tmp_path: Path) -> None:
     (tmp_path / "others.yaml").write_text("/other: {ros__parameters: {a: 1}}\n")
     (tmp_path / "outer.launch.yaml").write_text(LENIENT)
     found = load(tmp_path / "outer.launch.yaml", [], {})
-    assert [node.name for node in found.nodes] == ["/turtlesim", "/sim"]
+    assert [node.name for node in found.nodes] == ["/turtlesim", "/sim", "/sim_2"]
     assert [remark.rpartition("yaml:")[2] for remark in found.remarks] == [
         "2:51: the included file has no argument 'nobodys'; it declares none of that name under args:",
+        "4:54: there is a node /sim already; this one is called /sim_2",
         f"3:74: there is no file {tmp_path / 'none.yaml'}",
         "3:93: others.yaml has nothing for /sim; there is /other",
     ]
