@@ -11,6 +11,7 @@ from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
 from graphflow.graph.executables import EXECUTABLES, find
 from graphflow.graph.project import demos_root, project_root
+from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
 
@@ -56,7 +57,7 @@ def _named(what: str, root: Path) -> type[Node]:
         return _only(f"nodes.{what}")
     except NoModule:
         known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
-        known |= {package for package, _ in EXECUTABLES}
+        known |= {*(package for package, _ in EXECUTABLES), *find_workspace(Path.cwd()).packages}
         raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
 
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import os
+import pkgutil
 import runpy
 import signal
 import sys
 from collections.abc import Sequence
+from functools import partial
 from importlib import import_module
 from pathlib import Path
+from types import TracebackType
 from typing import NamedTuple
 
+from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
-from graphflow.graph.workspace import EntryPoint, Package, Workspace, find_workspace, uses_rclpy
+from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, find_workspace, uses_rclpy
+from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 from graphflow.rclpy import enabling, finder
 from graphflow.wire.profile import wire_profile
@@ -96,6 +101,7 @@ def run(program: Program) -> None:
         UsageFault: It has not the function that it is said to be.
     """
     make_importable(program.workspace)
+    sys.excepthook = partial(_tell, program.workspace)
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts jobs; rclpy ends all the same
         signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
@@ -112,6 +118,30 @@ def run(program: Program) -> None:
     if not callable(called):
         raise UsageFault(f"{program.file} has no function {program.entry.function!r}, which its setup.py names")
     sys.exit(called())
+
+
+def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Show an error that ends a program: from the first line of its own on, and with what may help."""
+    own = trace
+    while own is not None and not is_users(own.tb_frame.f_code.co_filename):
+        own = own.tb_next
+    begun = None if isinstance(error, SyntaxError) else own or trace
+    sys.__excepthook__(kind, error.with_traceback(begun), begun)
+    if isinstance(error, ModuleNotFoundError) and error.name is not None:
+        sys.stderr.write(f"note: {_where_to_have(error.name, workspace)}\n")
+
+
+def _where_to_have(module: str, workspace: Workspace) -> str:
+    """Where a module may be had that is not there."""
+    name, _, kind = module.partition(".")
+    package = workspace.packages.get(name)
+    if package is not None and kind in KINDS:
+        return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
+    if package is not None:
+        return f"{name} has no module {module}; the package is {package.folder}"
+    near = did_you_mean(name, [*workspace.packages, *registry.packages(), *(m.name for m in pkgutil.iter_modules())])
+    folder = workspace.root / "src" if workspace.packages else workspace.root
+    return f"there is no {name} here{near}; clone the package into {folder} if it is ROS's, or: pip install {name}"
 
 
 def _is_python(file: Path) -> bool:

@@ -146,6 +146,36 @@ def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
         assert (output, process.returncode) == (text, code)
 
 
+@pytest.mark.real
+@pytest.mark.parametrize(
+    ("line", "told", "note"),
+    [
+        (
+            "import lampp",
+            ["Traceback", "lamp/late.py", "    import lampp"],
+            "there is no lampp here; did you mean 'lamp'?",
+        ),
+        ("import lamp.no", ["Traceback", "lamp/late.py", "    import lamp.no"], "lamp has no module lamp.no"),
+        ("from lamp.msg import A", ["Traceback", "lamp/late.py", "    from lamp.msg"], "lamp has no .msg file: "),
+        ("def main(:", ["  File", "lamp/late.py", "    def main("], ""),
+        ("1 / 0", ["Traceback", "lamp/late.py", "    1 / 0"], ""),
+    ],
+)
+def test_an_error_is_shown_from_the_programs_own_code_on(
+    workspace: Path, line: str, told: list[str], note: str
+) -> None:
+    """With what may help, and none of what has started it."""
+    (workspace / "src" / "lamp" / "lamp" / "late.py").write_text(f"import rclpy\n{line}\n")
+    (workspace / "src" / "lamp" / "setup.py").write_text(SETUP.replace("lamp.no:main", "lamp.late:main"))
+    run = start(workspace, "lamp", "none")
+    said, _ = run.communicate(timeout=20)
+    lines = said.splitlines()
+    assert run.returncode == 1
+    assert all(text in "\n".join(lines[:3]) for text in told)
+    assert lines[-1].startswith(f"note: {note}") if note else "note" not in said
+    assert "graphflow" not in said
+
+
 def test_a_program_without_an_end_of_its_own_ends_too() -> None:
     """A node that nobody has destroyed, and a context that nobody has shut down."""
     code = (

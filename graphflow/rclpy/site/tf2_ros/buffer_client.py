@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalStatus
@@ -90,11 +91,7 @@ class BufferClient(BufferInterface):
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = AT_ONCE) -> bool:
         """Whether `lookup_transform` gives one."""
-        try:
-            self.lookup_transform(target_frame, source_frame, time, timeout)
-        except TransformException:
-            return False
-        return True
+        return _succeeds(lambda: self.lookup_transform(target_frame, source_frame, time, timeout))
 
     def can_transform_full(
         self,
@@ -106,11 +103,8 @@ class BufferClient(BufferInterface):
         timeout: Duration = AT_ONCE,
     ) -> bool:
         """Whether `lookup_transform_full` gives one."""
-        try:
-            self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
-        except TransformException:
-            return False
-        return True
+        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        return _succeeds(lambda: self.lookup_transform_full(*asked, timeout))
 
     def destroy(self) -> None:
         """Ask no more."""
@@ -130,6 +124,14 @@ class BufferClient(BufferInterface):
             raise _ERRORS.get(error.error, TransformException)(error.error_string)
         transform: TransformStamped = answer.result.transform
         return transform
+
+
+def _succeeds(look_up: Callable[[], TransformStamped]) -> bool:
+    try:
+        look_up()
+    except TransformException:
+        return False
+    return True
 
 
 def _waited_for(future: Future[Any], limit: float) -> Any:
