@@ -38,7 +38,7 @@ def test_every_graph_file_checks_out(machine: Machine) -> None:
 def test_talker_listener(machine: Machine) -> None:
     """The argument reaches the parameter, and one hears the other."""
     up = machine.start("up", "graphs/talker_listener.yaml", "rate:=25.0")
-    up.wait_for("I heard: [Hello World: 5]")
+    up.wait_for("I heard: [Hello World: 5")  # or 50, where the listener came late
     assert machine.look("param", "get", "/talker", "rate") == "Double value is: 25.0\n"
     assert up.end() == 0
 
