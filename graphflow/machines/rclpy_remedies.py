@@ -27,8 +27,11 @@ def in_rclpys_words(edge: Edge, holder_edge: Edge, graph: WaitGraph) -> Iterator
         yield from _spun(holder, holder_edge, needs)
         return
     yield from _without_waiting(holder, holder_edge, graph)
+    reply = _reply_queue(holder, holder_edge, graph)
+    if reply is not None and _is_spun_inside(holder, reply, graph):
+        return  # which takes the node from its executor for good: nothing else helps
     if queue is not None:
-        yield from _apart(queue, _reply_queue(holder, holder_edge, graph), graph)
+        yield from _apart(queue, reply, graph)
     else:
         yield _text(f"use more threads: MultiThreadedExecutor(num_threads={_held(graph, edge.group) + 1})")
 
@@ -82,6 +85,15 @@ def _reply_queue(holder: ActivityView, edge: Edge, graph: WaitGraph) -> QueueVie
         return None
     node, label = holder.node, f"reply {edge.via.name.partition('/_action/')[0]}"
     return next((q for q in graph.queues.values() if (q.node, q.label) == (node, label)), None)
+
+
+def _is_spun_inside(holder: ActivityView, reply: QueueView, graph: WaitGraph) -> bool:
+    """Whether a callback spins its own node: what that waits for needs another executor than the callback has."""
+    mine, wanted = (
+        {name for name in names if name in graph.groups and graph.groups[name].sort == "executor"}
+        for names in (holder.holds, reply.needs)
+    )
+    return bool(mine and wanted) and mine.isdisjoint(wanted)
 
 
 def _apart(queue: QueueView, reply: QueueView | None, graph: WaitGraph) -> Iterator[str]:

@@ -15,6 +15,7 @@ from tests.flat import flat
 GROUP = GroupView("g", "default callback group", "/arm", sort="callback")
 OWN = GroupView("o", "callback group 'own'", "/arm", sort="callback")
 THREADS = GroupView("e", "SingleThreadedExecutor", "/arm", sort="executor")
+OTHERS = GroupView("f", "SingleThreadedExecutor", "/arm", sort="executor")
 NOBODY = GroupView("s", "spinner", "/arm", sort="spinner")
 CALL = Call("c", "/add")
 TICK = ActivityView(
@@ -28,7 +29,7 @@ def told(edge: Edge, *activities: ActivityView, queues: tuple[QueueView, ...] = 
     """The remedies, one line each."""
     graph = WaitGraph(
         {a.id: a for a in activities},
-        {g.id: g for g in (GROUP, OWN, THREADS, NOBODY)},
+        {g.id: g for g in (GROUP, OWN, THREADS, OTHERS, NOBODY)},
         {q.id: q for q in queues},
     )
     return [flat(text) for text in in_rclpys_words(edge, edge, graph)]
@@ -41,6 +42,12 @@ def test_a_call_in_a_callback() -> None:
         "make add and the client of /add of /arm with callback_group=MutuallyExclusiveCallbackGroup() each, "
         "and spin with MultiThreadedExecutor(num_threads=2)",
     ]
+
+
+def test_a_callback_that_spins_its_node() -> None:
+    """That takes the node from its executor: with groups and threads, the call would be the last thing it does."""
+    [only] = told(Edge("a", CALL, "q", "g"), TICK, queues=(ADD, replace(REPLY, needs=("g", "f"))))
+    assert only.startswith("do not block in arm.py:12:")
 
 
 def test_only_what_is_full_is_changed() -> None:

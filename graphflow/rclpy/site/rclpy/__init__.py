@@ -163,26 +163,26 @@ def create_node(
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
     """Run one callback of a node, waiting at most `timeout_sec` seconds for one that is ready."""
     executor = get_global_executor() if executor is None else executor
-    is_added = False
+    former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)
         executor.spin_once(timeout_sec=timeout_sec)
     finally:
         if is_added:
-            executor.remove_node(node)
+            _take_out(node, executor, former, "rclpy.spin_once")
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the callbacks of a node until the context is shut down."""
     executor = get_global_executor() if executor is None else executor
-    is_added = False
+    former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)
         while executor.context.ok():
             executor.spin_once()
     finally:
         if is_added:
-            executor.remove_node(node)
+            _take_out(node, executor, former, "rclpy.spin")
 
 
 def spin_until_future_complete(
@@ -190,10 +190,19 @@ def spin_until_future_complete(
 ) -> None:
     """Run the callbacks of a node until a future is done, at most `timeout_sec` seconds."""
     executor = get_global_executor() if executor is None else executor
-    is_added = False
+    former, is_added = node.executor, False
     try:
         is_added = executor.add_node(node)
         executor.spin_until_future_complete(future, timeout_sec)
     finally:
         if is_added:
-            executor.remove_node(node)
+            _take_out(node, executor, former, "rclpy.spin_until_future_complete")
+
+
+def _take_out(node: Node, executor: Executor, former: Executor | None, what: str) -> None:
+    """Spin a node no more that was added for `what`."""
+    executor.remove_node(node)
+    if former is not None and former is not executor:
+        from rclpy.impl.taken_out import watch
+
+        watch(node, former, what)

@@ -128,6 +128,7 @@ class Executor(AbstractContextManager["Executor"]):
             return False
         spinning.nodes[node] = None
         node.executor = self
+        node._graphflow.times_added += 1
         spinning.wake.set()
         return True
 

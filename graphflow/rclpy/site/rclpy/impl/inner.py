@@ -39,6 +39,8 @@ class Inner:
         self.guards: list[GuardCondition] = []
         self.waitables: list[Waitable] = []
         self.executor: Callable[[], Any] = none
+        self.times_added = 0
+        """How often it was added to an executor."""
         self.group = MutuallyExclusiveCallbackGroup()
         self.rate_group: CallbackGroup | None = None
         self.logger = get_logger(node.full_name[1:].replace("/", "."))

@@ -117,12 +117,12 @@ def standing() -> dict[int, tuple[int, int]]:
                 break
             frame = frame.f_back
         else:
-            if frame is not None and _is_in_run(frame):  # it spins within a callback
+            if frame is not None and is_in_run(frame):  # it spins within a callback
                 found[thread] = id(frame), 0
     return found
 
 
-def _is_in_run(frame: FrameType) -> bool:
+def is_in_run(frame: FrameType) -> bool:
     """Whether a callback, not the thread itself, has called what runs in a frame."""
     above: FrameType | None = frame
     while above is not None:
