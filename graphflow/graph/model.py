@@ -185,12 +185,15 @@ class _Settings(_Model):
 
 OF_CLASSES = ("class", "concurrency", "process", "lifecycle")
 """Keys that only a node with a class can have."""
-OF_NODES = (*OF_CLASSES, "pkg", "exec", "args", "keep_names", "params", "params_file", "remap", "log_level")
+OF_PACKAGES = ("pkg", "exec", "args", "keep_names", "prefix")
+"""Keys that only an executable of a package can have."""
+OF_NODES = (*OF_CLASSES, *OF_PACKAGES, "params", "params_file", "remap", "log_level")
 """Keys that a foreign program cannot have."""
 _HELP = {
     "class": "write class: or command:, not both",
     "pkg": "write pkg: and exec:, or command:, not both",
     "args": "they stand in the list: command: [PROGRAM, WORD, WORD]",
+    "prefix": "it stands in the list: command: [nice, -n, 5, PROGRAM]",
     "concurrency": "its code has its callback groups",
     "params": "pass it words: command: [PROGRAM, --ros-args, -p, NAME:=VALUE]",
     "remap": "pass it words: command: [PROGRAM, --ros-args, -r, FROM:=TO]",
@@ -206,6 +209,7 @@ class NodeSpec(_Settings):
     exec_: StrictStr = Field("", alias="exec")
     args: list[StrictStr | StrictInt | StrictFloat] = []
     keep_names: StrictBool = False
+    prefix: StrictStr = ""
     template: StrictStr = ""
     params_file: StrictStr | list[StrictStr] = []
     process: StrictStr = ""

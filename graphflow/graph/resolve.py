@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from shutil import which
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.folders import newest_logs
@@ -134,6 +136,9 @@ class _Programs:
 
     def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
         """The words that run a node's program: none for a class, None for one that is left out."""
+        before = self._prefix(spec, at)
+        if before is None:
+            return None
         if not spec.pkg:
             return tuple(map(str, spec.command))
         place = self._src.place((*at, "exec"))
@@ -146,7 +151,28 @@ class _Programs:
             if error.is_slip or spec.pkg in self._workspace.packages:
                 self._problems.add(place, str(error))
             command = ("ros2", "run", spec.pkg, spec.exec_)
-        return (*command, *map(str, spec.args))
+        return (*before, *command, *map(str, spec.args))
+
+    def _prefix(self, spec: NodeSpec, at: source.Path) -> list[str] | None:
+        """The words before a program's own; None for one that is left out, since nobody here has what they name."""
+        place = self._src.place((*at, "prefix"))
+        try:
+            words = shlex.split(spec.prefix)
+        except ValueError as error:
+            self._problems.add(place, f"prefix: {error}")
+            return []
+        if words and not spec.pkg:
+            run = f"graphflow run --prefix {shlex.quote(spec.prefix)} {spec.class_}"
+            text = f"prefix: goes with pkg: and exec:; to run this class by itself with it: {run}"
+            self._problems.add_unless_ros(place, text)
+        elif words and which(words[0], path=self._outside.env.get("PATH")) is None:
+            run = f"run it by itself: graphflow run {spec.pkg} {spec.exec_}"
+            text = f"there is no program {words[0]!r} on the PATH, which prefix: names; {run}"
+            if place.file not in self._problems.launch_files:
+                self._problems.add(place, text)
+            self.left_out[at[-1]] = Problem(place, f"{spec.exec_} is left out: {text}")
+            return None
+        return words
 
 
 class _ParamsFiles:

@@ -36,7 +36,18 @@ _IGNORED = {"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout", "exec
 """Attributes without a meaning here: output is always logged, and stopping is always the same."""
 _RECORDED = {"number", "after_number", "after_what"}
 """Attributes that `recorded` adds to those of ROS: which action it is, and after which one it comes."""
-_RUN = {*_RECORDED, "name", "env", "respawn", "respawn_delay", "respawn_max_retries", "on_exit", *_ANY, *_IGNORED}
+_RUN = {
+    *_RECORDED,
+    "launch-prefix",
+    "name",
+    "env",
+    "respawn",
+    "respawn_delay",
+    "respawn_max_retries",
+    "on_exit",
+    *_ANY,
+    *_IGNORED,
+}
 _KNOWN: dict[str, set[str]] = {
     "arg": {"name", "default", "description", "choice", *_ANY},
     "let": {"name", "value", *_ANY},
@@ -310,6 +321,8 @@ class _Translation:
             entries["lifecycle"] = Item("active", item.entries["autostart"].place, item.entries["autostart"].key)
         if "process" in item.entries:  # of a component
             entries["process"] = item.entries["process"]
+        if "launch-prefix" in item.entries:
+            entries["prefix"] = item.entries["launch-prefix"]
         entries |= self._common(item)
         usual = re.sub(r"\W", "_", name.value.removesuffix(".py")) if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
@@ -403,6 +416,7 @@ class _Translation:
             return
         if is_shells:
             words = ["sh", "-c", f"{OUR_ROS2}{line}" if "ros2 " in line else line]
+        words = [*words_of(item.entries.get("launch-prefix")), *words]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
         if words[:1] == ["ros2"]:

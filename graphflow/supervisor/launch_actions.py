@@ -134,6 +134,8 @@ def _common(said: Said) -> dict[str, Any]:
     for key in ("name", "namespace", "cwd", "respawn", "respawn_delay", "respawn_max_retries", "shell"):
         if said.get(key) is not None:
             found[key] = text(said.get(key))
+    if said.get("prefix") is not None:
+        found["launch-prefix"] = text(said.get("prefix"))
     variables = {**(said.get("env") or {}), **(said.get("additional_env") or {})}
     if variables:
         found["env"] = [{"name": text(key), "value": text(value)} for key, value in variables.items()]

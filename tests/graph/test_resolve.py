@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -640,6 +641,44 @@ def test_packages_that_only_ros_may_have(lamps: Path, monkeypatch: pytest.Monkey
     [problem] = check(planned(lamps, "nodes: {a: {pkg: nav2, exec: planner}}"), {})
     said = "there is no package 'nav2' in the workspace, and no ROS 2 is sourced"
     assert (problem.message, str(problem.place)) == (said, "f.yaml:1:18")
+
+
+def test_words_before_a_program(lamps: Path) -> None:
+    """They must be there; a class has no program."""
+    found = planned(lamps, "nodes: {a: {pkg: lamp, exec: shine, args: [x], prefix: env -i}}")
+    assert found.nodes[0].command[:2] == ("env", "-i")
+    assert found.nodes[0].command[-1] == "x"
+    for node, said in (
+        (
+            "{pkg: lamp, exec: shine, prefix: no_such -x}",
+            "there is no program 'no_such' on the PATH, which prefix: names",
+        ),
+        ('{pkg: lamp, exec: shine, prefix: "a \'b"}', "prefix: No closing quotation"),
+        ("{class: nodes.talker:Talker, prefix: nice -n 5}", "graphflow run --prefix 'nice -n 5' nodes.talker:Talker"),
+        ("{command: [ls], prefix: nice}", "prefix: is for nodes, and this is a program; it stands in the list"),
+    ):
+        with pytest.raises(GraphFileError, match=re.escape(said)):
+            planned(lamps, f"nodes: {{a: {node}}}")
+
+
+def test_what_a_launch_file_has_before_a_program(lamps: Path) -> None:
+    """What is not there leaves the node out, a class goes without; both are remarked."""
+    nodes = [
+        "{pkg: lamp, exec: shine, launch-prefix: xterm_that_is_not_there -e}",
+        "{pkg: lamp, exec: shine, name: cold, launch-prefix: nice -n 5}",
+        "{pkg: demo_nodes_py, exec: talker, launch-prefix: gdb --args}",
+    ]
+    (lamps / "f.launch.yaml").write_text(f"launch: [{', '.join(f'{{node: {node}}}' for node in nodes)}]\n")
+    found = load(lamps / "f.launch.yaml")
+    assert {node.name: node.command[:3] for node in found.nodes} == {"/cold": ("nice", "-n", "5"), "/talker": ()}
+    [bare, left_out] = sorted(remark.partition(": ")[2] for remark in found.remarks)
+    assert bare.startswith(
+        "prefix: goes with pkg: and exec:; to run this class by itself with it: graphflow run --prefix"
+    )
+    assert left_out == (
+        "shine is left out: there is no program 'xterm_that_is_not_there' on the PATH, which prefix: names; "
+        "run it by itself: graphflow run lamp shine"
+    )
 
 
 def test_what_nobody_here_has_is_left_out_of_launch_files(lamps: Path, monkeypatch: pytest.MonkeyPatch) -> None:
