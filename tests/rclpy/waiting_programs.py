@@ -21,9 +21,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallb
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-
-LONG = 0.8
-"""Seconds that everything takes."""
+from tests.rclpy.store import LONG, Store
 
 
 class Server(Node):
@@ -44,25 +42,18 @@ class Server(Node):
         return Fibonacci.Result()
 
 
-class Store:
-    """Has a lock of the same name as the node's."""
-
-    def __init__(self) -> None:
-        self.lock = threading.Lock()
-
-    def fill(self) -> None:
-        with self.lock:
-            time.sleep(LONG)
-
-
 class Waiter(Node):
-    """Waits in the way of that name."""
+    """Waits. Its source shows all that is done to what it waits for."""
 
-    def __init__(self, way: str, group: Any, *, starts_itself: bool) -> None:
+    way: Any
+    """The method in which it does."""
+
+    def __init__(self, group: Any, *, starts_itself: bool) -> None:
         super().__init__("waiter")
-        self.way = getattr(self, way)
-        self.done, self.arrived = threading.Event(), threading.Event()
-        self.lock, self.condition = threading.Lock(), threading.Condition()
+        self.done = threading.Event()
+        self.arrived = threading.Event()
+        self.lock = threading.Lock()
+        self.condition = threading.Condition()
         self.items: queue.Queue[int] = queue.Queue()
         self.flag = False
         self.store = Store()
@@ -158,9 +149,9 @@ class Waiter(Node):
 
     def lock_of_another(self) -> None:
         thread = threading.Thread(target=self.store.fill)
-        thread.start()
-        time.sleep(0.1)
-        with self.lock:  # while it waits in a lock of the other's
+        with self.lock:  # while it waits for a lock of the other's
+            thread.start()
+            time.sleep(0.1)
             self.store.fill()
         thread.join()
 
@@ -211,8 +202,8 @@ class Awaiter(Waiter):
 class CoroutineTimer(Awaiter):
     """Its timer's callback is a coroutine function, as executors look for."""
 
-    def __init__(self, way: str, group: Any, *, starts_itself: bool) -> None:
-        super().__init__(way, group, starts_itself=starts_itself)
+    def __init__(self, group: Any, *, starts_itself: bool) -> None:
+        super().__init__(group, starts_itself=starts_itself)
         self.timer.callback = self.coroutine  # type: ignore[union-attr]
 
 
@@ -229,7 +220,8 @@ class Running:
         rclpy.init()
         group: Any = ReentrantCallbackGroup if arrangement == "reentrant" else MutuallyExclusiveCallbackGroup
         kind = CoroutineTimer if way in AWAITS else Waiter
-        self.node = kind(way, group, starts_itself=arrangement != "worker")
+        self.node = kind(group, starts_itself=arrangement != "worker")
+        self.node.way = getattr(self.node, way)
         self.server = Server(group)
         executors: list[Executor] = [MultiThreadedExecutor(6)]
         if arrangement == "executors":

@@ -14,6 +14,7 @@ import pytest
 from std_srvs.srv import Trigger
 
 import rclpy
+from graphflow.deadlock.source import source_of
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl import stacks, waiting
@@ -132,6 +133,13 @@ def test_who_merely_waits_is_not_called_stuck(
     finally:
         running.end()
     assert not [r.getMessage() for r in caplog.records if r.name == "graphflow" and r.levelno >= logging.WARNING]
+
+
+def test_what_those_wait_for_can_be_followed() -> None:
+    """Else nothing would ever be found there, and the test above could not fail."""
+    for cls in (waiting_programs.Waiter, waiting_programs.Awaiter, waiting_programs.CoroutineTimer):
+        source = source_of(object.__new__(cls))
+        assert all(source.uses(name) for name in ("arrived", "lock", "condition", "items", "flag", "future", "promise"))
 
 
 class TwoServers(planted.Asker):
