@@ -12,12 +12,12 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Callable
-from functools import cache
 from types import SimpleNamespace
 from typing import Any, ClassVar, NoReturn
 
 from graphflow.errors import EncodeError
 from graphflow.msgs import registry
+from graphflow.rclpy.once import made_once
 from graphflow.rclpy.values import SEQUENCE_CODES, Check, checker, rosidl_type
 from graphflow.wire.cdr import Codec
 from graphflow.wire.codegen import Types
@@ -73,7 +73,7 @@ def _text(value: Any) -> str:
     return repr(value.tolist()) if isinstance(value, array) else repr(value)
 
 
-@cache
+@made_once
 def message_class(name: str) -> type[StrictMessage]:
     """The class of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
 
@@ -190,7 +190,7 @@ def _numpy(base: str, items: list[Any]) -> Any:
     return np.array(items, DTYPES[base])
 
 
-@cache
+@made_once
 def codec(name: str) -> Codec:
     """The codec of a message class by the name of its type."""
     return Codec(registry.message_schema(name), Types(registry.message_schema, message_class, _checked, "rosidl"))
@@ -226,7 +226,7 @@ def _checked(message: StrictMessage) -> StrictMessage:
     return message
 
 
-@cache
+@made_once
 def service_class(name: str) -> type:
     """The class of a service; it holds `Request`, `Response` and `Event`."""
     schema = registry.service_schema(name)
@@ -236,7 +236,7 @@ def service_class(name: str) -> type:
     return _NoInstances(base, (), {"__module__": _module(package, kind, base), "NAME": name, **body})
 
 
-@cache
+@made_once
 def action_class(name: str) -> type:
     """The class of an action; it holds `Goal`, `Result`, `Feedback`, and in `Impl` what carries them."""
     schema = registry.interface(name)

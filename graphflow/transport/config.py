@@ -17,9 +17,10 @@ CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
 PROFILE_VARIABLE = "GRAPHFLOW_NET"
 """The path of a net profile (`graph.net`)."""
 
-# Undeclaring a publisher that keeps messages holds the GIL until a task of Zenoh's has ended. With one thread for such
-# tasks, which may be waiting for the GIL in a callback, that takes ten seconds. Read when the first session is opened.
-os.environ.setdefault("ZENOH_RUNTIME", "(net: (worker_threads: 2))")
+# Undeclaring a publisher that keeps messages holds the GIL until a task of Zenoh's has ended. That takes ten seconds if
+# all threads for such tasks wait for the GIL in callbacks, of which there may be three for each action client when its
+# server leaves. A thread costs next to nothing. Read when the first session is opened.
+os.environ.setdefault("ZENOH_RUNTIME", "(net: (worker_threads: 8))")
 
 CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -65,26 +66,39 @@ class _ZenohSender(_Declared):
     """A plain publisher, which knows whether there are listeners."""
 
     def __init__(self, publisher: Any, bell: Bell, changed: Callable[[], None] | None) -> None:
-        self.is_wanted = False
-        self._inbox = Inbox(bell, 1, changed) if changed is not None else None
-        # Runs on Zenoh's thread, so it does next to nothing.
-        listener = publisher.declare_matching_listener(Callback(self._matching, indirect=False))
+        self._publisher, self._lock, self._is_wanted = publisher, threading.Lock(), False
+        self._inbox = None if changed is None else Inbox(bell, 1, changed)
+        # What changes is looked up when it is asked for. A callback needs the GIL on a thread of those that `config`
+        # speaks of, and there would be one for each publisher at once when a peer leaves.
+        channel: Any = zenoh.handlers.RingChannel(1)
+        handler = channel if self._inbox is None else Callback(self._matching, indirect=False)
+        listener = publisher.declare_matching_listener(handler)
+        self._news = listener.handler.try_recv if self._inbox is None else _nothing
         super().__init__(listener, publisher)
         self.put = publisher.put
         # Earlier listeners may have been reported by now, but their leaving never will be.
         if publisher.matching_status.matching:
-            self.is_wanted = True
+            self._is_wanted = True
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether anybody listens. From any thread."""
+        if self._news() is not None:
+            with self._lock:  # whoever is last knows the last
+                self._is_wanted = self._publisher.matching_status.matching
+        return self._is_wanted
 
     def _matching(self, status: Any) -> None:
-        self.is_wanted = status.matching
-        if self._inbox is not None:
-            self._inbox.put(status)
+        self._is_wanted = status.matching
+        assert self._inbox is not None
+        self._inbox.put(status)
 
     def close(self) -> None:
         if self._inbox is not None:
             self._inbox.ready = _nothing  # it may already have been rung for
+        self._news = _nothing
         super().close()
-        self.is_wanted = False
+        self._is_wanted = False
 
 
 class _KeepingSender(_Declared):

@@ -29,12 +29,12 @@ def test_a_command_is_not() -> None:
     assert config("client", connect=["tcp/127.0.0.1:7447"]).get_json("connect/endpoints") == '["tcp/127.0.0.1:7447"]'
 
 
-def test_zenoh_has_two_threads_for_what_may_wait_for_the_gil() -> None:
+def test_zenoh_has_threads_for_what_may_wait_for_the_gil() -> None:
     """What the user says comes first."""
     program = "import os; import graphflow.transport.config; print(os.environ['ZENOH_RUNTIME'])"
     own = "(net: (worker_threads: 3))"
     plain = {name: value for name, value in os.environ.items() if name != "ZENOH_RUNTIME"}
-    for more, expected in (({}, "(net: (worker_threads: 2))"), ({"ZENOH_RUNTIME": own}, own)):
+    for more, expected in (({}, "(net: (worker_threads: 8))"), ({"ZENOH_RUNTIME": own}, own)):
         said = subprocess.check_output([sys.executable, "-c", program], env=plain | more, text=True, timeout=60)
         assert said.strip() == expected
 

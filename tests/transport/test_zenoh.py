@@ -1,7 +1,8 @@
-"""What a running talker puts on the network, read by raw Zenoh beside it."""
+"""What a running talker puts on the network, read by raw Zenoh beside it; and sessions that end."""
 
 from __future__ import annotations
 
+import asyncio
 import json
 import struct
 import time
@@ -10,6 +11,8 @@ from collections.abc import Iterator
 import pytest
 import zenoh
 
+from graphflow.qos import Durability, Qos
+from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
 
@@ -142,3 +145,29 @@ def test_a_malformed_request_gets_an_error_and_the_service_goes_on(raw: zenoh.Se
         assert reply.err is not None
         assert "DecodeError" in reply.err.payload.to_string()
     assert "50.0" in machine.run("param", "get", "/robot1/talker", "rate")
+
+
+async def test_publishers_end_while_their_listeners_do(
+    graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
+) -> None:
+    """What they are told of meanwhile must not hold up the end of one that keeps messages, which holds the GIL."""
+    loop = asyncio.get_running_loop()
+    mine, other = ZenohSession(loop), ZenohSession(loop)
+    kept = [mine.open_sender(f"kept/{i}", Qos(1, durability=Durability.TRANSIENT_LOCAL)) for i in range(3)]
+    plain = [mine.open_sender(f"plain/{i}", Qos(1)) for i in range(60)]
+    keys = [f"plain/{i}" for i in range(len(plain))]
+    listeners = [other.raw.declare_subscriber(key, zenoh.handlers.RingChannel(1)) for key in keys]
+    async with asyncio.timeout(LIMIT):
+        while not all(sender.is_wanted for sender in plain):
+            await asyncio.sleep(0.01)
+    other.raw.close()  # type: ignore[no-untyped-call]
+    began = time.monotonic()
+    for sender in kept:
+        sender.close()
+    took = time.monotonic() - began
+    async with asyncio.timeout(LIMIT):
+        while any(sender.is_wanted for sender in plain):
+            await asyncio.sleep(0.01)
+    mine.raw.close()  # type: ignore[no-untyped-call]
+    del listeners
+    assert took < 8  # Zenoh itself gives up after ten

@@ -242,7 +242,7 @@ class _Look:
             self._add_run(run, level, (*holding, *(held if place == 0 else ())), wait, self._age(stack), left)
 
     def _age(self, stack: Stack) -> float:
-        return self._now - self._waiting.stands_since(stack.thread.ident or 0)
+        return max(0.0, self._now - self._waiting.stands_since(stack.thread.ident or 0))
 
     def _add_run(
         self, run: Run, level: Level, holding: tuple[str, ...], wait: Condition, age: float, left: float | None
