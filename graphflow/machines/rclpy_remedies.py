@@ -43,7 +43,8 @@ def _spun(holder: ActivityView, holder_edge: Edge, needs: list[GroupView]) -> It
         spin = "rclpy.spin_until_future_complete(node, future)"
         yield _text(f"spin while waiting, in {place}:", f"future = client.{_asynchronous(holder_edge.via)},", spin)
     node = next((group.node for group in needs if group.node), "the node")
-    start = "threading.Thread(target=executor.spin, daemon=True).start()"
+    spin = "executor.spin" if any(group.sort == "executor" for group in needs) else "rclpy.spin, args=(node,)"
+    start = f"threading.Thread(target={spin}, daemon=True).start()"
     yield _text(f"let another thread spin {node} before {place}:", start)
 
 

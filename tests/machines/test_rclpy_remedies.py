@@ -103,8 +103,15 @@ def test_nobody_spins() -> None:
     assert told(Edge("a", CALL, "q", "s"), TICK, queues=(ask,)) == [
         "spin while waiting, in arm.py:12: future = client.call_async(request), "
         "rclpy.spin_until_future_complete(node, future)",
-        "let another thread spin /arm before arm.py:12: threading.Thread(target=executor.spin, daemon=True).start()",
+        "let another thread spin /arm before arm.py:12: "
+        "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()",
     ]
+
+
+def test_nobody_spins_an_executor() -> None:
+    """It has the node, so it is the one to be spun."""
+    [_, other] = told(Edge("a", CALL, "q", "s"), TICK, queues=(replace(ADD, needs=("e", "s")),))
+    assert other.endswith("threading.Thread(target=executor.spin, daemon=True).start()")
 
 
 def test_what_only_lacks_a_thread() -> None:
