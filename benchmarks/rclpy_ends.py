@@ -24,11 +24,15 @@ from benchmarks.rounds import goal
 
 PROGRAM = """\
 import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 from std_msgs.msg import String
 
 rclpy.init()
-node = Node("ender")
+node, other = Node("ender"), Node("asker")
+server = ActionServer(node, Fibonacci, "count", lambda goal: Fibonacci.Result())
+client = ActionClient(other, Fibonacci, "count")
 publisher = node.create_publisher(String, "ended", 10)
 node.create_subscription(String, "ended", lambda message: None, 10)
 node.create_timer(0.002, lambda: publisher.publish(String(data="x")))
