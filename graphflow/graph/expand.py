@@ -420,7 +420,7 @@ class Expansion:
         entries = dict(item.entries)
         for key in INHERITED:
             found = first_of([entries, *scope.shared]).get(key)
-            if found is not None:
+            if found is not None and (key != "lifecycle" or "pkg" not in entries):  # which only some programs have
                 entries[key] = found
         for key in BY_ENTRY:
             of_groups = first_of([group[key].entries for group in scope.shared if key in group])

@@ -183,11 +183,11 @@ class _Settings(_Model):
     unless: Condition = None
 
 
-OF_CLASSES = ("class", "concurrency", "process", "lifecycle")
+OF_CLASSES = ("class", "concurrency", "process")
 """Keys that only a node with a class can have."""
 OF_PACKAGES = ("pkg", "exec", "args", "keep_names", "prefix")
 """Keys that only an executable of a package can have."""
-OF_NODES = (*OF_CLASSES, *OF_PACKAGES, "params", "params_file", "remap", "log_level")
+OF_NODES = (*OF_CLASSES, *OF_PACKAGES, "lifecycle", "params", "params_file", "remap", "log_level")
 """Keys that a foreign program cannot have."""
 _HELP = {
     "class": "write class: or command:, not both",
@@ -234,6 +234,8 @@ class NodeSpec(_Settings):
             if "class" in has:
                 raise ValueError("write class:, or pkg: and exec:, not both")
             wrong = next((key for key in OF_CLASSES if key in has), None)
+            if data.get("keep_names") and "lifecycle" in has:
+                raise ValueError("lifecycle: needs the node's name, which keep_names leaves to the program")
         else:
             if has & {"args", "keep_names"}:
                 [key, *_] = sorted(has & {"args", "keep_names"})

@@ -34,8 +34,8 @@ from graphflow.names import did_you_mean
 _ANY = {"if", "unless"}
 _IGNORED = {"output", "emulate_tty", "sigterm_timeout", "sigkill_timeout", "exec_name", "log_cmd"}
 """Attributes without a meaning here: output is always logged, and stopping is always the same."""
-_RECORDED = {"number", "after_number", "after_what"}
-"""Attributes that `recorded` adds to those of ROS: which action it is, and after which one it comes."""
+_RECORDED = {"number", "after_number", "after_what", "brought_to"}
+"""Attributes that `recorded` adds: which action it is, after which it comes, the state that it is brought to."""
 _RUN = {
     *_RECORDED,
     "launch-prefix",
@@ -315,10 +315,10 @@ class _Translation:
         else:
             self._words(item, entries)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
+        if "brought_to" in item.entries:
+            entries["lifecycle"] = item.entries["brought_to"]
         if says(item, "autostart", "true", "1"):
-            if found is None:
-                self._complain(item.entries["autostart"].place, "autostart: nobody here brings up a program of ROS")
-            entries["lifecycle"] = Item("active", item.entries["autostart"].place, item.entries["autostart"].key)
+            entries["lifecycle"] = item.entries["autostart"]._replace(value="active")
         if "process" in item.entries:  # of a component
             entries["process"] = item.entries["process"]
         if "launch-prefix" in item.entries:
@@ -449,9 +449,10 @@ class _Translation:
             entries["on_exit"] = item.entries["on_exit"]
         before = get("after_number")
         if before is not None and before.value in self._numbered:
-            entries["after"] = Item(
-                {self._numbered[before.value]: item.entries["after_what"]}, before.place, before.place
-            )
+            needs = {self._numbered[before.value]: item.entries["after_what"]}
+            entries["after"] = Item(needs, before.place, before.place)
+        elif before is not None:
+            self._note(before.place, "what it is to come after is not among the nodes and programs before it")
         if "number" in item.entries:
             entries["number"] = item.entries["number"]
         return entries

@@ -273,4 +273,6 @@ def _victims(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
 
 
 def _any_of(fixes: list[str]) -> list[str]:
-    return ["Any one of these ends it:", *fixes] if fixes else []
+    changes = sum(line[2:3] != " " for line in fixes)  # a change goes on in lines further in
+    heading = "This ends it:" if changes == 1 else "Any one of these ends it:"
+    return [heading, *fixes] if fixes else []

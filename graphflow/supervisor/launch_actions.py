@@ -7,21 +7,34 @@ from typing import Any
 from graphflow.names import did_you_mean
 from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
 
+_described: set[int] = set()
+"""Actions that have been written down."""
 _numbers: dict[int, int] = {}
 """Numbers of actions that others come after."""
 _ending: set[int] = set()
 """Actions with whose end everything ends."""
+_lives: dict[int, str] = {}
+"""The states that lifecycle nodes are brought to."""
+_STATES = {1: "inactive", 3: "active"}
+"""Where lifecycle_msgs/msg/Transition's configure and activate lead."""
 
 
 def actions(said: Any) -> list[dict[str, Any]]:
     """What was described, as actions of the YAML dialect."""
     if isinstance(said, (list, tuple)):
-        return [action for one in said for action in actions(one)]
+        found, later = [], []
+        for one in said:
+            if _is_early(one):
+                later.append(one)
+            else:
+                found += actions(one)
+        return found + [action for one in later for action in actions(one)]
     if said is None:
         return []
     if not isinstance(said, Said):
         RECORDING.problems.append({"line": 1, "message": f"{said!r} is no action"})
         return []
+    _described.add(id(said))
     name, attributes = _action(said)
     if name == "":
         return list(attributes)
@@ -33,6 +46,8 @@ def actions(said: Any) -> list[dict[str, Any]]:
         attributes["number"] = _numbers[id(said)]
     if id(said) in _ending:
         attributes["on_exit"] = "shutdown"
+    if id(said) in _lives:
+        attributes["brought_to"] = _lives[id(said)]
     return [{name: attributes}]
 
 
@@ -77,6 +92,8 @@ def _action(said: Said) -> tuple[str, Any]:
             return "", actions(_called(said))
         case "RegisterEventHandler":
             return "", _handled(said)
+        case "EmitEvent" if _change(said) is not None:  # the node has been told to be brought there
+            return "", []
         case "Node" | "LifecycleNode":
             found = {"autostart": "true"} if get("autostart") is True else {}
             return "node", {**_node(said), **found}
@@ -108,17 +125,41 @@ def _called(said: Said) -> Any:
     return found
 
 
+_HANDLERS = {
+    "OnProcessExit": ("target_action", "on_exit", "exited"),
+    "OnProcessStart": ("target_action", "on_start", "ready"),
+    "OnStateTransition": ("target_lifecycle_node", "entities", "ready"),
+}
+"""Event handlers with words here: the arguments with whose event and with what follows, and what must have become."""
+
+
+def _change(said: Any) -> tuple[Said, str] | None:
+    """The lifecycle node that an event brings to a state, and that state."""
+    event = said.get("event", 0) if isinstance(said, Said) and said.name == "EmitEvent" else None
+    if not isinstance(event, Said) or event.name != "ChangeState":
+        return None
+    matcher, state = event.get("lifecycle_node_matcher"), _STATES.get(event.get("transition_id"))
+    node = matcher.get("action", 0) if isinstance(matcher, Said) and matcher.name == "matches_action" else None
+    return (node, state) if isinstance(node, Said) and state else None
+
+
 def _handled(said: Said) -> list[dict[str, Any]]:
-    """Actions that begin when a process has started or ended."""
+    """Actions that begin when a process has started or ended, or a lifecycle node has come to a state."""
     handler = said.get("event_handler", 0)
-    names = {"OnProcessExit": ("on_exit", "exited"), "OnProcessStart": ("on_start", "ready")}
-    if not isinstance(handler, Said) or handler.name not in names:
+    if not isinstance(handler, Said) or handler.name not in _HANDLERS:
         RECORDING.problem(said, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
         return []
-    key, what = names[handler.name]
-    target, then = handler.get("target_action"), handler.get(key)
+    whose, key, what = _HANDLERS[handler.name]
+    target, then = handler.get(whose), handler.get(key)
     if not isinstance(target, Said) or (callable(then) and not isinstance(then, Said)):
         RECORDING.problem(said, f"{handler.name}: only for one process, with a list of actions")
+        return []
+    goal = handler.get("goal_state")
+    if goal is not None and goal not in (_lives.get(id(target)), "inactive" if id(target) in _lives else None):
+        text = (
+            f"OnStateTransition: nothing in this file brings the node to {goal!r} by EmitEvent(event=ChangeState(...))"
+        )
+        RECORDING.problem(said, text)
         return []
     then = [one for one in (then if isinstance(then, list) else [then]) if not _is_shutdown(one)]
     number = _numbers.setdefault(id(target), len(_numbers) + 1)
@@ -141,7 +182,7 @@ def _common(said: Said) -> dict[str, Any]:
         found["env"] = [{"name": text(key), "value": text(value)} for key, value in variables.items()]
     on_exit = said.get("on_exit")
     if on_exit is not None:
-        if isinstance(on_exit, Said) and on_exit.name in ("Shutdown", "EmitEvent"):
+        if _is_shutdown(on_exit):
             found["on_exit"] = "shutdown"
         else:
             RECORDING.problem(said, "on_exit: only Shutdown() has words in a graph file")
@@ -225,19 +266,32 @@ def _parameter(name: Any, value: Any) -> dict[str, Any]:
     return {"name": text(name), "value": plain(value), **({"type": "str"} if is_text else {})}
 
 
+def _is_early(said: Any) -> bool:
+    """Whether an event handler stands before what it waits for."""
+    handler = said.get("event_handler", 0) if isinstance(said, Said) and said.name == "RegisterEventHandler" else None
+    if not isinstance(handler, Said) or handler.name not in _HANDLERS:
+        return False
+    return id(handler.get(_HANDLERS[handler.name][0])) not in _described
+
+
 def _is_shutdown(said: Any) -> bool:
-    return isinstance(said, Said) and said.name in ("EmitEvent", "Shutdown")
+    event = said.get("event", 0) if isinstance(said, Said) and said.name == "EmitEvent" else said
+    return isinstance(event, Said) and event.name == "Shutdown"
 
 
 def number_targets(said: Any) -> None:
-    """Number the actions that event handlers wait for, before they are written down."""
+    """Number the actions that event handlers wait for, and note what events bring about, before all is written down."""
     if isinstance(said, (list, tuple)):
         for one in said:
             number_targets(one)
     elif isinstance(said, Said):
-        if said.name in ("OnProcessExit", "OnProcessStart") and isinstance(target := said.get("target_action"), Said):
+        whose, key, _ = _HANDLERS.get(said.name, ("", "", ""))
+        if isinstance(target := said.get(whose), Said):
             _numbers.setdefault(id(target), len(_numbers) + 1)
-            then = said.get("on_exit")
+            then = said.get(key) if key == "on_exit" else None
             if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
                 _ending.add(id(target))
+        if change := _change(said):
+            node, state = change
+            _lives[id(node)] = "active" if "active" in (state, _lives.get(id(node))) else state
         number_targets([*said.args, *said.kwargs.values()])

@@ -15,13 +15,37 @@ import json
 import os
 import sys
 from collections.abc import Mapping
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from graphflow.graph.workspace import find_workspace
 from graphflow.supervisor.launch_actions import actions, number_targets
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
 from graphflow.wire.profile import wire_profile
+
+
+class _Messages(MetaPathFinder, Loader):
+    """Finds ROS's message packages, from which launch files take constants."""
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        try:
+            known = find_spec(f"graphflow.msgs.{name}")
+        except ModuleNotFoundError:  # of a package that is none of messages
+            return None
+        return (
+            None if known is None else ModuleSpec(name, self, is_package=known.submodule_search_locations is not None)
+        )
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        return import_module(f"graphflow.msgs.{spec.name}")
+
+    def exec_module(self, module: ModuleType) -> None:
+        """It has been imported."""
 
 
 class _Environment(dict[str, str]):
@@ -41,6 +65,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
     if values is not None:
         RECORDING.values = {name: as_text(value) for name, value in values.items()}
     sys.meta_path.insert(0, StandIns())
+    sys.meta_path.append(_Messages())
     sys.path[:0] = [str(folder) for folder in find_workspace(Path(path)).import_roots]
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it

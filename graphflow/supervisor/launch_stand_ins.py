@@ -251,7 +251,7 @@ def plain(value: Any) -> Any:
 
 
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
-_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages"}
+_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle"}
 
 
 class _StandIn(ModuleType):
@@ -271,7 +271,7 @@ def _made(module: str, name: str) -> Any:
         return import_module(f"{module}.{name}")
     if name == "LaunchService":
         return LaunchService
-    return _class(name) if name[:1].isupper() else _function(name)
+    return _class(name) if name[:1].isupper() or name.startswith("matches_") else _function(name)
 
 
 @cache

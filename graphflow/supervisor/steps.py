@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 from collections.abc import Callable
 from typing import Any
@@ -32,6 +33,7 @@ class StepRunner:
         self._context = context
         self._types = types
         self._node: Node | None = None
+        self._started: asyncio.Future[None]
 
     async def run(self, step: PlannedStep) -> Any:
         """Carry out a step; returns what came of it.
@@ -42,19 +44,36 @@ class StepRunner:
             ParameterError: The node refused a parameter.
             GoalError: The goal did not succeed.
         """
-        if self._node is None:
-            self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
-            await core_of(self._node).start(self._context)
+        node = await self.node()
         deeds = {"call": self._call_service, "set": self._set, "goal": self._send_goal, "wait": self._wait}
         if step.do == "delay":
             await self._context.clock.sleep(step.timeout)
             return "over"
-        return await deeds[step.do](step, self._node)
+        return await deeds[step.do](step, node)
+
+    async def node(self) -> Node:
+        """The hidden node, started when it is first needed."""
+        if self._node is None:
+            self._node = Node(f"_graphflow_{os.getpid()}", start_parameter_services=False, enable_rosout=False)
+            self._started = asyncio.ensure_future(core_of(self._node).start(self._context))
+        await asyncio.shield(self._started)
+        return self._node
 
     async def _call_service(self, step: PlannedStep, node: Node) -> Any:
-        return await self._call(node, await self._type(step), step.target, step.request, step.timeout)
+        return await self.call(await self._type(step), step.target, step.request, step.timeout)
 
-    async def _call(self, node: Node, type_name: str, name: str, fields: dict[str, Any], timeout: float) -> Any:
+    async def call(self, type_name: str, name: str, fields: dict[str, Any], timeout: float) -> Any:
+        """Call a service; returns its response.
+
+        Args:
+            type_name: As in `std_srvs/srv/Trigger`.
+            timeout: Seconds for the server to appear, and again for it to answer.
+
+        Raises:
+            CallError: The service is unavailable, failed, or did not answer in time.
+            EncodeError: The request does not fit the type.
+        """
+        node = await self.node()
         service: Any = registry.interface_class(type_name)
         request: Any = from_plain(service.Request, fields)
         client = node.create_client(service, name)
@@ -70,7 +89,7 @@ class StepRunner:
 
         def ask(service: str, **fields: Any) -> Any:
             type_name = f"rcl_interfaces/srv/{service.title().replace('_', '')}"
-            return self._call(node, type_name, f"{step.target}/{service}", fields, step.timeout)
+            return self.call(type_name, f"{step.target}/{service}", fields, step.timeout)
 
         described = (await ask("describe_parameters", names=list(step.request))).descriptors
         wanted = []

@@ -21,6 +21,7 @@ from graphflow.supervisor import debugging
 from graphflow.supervisor.components import Components
 from graphflow.supervisor.doors import Doors
 from graphflow.supervisor.health import Health
+from graphflow.supervisor.lives import Lives
 from graphflow.supervisor.process import Process
 from graphflow.supervisor.programs import signal_of, words_of
 from graphflow.supervisor.rundir import log_file
@@ -49,6 +50,7 @@ class Supervisor:
         self._context = context
         self._starter = starter
         self._steps = StepRunner(context, step_types)
+        self._lives = Lives(context, self._steps, self.heard)
         self._processes = {
             name: Process(name, nodes, str(log_file(logs, name))) for name, nodes in plan.processes().items()
         }
@@ -193,6 +195,7 @@ class Supervisor:
         for task in self._step_tasks.values():
             task.cancel()
         await asyncio.gather(*self._step_tasks.values(), return_exceptions=True)
+        await self._lives.close()
         await self._steps.close()
         self._tell(event="end", exit_code=self.exit_code)
         return self.exit_code
@@ -207,6 +210,8 @@ class Supervisor:
             process.pid = event["pid"]
             if process.state in (State.STOPPING, State.RESTARTING, State.RESETTING):  # asked to before it had a pid
                 self._act(process, Do.TERMINATE)
+            elif process.is_program and process.nodes[0].lifecycle:
+                self._lives.begin(process.name, process.nodes[0])
             elif process.is_program:  # nobody knows when a foreign program is ready
                 self._has_become_ready(process, process.name)
         elif what == "ready":
@@ -221,6 +226,8 @@ class Supervisor:
             self.components.heard(event)
         elif what == "failed":
             process.error = event["error"]
+            if process.is_program:  # which does not know that it has
+                self._act(process, Do.TERMINATE)
         elif what == "log_lost":
             process.log_error = str(event["why"])
             self._tell(event="note", text=f"{process.name}: its log is not written whole: {process.log_error}")
@@ -229,6 +236,7 @@ class Supervisor:
             if event["status"] is None and (trouble := self._starter.trouble()):
                 self.note(trouble)
             self.components.lost(process)
+            self._lives.end(process.name)
             self._happen(process, Event.EXIT)
 
     def starter_lost(self, how: str) -> None:

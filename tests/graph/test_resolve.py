@@ -619,6 +619,10 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
         ),
         ("{pkg: lamp, exec: shine, params_file: q.yaml}", "there is no file "),
         ("{pkg: lamp, exec: shine, remap: {__ns: /x}}", "'__ns' cannot be remapped"),
+        (
+            "{pkg: lamp, exec: shine, lifecycle: active, keep_names: true}",
+            "lifecycle: needs the node's name, which keep_names leaves to the program",
+        ),
     ],
 )
 def test_executables_that_are_not_there(lamps: Path, node: str, said: str) -> None:
@@ -659,6 +663,13 @@ def test_words_before_a_program(lamps: Path) -> None:
     ):
         with pytest.raises(GraphFileError, match=re.escape(said)):
             planned(lamps, f"nodes: {{a: {node}}}")
+
+
+def test_a_group_of_lifecycle_nodes(lamps: Path) -> None:
+    """What it says of them is not for executables, of which only some have a life cycle."""
+    nodes = "{p: {pkg: lamp, exec: shine}, q: {pkg: lamp, exec: shine, lifecycle: inactive}}"
+    found = planned(lamps, f"group: {{lifecycle: active, nodes: {nodes}}}")
+    assert {node.name: node.lifecycle for node in found.nodes} == {"/p": "", "/q": "inactive"}
 
 
 def test_what_a_launch_file_has_before_a_program(lamps: Path) -> None:

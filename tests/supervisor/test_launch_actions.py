@@ -44,6 +44,69 @@ def test_what_comes_after_what() -> None:
     assert (log["log"]["after_number"], log["log"]["after_what"]) == (number, "exited")
 
 
+def change(node: Any, number: int) -> Said:
+    """The event that asks a lifecycle node for a transition."""
+    matches = said("matches_action", node)
+    return said("EmitEvent", event=said("ChangeState", lifecycle_node_matcher=matches, transition_id=number))
+
+
+def on_state(node: Said, state: str, *then: Said) -> Said:
+    handler = said("OnStateTransition", target_lifecycle_node=node, goal_state=state, entities=list(then))
+    return said("RegisterEventHandler", handler)
+
+
+def test_a_lifecycle_node_that_events_bring_up(problems: list[dict[str, Any]]) -> None:
+    """It is brought as far as they do; what follows comes after it, wherever the handlers stand."""
+    node = said("LifecycleNode", package="p", executable="e")
+    after = said("Node", package="p", executable="other")
+    whole = [on_state(node, "inactive", change(node, 3)), on_state(node, "active", after), node, change(node, 1)]
+    number_targets(whole)
+    first, second = actions(whole)
+    assert first["node"]["brought_to"] == "active"
+    assert (second["node"]["after_number"], second["node"]["after_what"]) == (first["node"]["number"], "ready")
+    assert problems == []
+
+
+def test_a_handler_before_what_it_waits_for() -> None:
+    """It is described after it; one that stands behind it, where it stands."""
+    first, last = said("Node", package="p", executable="first"), said("LogInfo", msg="last")
+    handler = on_state(first, "inactive", said("Node", package="p", executable="then"))
+    for whole, order in [
+        ([handler, change(first, 1), last, first], ["log", "node first", "node then"]),
+        ([first, change(first, 1), handler, last], ["node first", "node then", "log"]),
+    ]:
+        number_targets(whole)
+        made = [next(iter(action.items())) for action in actions(whole)]
+        assert [f"{name} {attributes.get('exec', '')}".strip() for name, attributes in made] == order
+
+
+@pytest.mark.parametrize(
+    ("made", "told"),
+    [
+        (lambda node: [node, change(node, 5)], "EmitEvent has no words in a graph file"),
+        (lambda node: [change(None, 1)], "EmitEvent has no words in a graph file"),
+        (
+            lambda node: [node, change(node, 1), on_state(node, "active")],
+            "OnStateTransition: nothing in this file brings the node to 'active' by EmitEvent(event=ChangeState(...))",
+        ),
+    ],
+)
+def test_states_that_have_no_words(made: Any, told: str, problems: list[dict[str, Any]]) -> None:
+    """It is told."""
+    whole = made(said("LifecycleNode", package="p", executable="e"))
+    number_targets(whole)
+    actions(whole)
+    assert problems == [{"line": 7, "message": told}]
+
+
+def test_an_end_and_another_event(problems: list[dict[str, Any]]) -> None:
+    """Only the event `Shutdown` ends all."""
+    ends = said("Node", package="p", executable="e", on_exit=said("EmitEvent", event=said("Shutdown", reason="over")))
+    goes_on = said("Node", package="p", executable="e", on_exit=change(ends, 1))
+    assert [made["node"].get("on_exit") for made in actions([ends, goes_on])] == ["shutdown", None]
+    assert problems == [{"line": 7, "message": "on_exit: only Shutdown() has words in a graph file"}]
+
+
 def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:
     """It is a problem, with its line if there is one."""
     assert actions(3) == []

@@ -239,3 +239,30 @@ def test_a_file_that_is_about_to_be_started(tmp_path: Path) -> None:
         16,
         True,
     )
+
+
+LIFE = """\
+import launch.events
+import launch_ros.events.lifecycle
+import lifecycle_msgs.msg
+from launch import LaunchDescription
+from launch.actions import EmitEvent
+from launch_ros.actions import LifecycleNode
+
+def generate_launch_description():
+    node = LifecycleNode(package="p", executable="e", name="n", namespace="")
+    event = launch_ros.events.lifecycle.ChangeState(
+        lifecycle_node_matcher=launch.events.matches_action(node),
+        transition_id=lifecycle_msgs.msg.Transition.TRANSITION_CONFIGURE,
+    )
+    return LaunchDescription([node, EmitEvent(event=event)])
+"""
+
+
+def test_constants_of_messages(tmp_path: Path) -> None:
+    """They are what they are, as where an event brings a lifecycle node up."""
+    file = tmp_path / "a.launch.py"
+    file.write_text(LIFE)
+    told = record(file)
+    assert told["problems"] == []
+    assert [action["node"]["brought_to"] for action in told["actions"]] == ["inactive"]

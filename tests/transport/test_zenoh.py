@@ -34,8 +34,15 @@ def raw(machine: Machine) -> Iterator[zenoh.Session]:
 
 
 def tokens(session: zenoh.Session, domain: int) -> list[str]:
-    found = session.liveliness().get(f"@ros2_lv/{domain}/**", timeout=5.0)
-    return sorted(str(r.ok.key_expr) for r in found if r.ok is not None)
+    """Those of the talker, once the session knows the last that it declares."""
+    deadline = time.monotonic() + LIMIT
+    while True:
+        replies = session.liveliness().get(f"@ros2_lv/{domain}/**", timeout=5.0)
+        found = sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
+        if any("chatter" in token for token in found) and any("%rosout" in token for token in found):
+            return found
+        assert time.monotonic() < deadline, found
+        time.sleep(0.05)
 
 
 def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Session, machine: Machine) -> None:

@@ -15,8 +15,9 @@ from textual.widget import Widget
 from graphflow.errors import CallError, RemoteError
 from graphflow.introspect import concurrency
 from graphflow.introspect.view import View as Graph
-from graphflow.machines.explain import explanation, group_of, headline, title, wanted
+from graphflow.machines.explain import group_of, headline, title, wanted
 from graphflow.machines.moves import Move, moves
+from graphflow.machines.remedies import remedies
 from graphflow.machines.rings import Deadlock
 from graphflow.machines.wait_graph import FREE, ActivityView, GroupView, WaitGraph
 from graphflow.tui.actions import Action
@@ -144,8 +145,7 @@ class Groups(View):
                 yield from (Row(Text(f"       {line}", style=ink.dim)) for line in lines[1:])
             else:
                 yield Row(Text("   no handler that could be moved now would end it; what does:", style=ink.warn))
-                _, _, fixes = explanation(deadlock, graph).partition("Any one of these ends it:\n")
-                for line in (fixes or "  see the report: ?").split("\n"):
+                for line in remedies(deadlock, graph) or ["  see the report: ?"]:
                     yield Row(Text(f"   {plain_text(line)}", style=ink.text))
             yield Row(Text(""))
 
