@@ -57,7 +57,12 @@ def _named(what: str, root: Path) -> type[Node]:
         return _only(f"nodes.{what}")
     except NoModule:
         known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
-        known |= {*(package for package, _ in EXECUTABLES), *find_workspace(Path.cwd()).packages}
+        workspace = find_workspace(Path.cwd()).packages
+        if what in workspace and not workspace[what].executables:
+            compiled = ", ".join(sorted(workspace[what].compiled))
+            why = f"; {compiled} is C++, which only colcon builds" if compiled else ""
+            raise UsageFault(f"the package {what!r} has no executable that graphflow can run{why}") from None
+        known |= {*(package for package, _ in EXECUTABLES), *workspace}
         raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
 
 

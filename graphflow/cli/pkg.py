@@ -51,6 +51,9 @@ def executables(package: str, full_path: bool, as_json: bool) -> int:
     from graphflow.graph.executables import all_executables
 
     rows = [row for row in all_executables(_root()) if package in ("", row.package)]
+    if not rows and package in _known():
+        output.talk(f"the package {package!r} has no executable that graphflow can run")
+        return exits.OK
     if not rows:
         output.error(f"Package '{package}' not found{did_you_mean(package, _known())}")
         return exits.FAILED

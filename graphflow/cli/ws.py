@@ -34,6 +34,11 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     for name, folder in found.interfaces.items():
         registry.add_package(name, folder)
     faults = [fault for package in found.packages.values() for fault in package.faults]
+    faults += [
+        f"{double.folder}: another package is called {double.name!r}, too, and is the one that counts: "
+        f"{found.packages[double.name].folder}"
+        for double in found.doubles
+    ]
     rows = []
     for package in found.packages.values():
         kinds = KINDS if package.has_interfaces else ()

@@ -97,15 +97,13 @@ def _files(node: ast.expr, known: Mapping[str, str], folder: Path) -> list[str]:
 
 
 def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
-    for kind, words in _INSTALL.findall(cmake_text(package.folder)):
+    for kind, words in _INSTALL.findall(cmake_text(package)):
         destination = re.search(r"DESTINATION\s+\"?([^\s\")]+)", words, re.IGNORECASE)
         if destination is None:
             continue
-        there = destination[1].replace("${PROJECT_NAME}", package.name)
+        there = destination[1]
         for word in _END_OF_FILES.split(f"{words} ")[0].replace('"', " ").split():
-            source = package.folder / word.replace("${CMAKE_CURRENT_SOURCE_DIR}/", "").replace(
-                "${PROJECT_NAME}", package.name
-            )
+            source = package.folder / word
             if kind.upper() != "DIRECTORY":
                 yield there, source
                 continue

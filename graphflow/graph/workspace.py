@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +22,8 @@ DEPTH = 5
 FOLDERS_BOUND = 5000
 """Folders that are looked into: the shell may stand in any folder, be it `/`."""
 PACKAGES_BOUND = 1000
+_VALUE_BOUND = 10_000
+"""Characters that a variable of CMake may stand for."""
 _LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
 """Folders that colcon makes, and others in which no package lies."""
 _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
@@ -29,6 +32,8 @@ _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _INSTALL = re.compile(r"install\s*\(\s*(?:PROGRAMS|FILES)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
 _COMPILED = re.compile(r"add_executable\s*\(\s*([\w${}-]+)", re.IGNORECASE)
+_SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
 
@@ -50,13 +55,18 @@ class Package:
     @property
     def import_roots(self) -> list[Path]:
         """The folders that Python imports from: of a package of its name or that CMake installs, of executables."""
-        folders = {self.folder / self.name}
-        for name, folder in _MODULES.findall(cmake_text(self.folder)):
-            folders.add(self.folder / (folder or name).replace("${PROJECT_NAME}", self.name).strip('"'))
+        folders = {self.folder / self.name, self.python_folder / self.name}
+        for name, folder in _MODULES.findall(cmake_text(self)):
+            folders.add(self.folder / (folder or name).strip('"'))
         roots = {folder.parent for folder in folders if next(folder.glob("*.py"), None) is not None}
         if any(self.file_of(entry).is_file() for entry in self.entry_points.values()):
-            roots.add(self.folder)
+            roots.add(self.python_folder)
         return sorted(roots)
+
+    @cached_property
+    def python_folder(self) -> Path:
+        """Where its modules begin: its folder, unless `setup.py` says `package_dir={"": "src"}`."""
+        return self.folder / _package_dir(self.folder / "setup.py")
 
     @property
     def has_interfaces(self) -> bool:
@@ -71,8 +81,8 @@ class Package:
     @cached_property
     def programs(self) -> Mapping[str, Path]:
         """Its executables that are files, by name: those that CMake installs, and those in `scripts/`."""
-        found = {file.name: file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file()}
-        return found | dict(_of_cmake(self.folder))
+        files = (file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file())
+        return {file.name: file for file in files if file.name != "__init__.py"} | dict(_of_cmake(self))
 
     @property
     def executables(self) -> list[str]:
@@ -82,8 +92,7 @@ class Package:
     @property
     def compiled(self) -> set[str]:
         """The executables that only a compiler makes."""
-        names = _COMPILED.findall(cmake_text(self.folder))
-        return {name.replace("${PROJECT_NAME}", self.name) for name in names}
+        return {*_COMPILED.findall(cmake_text(self))}
 
     @property
     def faults(self) -> list[str]:
@@ -101,7 +110,7 @@ class Package:
 
     def file_of(self, entry: EntryPoint) -> Path:
         """Where the module of an executable has to be."""
-        return self.folder.joinpath(*entry.module.split(".")).with_suffix(".py")
+        return self.python_folder.joinpath(*entry.module.split(".")).with_suffix(".py")
 
     def path_of(self, executable: str, root: Path) -> str:
         """The module and the function of an executable, as `src.lamp.lamp.node:main`; without one for a file."""
@@ -123,6 +132,8 @@ class Workspace:
 
     root: Path
     packages: Mapping[str, Package] = field(default_factory=dict)
+    doubles: tuple[Package, ...] = ()
+    """Packages whose names others have that were met before them."""
 
     @property
     def import_roots(self) -> list[Path]:
@@ -147,7 +158,12 @@ def find_workspace(start: Path) -> Workspace:
         if (folder / "src").is_dir() and next(_walk(folder / "src"), None) is not None:
             return read_workspace(folder, folder / "src")
     highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
-    if highest is not None:  # beside it, there may be others
+    if highest is not None:  # beside it there may be others, and below the folder that one stands in
+        here = Path.cwd()
+        if here in highest.parent.parents:
+            around = read_workspace(here, here)
+            if any(package.folder == highest for package in around.packages.values()):
+                return around
         return read_workspace(highest.parent, highest.parent)
     return read_workspace(start, start) if start.is_dir() else Workspace(start)
 
@@ -155,11 +171,11 @@ def find_workspace(start: Path) -> Workspace:
 def read_workspace(root: Path, source: Path) -> Workspace:
     """The packages below `source`; of two with the same name, the one that is met first."""
     packages: dict[str, Package] = {}
-    for package in _walk(source):
-        packages.setdefault(package.name, package)
-        if len(packages) >= PACKAGES_BOUND:
-            break
-    return Workspace(root, packages)
+    doubles: list[Package] = []
+    for package in islice(_walk(source), PACKAGES_BOUND):
+        if packages.setdefault(package.name, package) is not package:
+            doubles.append(package)
+    return Workspace(root, packages, tuple(doubles))
 
 
 def _walk(source: Path) -> Iterator[Package]:
@@ -195,9 +211,30 @@ def _text(file: Path) -> str:
         return ""
 
 
-def cmake_text(folder: Path) -> str:
-    """The `CMakeLists.txt` of a package without its comments."""
-    return re.sub(r"#.*", "", _text(folder / "CMakeLists.txt"))
+def cmake_text(package: Package) -> str:
+    """The `CMakeLists.txt` of a package without its comments, and with what its variables plainly stand for."""
+    text = re.sub(r"#.*", "", _text(package.folder / "CMakeLists.txt"))
+    known = {"PROJECT_NAME": package.name, "CMAKE_CURRENT_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
+
+    def put_in(text: str) -> str:
+        return _VARIABLE.sub(lambda found: known.get(found[1], found[0]), text)
+
+    for name, value in _SET.findall(text):
+        known.setdefault(name, put_in(value.replace('"', " ")).strip()[:_VALUE_BOUND])
+    return put_in(text)
+
+
+def _package_dir(file: Path) -> str:
+    """The folder that a `setup.py` has its modules in, from its own on."""
+    try:
+        tree = ast.parse(_text(file))
+    except (SyntaxError, ValueError):
+        return ""
+    for node in ast.walk(tree):
+        match node:
+            case ast.keyword(arg="package_dir", value=ast.Dict(keys=[ast.Constant(value="")], values=[value])):
+                return constant_text(value, constants(tree)) or ""
+    return ""
 
 
 def _of_setup_cfg(file: Path) -> dict[str, EntryPoint]:
@@ -275,10 +312,9 @@ def constant_text(node: ast.AST, known: Mapping[str, str]) -> str | None:
     return None
 
 
-def _of_cmake(folder: Path) -> Iterator[tuple[str, Path]]:
+def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
     """The programs that `CMakeLists.txt` installs below `lib/`."""
-    text = cmake_text(folder)
-    for installed in _INSTALL.findall(text):
+    for installed in _INSTALL.findall(cmake_text(package)):
         words = installed.replace('"', " ").split()
         upper = [word.upper() for word in words]
         if "DESTINATION" not in upper:
@@ -289,7 +325,7 @@ def _of_cmake(folder: Path) -> Iterator[tuple[str, Path]]:
             continue
         renamed = words[upper.index("RENAME") + 1] if "RENAME" in upper[:-1] else ""
         for word in files:
-            file = folder / word.replace("${CMAKE_CURRENT_SOURCE_DIR}/", "")
+            file = package.folder / word
             if file.is_file():
                 yield renamed or file.name, file
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pkgutil
 import runpy
 import signal
 import sys
@@ -16,9 +15,10 @@ from typing import NamedTuple
 
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
+from graphflow.graph.executables import SLIP
 from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, find_workspace, uses_rclpy
 from graphflow.msgs import registry
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder
 from graphflow.wire.profile import wire_profile
 
@@ -108,6 +108,8 @@ def run(program: Program) -> None:
     sys.argv = [str(program.file), *program.words]
     if program.entry is None:
         if program.file.suffix != ".py" and not _is_python(program.file):
+            if not os.access(program.file, os.X_OK):
+                raise UsageFault(f"{program.file} is no executable file; to make it one: chmod +x {program.file}")
             os.execv(program.file, sys.argv)
         sys.path.insert(0, str(program.file.parent))
         runpy.run_path(str(program.file), run_name="__main__")
@@ -139,9 +141,31 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
         return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
     if package is not None:
         return f"{name} has no module {module}; the package is {package.folder}"
-    near = did_you_mean(name, [*workspace.packages, *registry.packages(), *(m.name for m in pkgutil.iter_modules())])
-    folder = workspace.root / "src" if workspace.packages else workspace.root
-    return f"there is no {name} here{near}; clone the package into {folder} if it is ROS's, or: pip install {name}"
+    if name in _ON_PYPI:
+        return f"there is no {name} here: pip install {_ON_PYPI[name]}"
+    near = nearest(name, [*workspace.packages, *registry.packages()], cutoff=SLIP)
+    meant = f"; did you mean {near!r}?" if near is not None else ""
+    into = f"clone its package beside those below {workspace.root}" if workspace.packages else "clone its package"
+    if name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
+        return f"there is no {name} here{meant or f': {into}'}"
+    return f"there is no {name} here{meant or f': {into} if it is of ROS, and pip install it if it is on PyPI'}"
+
+
+_ON_PYPI = {
+    "serial": "pyserial",
+    "cv2": "opencv-python",
+    "PIL": "pillow",
+    "skimage": "scikit-image",
+    "sklearn": "scikit-learn",
+    "board": "adafruit-blinka",
+    "usb": "pyusb",
+    "transforms3d": "transforms3d",
+    "scipy": "scipy",
+    "matplotlib": "matplotlib",
+    "pygame": "pygame",
+    "xacro": "xacro",
+}
+"""What to install for modules that robots' programs often import."""
 
 
 def _is_python(file: Path) -> bool:

@@ -175,3 +175,44 @@ def test_modules_that_cmake_installs_from_elsewhere(tmp_path: Path) -> None:
     (folder / "src" / "filters").mkdir(parents=True)
     (folder / "src" / "filters" / "__init__.py").touch()
     assert find_workspace(folder).import_roots == [folder / "src"]
+
+
+def test_modules_below_a_folder_of_their_own(tmp_path: Path) -> None:
+    """As `setup.py` says."""
+    setup = "src = 'src'\nsetup(package_dir={'': src}, entry_points={'console_scripts': ['go = a_lib.go:main']})"
+    folder = package(tmp_path / "a", "a", setup_dot_py=setup, src__a_lib__go_dot_py="")
+    found = find_workspace(folder).packages["a"]
+    assert found.file_of(found.entry_points["go"]) == folder / "src" / "a_lib" / "go.py"
+    assert (found.faults, found.import_roots) == ([], [folder / "src"])
+
+
+def test_variables_of_cmake(tmp_path: Path) -> None:
+    """Those that plainly stand for something, and those that are always there."""
+    cmake = """
+        project(arm)
+        set(EXE "${PROJECT_NAME}_node")
+        set(SCRIPTS ${PROJECT_NAME}/one.py ${PROJECT_SOURCE_DIR}/tools/two.py)
+        add_executable(${EXE} main.cpp)
+        install(PROGRAMS ${SCRIPTS} ${UNKNOWN}/three.py DESTINATION lib/${PROJECT_NAME})
+    """
+    files = {"arm__one_dot_py": "", "tools__two_dot_py": ""}
+    package(tmp_path / "arm", "arm", CMakeLists_dot_txt=cmake, **files)
+    found = find_workspace(tmp_path).packages["arm"]
+    assert (found.executables, found.compiled) == (["one.py", "two.py"], {"arm_node"})
+
+
+def test_two_packages_of_one_name(tmp_path: Path) -> None:
+    """The first that is met counts, and the other is known."""
+    first, second = package(tmp_path / "a" / "x", "lamp"), package(tmp_path / "b" / "x", "lamp")
+    found = find_workspace(tmp_path)
+    assert found.packages["lamp"].folder == first
+    assert [double.folder for double in found.doubles] == [second]
+
+
+def test_packages_beside_the_ones_around_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are found from the folder that the shell is in."""
+    package(tmp_path / "repo" / "interfaces", "interfaces")
+    deep = package(tmp_path / "repo" / "part" / "demo", "demo")
+    assert set(find_workspace(deep).packages) == {"demo"}
+    monkeypatch.chdir(tmp_path / "repo")
+    assert set(find_workspace(deep).packages) == {"demo", "interfaces"}

@@ -11,6 +11,7 @@ from graphflow.errors import ServerLost
 from graphflow.rclpy import messages
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.service_events import ServiceEvent
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import Handle
 from rclpy.impl.passing import passed_on
 from rclpy.impl.service_end import ServiceEnd
@@ -108,12 +109,14 @@ class Client(ServiceEnd):
                     del self._pending[sequence]
 
     def service_is_ready(self) -> bool:
-        """Whether there is a server."""
+        """Whether there is a server. Raises RCLError where the context was shut down."""
         with self._handle:
+            if not self._life.is_ok:
+                raise RCLError("failed to check service availability: rcl node's context is invalid")
             return self._endpoint.has_server
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Block until there is a server, at most `timeout_sec` seconds; whether there is one."""
+        """Block until there is a server, at most `timeout_sec` seconds; whether there is one. Errors as above."""
         wake = Wake()
         self._changed[wake] = None
         self._life.on_end(wake)
@@ -137,6 +140,7 @@ class Client(ServiceEnd):
             future = self._pending.get(answered.sequence)
         if future is None:
             return
+        future._is_set_here()
         if answered.error is None:
             response = messages.decode(self.srv_type.Response, answered.payload)
             self._endpoint.tell(ServiceEvent.RESPONSE_RECEIVED, answered.sequence, answered.payload)

@@ -246,14 +246,19 @@ class SubscriptionEventCallbacks:
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, subscription: Any, topic_name: str, bell: NodeBell | None = None
+        self,
+        callback_group: CallbackGroup,
+        subscription: Any,
+        topic_name: str,
+        bell: NodeBell | None = None,
+        logger: Any = None,
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSSubscriptionEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, topic_name, _OFFERING)
-            incompatible_type = incompatible_type or partial(_warn_type, topic_name)
+            incompatible_qos = incompatible_qos or partial(_warn_qos, logger, topic_name, _OFFERING)
+            incompatible_type = incompatible_type or partial(_warn_type, logger, topic_name)
         wanted = {
             kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: incompatible_qos,
@@ -283,14 +288,19 @@ class PublisherEventCallbacks:
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, publisher: Any, topic_name: str, bell: NodeBell | None = None
+        self,
+        callback_group: CallbackGroup,
+        publisher: Any,
+        topic_name: str,
+        bell: NodeBell | None = None,
+        logger: Any = None,
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSPublisherEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, topic_name, _REQUESTING)
-            incompatible_type = incompatible_type or partial(_warn_type, topic_name)
+            incompatible_qos = incompatible_qos or partial(_warn_qos, logger, topic_name, _REQUESTING)
+            incompatible_type = incompatible_type or partial(_warn_type, logger, topic_name)
         wanted = {
             kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
@@ -313,16 +323,14 @@ _OFFERING = "New publisher discovered on topic '{}', offering incompatible QoS. 
 _REQUESTING = "New subscription discovered on topic '{}', requesting incompatible QoS. No messages will be sent to it."
 
 
-def _warn_qos(topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
+def _warn_qos(logger: Any, topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
     policy = qos_policy_name_from_kind(info.last_policy_kind)
-    logger = rclpy.logging._root_logger.get_child("event")
-    logger.warn(f"{text.format(topic)} Last incompatible policy: {policy}")
+    (logger or rclpy.logging._root_logger).warn(f"{text.format(topic)} Last incompatible policy: {policy}")
 
 
-def _warn_type(topic: str, info: IncompatibleTypeInfo) -> None:
-    rclpy.logging._root_logger.get_child("event").warn(
-        f"Incompatible type on topic '{topic}', no messages will be sent"
-    )
+def _warn_type(logger: Any, topic: str, info: IncompatibleTypeInfo) -> None:
+    text = f"Incompatible type on topic '{topic}', no messages will be sent to it"
+    (logger or rclpy.logging._root_logger).warn(text)
 
 
 def __getattr__(name: str) -> Any:

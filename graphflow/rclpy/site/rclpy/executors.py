@@ -314,7 +314,7 @@ class MultiThreadedExecutor(Executor):
             handler, _, _ = self.wait_for_ready_callbacks(
                 timeout, None, lambda: bool(self._graphflow_failures) or condition()
             )
-        except _NOTHING_TO_DO:
+        except (*_NOTHING_TO_DO, ExternalShutdownException):  # which here only ends the spinning
             pass
         else:
             self._executor.submit(lambda: self._graphflow_work(handler))

@@ -49,6 +49,12 @@ class Future(Generic[T]):
         if error is not None and not self._was_raised:
             warnings.warn(f"The following exception was never retrieved: {error}", stacklevel=1)
 
+    def _is_set_here(self) -> None:
+        """Let what is called when it is done be tasks of the executor whose work sets it."""
+        task = _stepping.task
+        if task is not None:
+            self._set_executor(task._runs())
+
     def _set_executor(self, executor: Runs | None) -> None:
         self._runs = _none if executor is None else weakref.ref(executor)
 

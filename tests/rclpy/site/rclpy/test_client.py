@@ -10,6 +10,7 @@ import pytest
 from example_interfaces.srv import AddTwoInts
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.qos import qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -56,6 +57,16 @@ def test_without_a_server_nobody_answers(node: Node) -> None:
     assert client.call(AddTwoInts.Request(), timeout_sec=0.02) is None
     assert time.monotonic() - began >= 0.04
     assert not client._pending
+
+
+def test_nobody_is_asked_for_servers_after_the_end(node: Node) -> None:
+    """So that a loop of `wait_for_service` ends."""
+    client = node.create_client(AddTwoInts, "add")
+    threading.Timer(0.02, rclpy.shutdown).start()
+    with pytest.raises(RCLError, match="failed to check service availability"):
+        client.wait_for_service()
+    with pytest.raises(RCLError):
+        client.service_is_ready()
 
 
 def test_a_call_that_blocks_ends_with_the_context(node: Node) -> None:

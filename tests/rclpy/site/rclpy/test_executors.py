@@ -97,6 +97,40 @@ def test_spinning_ends_with_the_context(node: Node, single: SingleThreadedExecut
     rclpy.spin(again)
 
 
+def test_spinning_a_pool_ends_with_the_context(pool: MultiThreadedExecutor) -> None:
+    """Quietly, also in a thread of its own."""
+    threading.Timer(0.02, rclpy.shutdown).start()
+    pool.spin()
+
+
+@pytest.mark.parametrize("kind", [SingleThreadedExecutor, lambda: MultiThreadedExecutor(num_threads=3)])
+def test_what_follows_an_answer_is_a_task(node: Node, kind: Any) -> None:
+    """It is called outside of the client's group, awaited if it is a coroutine function, and its error leaves spin."""
+    node.create_service(AddTwoInts, "add", lambda request, response: response)
+    client, told = node.create_client(AddTwoInts, "add"), list[str]()
+    executor = kind()
+    executor.add_node(node)
+
+    def in_a_pool(future: Any) -> None:
+        if isinstance(executor, MultiThreadedExecutor):  # the group is free for the answer that this waits for
+            client.call(AddTwoInts.Request())
+        told.append("called")
+
+    async def awaited(future: Any) -> None:
+        await client.call_async(AddTwoInts.Request())
+        told.append("awaited")
+
+    def failing(future: Any) -> None:
+        raise LookupError("in what follows")
+
+    for follows in (in_a_pool, awaited):
+        client.call_async(AddTwoInts.Request()).add_done_callback(follows)
+    until(executor, lambda: {*told} == {"called", "awaited"})
+    client.call_async(AddTwoInts.Request()).add_done_callback(failing)
+    with pytest.raises(LookupError, match="in what follows"):
+        executor.spin()
+
+
 def test_spinning_ends_with_the_executor(single: SingleThreadedExecutor) -> None:
     """Quietly."""
     threading.Timer(0.02, single.shutdown).start()

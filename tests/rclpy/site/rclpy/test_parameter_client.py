@@ -26,7 +26,7 @@ def test_all_that_can_be_asked(node: Node, spin: Spinner, tmp_path: Path) -> Non
 
     calls: list[Any] = []
     assert told(client.get_parameters(["a.b"], calls.append)).values[0].integer_value == 1
-    assert len(calls) == 1
+    spin(lambda: len(calls) == 1)
     assert list(told(client.get_parameter_types(["a.b"])).types) == [2]
     assert told(client.list_parameters(["a"], 1)).result.names == ["a.b"]
     assert told(client.describe_parameters(["a.b"])).descriptors[0].name == "a.b"

@@ -14,6 +14,7 @@ from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.wake import Wake
 from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
@@ -193,6 +194,7 @@ class ActionClient(Waitable):
         if found is None or found[0].cancelled():
             return
         future, made = found
+        future._is_set_here()
         if answered.error is None:
             future.set_result(made(answered.payload))
         elif not isinstance(answered.error, ServerLost):  # in ROS 2, nobody is told of that
@@ -315,7 +317,9 @@ class ActionClient(Waitable):
     # servers
 
     def server_is_ready(self) -> bool:
-        """Whether there is a server, with all its parts."""
+        """Whether there is a server, with all its parts. Raises RCLError where the context was shut down."""
+        if not self._node.context.life.is_ok:
+            raise RCLError("Failed to check if action server is available: rcl node's context is invalid")
         clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         return (
             all(c.has_server for c in clients)
@@ -330,7 +334,7 @@ class ActionClient(Waitable):
         life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         try:
-            return wake.wait_until(lambda: self.server_is_ready() or not life.is_ok, limit) and self.server_is_ready()
+            return wake.wait_until(lambda: not life.is_ok or self.server_is_ready(), limit) and self.server_is_ready()
         finally:
             life.forget(wake)
             self._graphflow_changed.pop(wake, None)

@@ -18,10 +18,21 @@ if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
 
 
+class _Declared:
+    """The parameters of a node by name, as code reads them that knows rclpy from within; a node may have its own."""
+
+    def __get__(self, node: Any, owner: type) -> dict[str, Parameter[Any]]:
+        if node is None:
+            raise AttributeError("_parameters")
+        found: dict[str, Parameter[Any]] = node._graphflow.parameters.with_prefix("")
+        return found
+
+
 class ParameterMethods:
     """A node's methods for its parameters; for `Node` to derive from."""
 
     PARAM_REL_TOL = RELATIVE_TOLERANCE
+    _parameters = _Declared()
     _graphflow: Inner
 
     @property

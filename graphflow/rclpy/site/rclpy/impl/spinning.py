@@ -36,6 +36,10 @@ class ConditionReachedException(Exception):
     """What was waited for has come about."""
 
 
+for _kind in (TimeoutException, ShutdownException, ExternalShutdownException, ConditionReachedException):
+    _kind.__module__ = "rclpy.executors"
+
+
 class Entity(Protocol):
     """What has callbacks: a timer, a subscription, and the like."""
 
