@@ -89,13 +89,13 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     Python is run, in a process of its own.
     """
     if graph.endswith(".py") and not _is_launch_file(Path(graph)):
-        return _check_rclpy(Path(graph), as_json=as_json)
+        return _check_rclpy([Path(graph), *map(Path, args)], as_json=as_json)
     try:
         path = find_graph(graph)
     except UsageFault:
         if not Path(graph).is_dir() or not _has_rclpy(Path(graph)):
             raise
-        return _check_rclpy(Path(graph), as_json=as_json)
+        return _check_rclpy([Path(graph), *map(Path, args)], as_json=as_json)
     from graphflow.errors import GraphFileError
     from graphflow.graph.static import findings
 
@@ -137,13 +137,14 @@ def _has_rclpy(folder: Path) -> bool:
     return any(map(uses_rclpy, files_in(folder)))
 
 
-def _check_rclpy(path: Path, *, as_json: bool) -> int:
-    """Report deadlocks that the source of rclpy nodes shows."""
+def _check_rclpy(paths: Sequence[Path], *, as_json: bool) -> int:
+    """Report deadlocks that the source of rclpy nodes shows, of files and of all below folders."""
     from graphflow.graph.rclpy_source import findings_in
 
-    if not path.exists():
-        raise UsageFault(f"there is no file {path}")
-    ways = findings_in(path)
+    for path in paths:
+        if not path.exists():
+            raise UsageFault(f"there is no file {path}")
+    ways = [way for path in paths for way in findings_in(path)]
     certain = [way for way in ways if way.grade == "CERTAIN"]
     if as_json:
         deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
@@ -151,7 +152,8 @@ def _check_rclpy(path: Path, *, as_json: bool) -> int:
     else:
         output.lines(str(way) for way in ways)
         count = _count(ways, "deadlock")
-        output.data(f"{path}: {f'{count} in the source' if ways else 'no deadlocks to be seen in the source'}")
+        what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
+        output.data(f"{what}: {f'{count} in the source' if ways else 'no deadlocks to be seen in the source'}")
     return exits.FAILED if certain else exits.OK
 
 

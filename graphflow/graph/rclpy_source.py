@@ -27,7 +27,7 @@ _BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.Exce
 _NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 _SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
 _LATER = "use call_async(request) and add_done_callback(...)"
-_OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
+_OWN, _SHARED = "callback_group=MutuallyExclusiveCallbackGroup()", "callback_group=ReentrantCallbackGroup()"
 _POOL = "spin with MultiThreadedExecutor()"
 
 
@@ -56,6 +56,16 @@ class _Callback(NamedTuple):
         return f"{self.kind} {self.method}"
 
 
+class _Server(NamedTuple):
+    """What answers requests."""
+
+    what: str
+    """In words: the method, or `the action server`."""
+    name: str
+    """The name of the service or action, as it is written."""
+    group: _Group | None
+
+
 class _Wait(NamedTuple):
     """Something that a method waits for."""
 
@@ -79,6 +89,9 @@ class _Class:
     methods: dict[str, ast.FunctionDef | ast.AsyncFunctionDef] = field(default_factory=dict)
     groups: dict[str, _Group] = field(default_factory=dict)
     clients: dict[str, _Group | None] = field(default_factory=dict)
+    asked: dict[str, str] = field(default_factory=dict)
+    """The names of the services and actions that clients call, as they are written."""
+    servers: list[_Server] = field(default_factory=list)
     callbacks: list[_Callback] = field(default_factory=list)
     rates: set[str] = field(default_factory=set)
     """Attributes, with their `self.`."""
@@ -100,14 +113,19 @@ class _Class:
 
     def _fault(self, callback: _Callback, wait: _Wait) -> str:
         """Why a wait never ends; empty if it may."""
-        group = self.clients.get(wait.client) if wait.client else None
-        who = f"{callback} waits in {wait.what}"
-        if group is not None and group == callback.group and group.is_exclusive:
-            needs = f"{who}, whose answer needs {group}, which {callback.method} holds until it returns"
+        who, group = f"{callback} waits in {wait.what}", callback.group
+        asked = self.asked.get(wait.client) if wait.client else None
+        shut_out = [server.what for server in self.servers if asked and server[1:] == (asked, group)]
+        if wait.client and self.clients.get(wait.client) == group:
+            shut_out.append("the client")
+        if shut_out and group is not None and group.is_exclusive:
+            what = "answer" if "the client" in shut_out else f"server {shut_out[0]}"
+            needs = f"{who}, whose {what} needs {group}, which {callback.method} holds until it returns"
+            them, each = " and ".join(shut_out), " each" if len(shut_out) > 1 else ""
             if not wait.holds_thread:
-                return f"{needs}: make the client with callback_group=ReentrantCallbackGroup()"
-            pool = "" if wait.spins else f" and {_POOL}"
-            return f"{needs}: {_LATER}; or make the client with {_OWN}{pool}"
+                return f"{needs}: make {them} with {_SHARED}"
+            pool = "" if wait.spins else f", and {_POOL}"
+            return f"{needs}: {_LATER}; or make {them} with {_OWN}{each}{pool}"
         if self.is_single and wait.holds_thread and not wait.spins:
             needs = f"{who}, which needs a thread that spins, and the only one is in {callback.method}"
             return f"{needs}: {_LATER if wait.client else 'let a timer call back at that rate'}; or {_POOL}"
@@ -197,9 +215,9 @@ def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
 
 def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
     """A class, with what it has from a parent in the same file."""
-    own = dict(parent.methods), dict(parent.groups), dict(parent.clients), list(parent.callbacks)
+    own = dict(parent.methods), dict(parent.groups), dict(parent.clients), dict(parent.asked), list(parent.servers)
     rates = {name for name in _rates(definition) if name.startswith("self.")}
-    found = _Class(parent.file, parent.is_single, *own, parent.rates | rates)
+    found = _Class(parent.file, parent.is_single, *own, list(parent.callbacks), parent.rates | rates)
     for item in definition.body:
         if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
             found.methods[item.name] = item
@@ -210,7 +228,9 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
             found.groups[_word(node.targets[0])] = group
     for node in assigned:
         if isinstance(node.value, ast.Call) and _last(node.value.func) in ("create_client", "ActionClient"):
-            found.clients[_word(node.targets[0]).removeprefix("self.")] = _group_of(node.value, found.groups)
+            client = _word(node.targets[0]).removeprefix("self.")
+            found.clients[client] = _group_of(node.value, found.groups)
+            found.asked[client] = _name_of(node.value)
     for call in ast.walk(definition):
         if not isinstance(call, ast.Call) or _last(call.func) not in _CALLBACK_AT:
             continue
@@ -220,7 +240,16 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
         if method in found.methods:
             group = None if maker == "ActionServer" else _group_of(call, found.groups)  # bodies of goals are in none
             found.callbacks.append(_Callback(method, _KINDS.get(maker, "action"), group))
+        if maker in ("create_service", "ActionServer"):
+            what = "the action server" if maker == "ActionServer" else method
+            found.servers.append(_Server(what, _name_of(call), _group_of(call, found.groups)))
     return found
+
+
+def _name_of(call: ast.Call) -> str:
+    """The name that a server or a client is made with, as it is written."""
+    given = _argument(call, 2 if _last(call.func).startswith("Action") else 1, "srv_name", "action_name")
+    return "" if given is None else ast.unparse(given)
 
 
 def _group_of(call: ast.Call, groups: dict[str, _Group]) -> _Group | None:

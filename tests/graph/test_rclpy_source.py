@@ -70,6 +70,11 @@ CALL = "self.client.call(Trigger.Request())"
 ASYNC = "future = self.client.call_async(Trigger.Request())\n        "
 
 
+GROUP = ", callback_group=self.group"
+OWN, SHARED = "callback_group=MutuallyExclusiveCallbackGroup()", "callback_group=ReentrantCallbackGroup()"
+AWAIT = "async def tick(self):\n        await self.client.call_async(Trigger.Request())"
+
+
 @pytest.mark.parametrize(
     "body",
     [
@@ -95,6 +100,36 @@ def test_a_group_of_its_own_is_enough_with_threads_only(tmp_path: Path) -> None:
     assert found(tmp_path, tick=TICK + CALL, timer=own, client=own, spin=POOL) == [("CERTAIN", CALL)]
     reentrant = ", callback_group=ReentrantCallbackGroup()"
     assert found(tmp_path, tick=TICK + CALL, timer=reentrant, client=reentrant, spin=POOL) == []
+
+
+@pytest.mark.parametrize(
+    ("settings", "needs", "change"),
+    [
+        (
+            {"name": "own"},
+            "answer needs the default callback group",
+            f"make on_own and the client with {OWN} each, and ",
+        ),
+        ({"name": "own", "client": GROUP}, "server on_own needs the default", f"make on_own with {OWN}, and "),
+        ({"name": "own", "tick": AWAIT}, "answer needs the default", f"make on_own and the client with {SHARED}"),
+        (
+            {"tick": TICK + "self.goals.send_goal(Fibonacci.Goal())"},
+            "answer needs the default",
+            "the action server and",
+        ),
+    ],
+)
+def test_an_answer_that_the_node_itself_would_give(
+    tmp_path: Path, settings: dict[str, str], needs: str, change: str
+) -> None:
+    """The change frees its server, too."""
+    settings = {"tick": TICK + CALL, "client": "", **settings}
+    text = HEAD.replace('"ask"', f'"{settings.pop("name", "ask")}"').replace('"count"', '"act"')
+    rest = dict.fromkeys(("timer", "init", "own", "execute"), "pass") | {"timer": "", "spin": POOL}
+    (tmp_path / "asker.py").write_text(text.format(**rest, **settings))
+    [way] = findings_in(tmp_path / "asker.py")
+    assert f"whose {needs}" in str(way)
+    assert change in str(way)
 
 
 def test_a_coroutine_gives_back_its_thread_and_keeps_its_group(tmp_path: Path) -> None:
