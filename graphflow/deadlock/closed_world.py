@@ -33,7 +33,7 @@ from graphflow.deadlock.conditions import (
     arrays,
     makes_task,
 )
-from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new
+from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new, messages
 from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import (
@@ -48,7 +48,6 @@ from graphflow.deadlock.syntax import FunctionNode, is_nested, walk
 from graphflow.deadlock.user_code import Pause
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
-from graphflow.msgs.base import Message
 
 BEGINNINGS = {"__init__", "on_start", "on_shutdown"}
 _MAKERS = {
@@ -310,6 +309,8 @@ class Question:
             return
         known = isinstance(value, (*CONTAINERS, *arrays()))
         for use in self._source.foreign(name, self.owner):
+            if self._is_of_message(use.syntax):
+                continue
             if use.kind in ("assigned", "changed") or (known and use.kind not in ("read", "part")):
                 raise Unknown
         for use in (*self._source.foreign(name, self.owner), *self._source.uses(name)):
@@ -318,12 +319,20 @@ class Question:
         for use in self._source.uses(name):
             if known and (use.kind in ("given", "invoked") or not is_new(use.value, CONTAINER_MAKERS)):
                 raise Unknown
-            if isinstance(value, (*arrays(), Message)) and _has_second_name(use, value):
+            if isinstance(value, (*arrays(), *messages())) and _has_second_name(use, value):
                 raise Unknown
             if not self._changes_nothing(use, value):
                 if use.is_nested:
                     raise Unknown
                 yield use
+
+    def _is_of_message(self, syntax: ast.expr) -> bool:
+        """Whether something is a field of a message that is an attribute: `self.cmd.linear.x`."""
+        while isinstance(syntax, (ast.Attribute, ast.Subscript)):
+            if is_own(syntax):
+                return isinstance(getattr(self._instance, syntax.attr, None), messages())  # type: ignore[union-attr]
+            syntax = syntax.value
+        return False
 
     def _ends_of_goal(self, name: str) -> Iterator[Use]:
         if self._source.foreign(name, self.owner):
@@ -341,7 +350,7 @@ class Question:
             return is_same and use.value.value == value  # type: ignore[union-attr]
         if use.kind == "called":
             return isinstance(value, PLAIN) or use.name in LOOKING
-        if use.kind == "given" and isinstance(value, Message):  # its fields may be set through the other name
+        if use.kind == "given" and isinstance(value, messages()):  # its fields may be set through the other name
             functions = self._source.methods.get(use.method, [])
             return not any(_sets_fields(function) for function in functions)
         return use.kind != "changed"

@@ -21,11 +21,11 @@ from types import FrameType, MappingProxyType, ModuleType, NoneType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import FUTURE
+from graphflow.deadlock.fresh import messages
 from graphflow.deadlock.source import ClassSource, Unknown, looks
 from graphflow.deadlock.syntax import FunctionNode, walk
 from graphflow.deadlock.user_code import is_users_module
 from graphflow.executor.ledger import PendingGoal
-from graphflow.msgs.base import Message
 
 Loop = ast.While | ast.For | ast.AsyncFor
 _QUEUE = ("put", "put_nowait", "get", "get_nowait")
@@ -107,6 +107,17 @@ class _Scope(NamedTuple):
         module = getattr(value, "__module__", None) or type(value).__module__
         return callable(value) and module in _MODULES
 
+    def asks_for_the_end(self, function: ast.expr) -> bool:
+        """Whether an expression is `rclpy.ok`: the end of the program ends any wait."""
+        name, *path = ast.unparse(function).split(".")
+        value = None if name in self.locals else self.globals.get(name)
+        for part in path:
+            value = getattr(value, part, None)
+        return f"{getattr(value, '__module__', '')}.{getattr(value, '__name__', '')}" in (
+            "rclpy.ok",
+            "rclpy.utilities.ok",
+        )
+
 
 class LoopConditions:
     """Which attributes of the node decide whether a loop ends."""
@@ -127,7 +138,7 @@ class LoopConditions:
         changing = {
             name
             for name in own
-            if isinstance(value := values.get(name, []), (*CONTAINERS, *arrays(), Message))
+            if isinstance(value := values.get(name, []), (*CONTAINERS, *arrays(), *messages()))
             if not _is_only_read(name, value, function, condition)
         }
         constants = {
@@ -255,7 +266,7 @@ class LoopConditions:
             case ast.Attribute(value=value, attr=name) if name in LOOKING and not scope.is_mathematics(function):
                 self._read(value, scope, seen)
             case _:
-                if not scope.is_mathematics(function):
+                if not (scope.is_mathematics(function) or scope.asks_for_the_end(function)):
                     raise Unknown
 
     def _attribute(self, name: str, seen: frozenset[str]) -> None:
@@ -389,7 +400,7 @@ def _is_only_read(name: str, value: Any, function: FunctionNode, condition: set[
             case ast.Attribute(ctx=ast.Load(), attr=asked) if is_called:
                 is_read = asked in LOOKING
             case ast.Attribute(ctx=ast.Load()):  # a field, or a method that is handed on
-                is_read = isinstance(value, Message) or looks(whole, around)
+                is_read = isinstance(value, messages()) or looks(whole, around)
             case ast.Subscript(ctx=ast.Load()):
                 is_read = not is_called
             case _:
@@ -412,7 +423,7 @@ def arrays() -> tuple[type, ...]:
 def _is_plain(value: Any) -> bool:
     if isinstance(value, (tuple, frozenset)):
         return all(_is_plain(part) for part in value)
-    return isinstance(value, (*PLAIN, Message))
+    return isinstance(value, (*PLAIN, *messages()))
 
 
 def _holds_plain(container: Any) -> bool:

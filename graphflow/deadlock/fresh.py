@@ -14,6 +14,19 @@ CONTAINER_MAKERS |= {"array", "zeros", "ones", "full", "copy", "deepcopy"}
 """Functions whose results nothing else knows."""
 
 
+_classes: list[type] = [Message]
+
+
+def know_messages(cls: type) -> None:
+    """Have the instances of a class and its subclasses taken for messages."""
+    _classes.append(cls)
+
+
+def messages() -> tuple[type, ...]:
+    """The classes of messages."""
+    return tuple(_classes)
+
+
 def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: dict[str, Any]) -> set[str]:
     """Local names of a function that stand for messages: all that is bound to them is made there, or annotated so."""
     bound: dict[str, list[ast.expr | None]] = {}
@@ -43,7 +56,7 @@ def _is_message(expression: ast.expr, globals_: dict[str, Any]) -> bool:
     value = globals_.get(first)
     for part in rest:
         value = getattr(value, part, None)
-    return isinstance(value, type) and issubclass(value, Message)
+    return isinstance(value, type) and issubclass(value, messages())
 
 
 def is_new(value: ast.expr | None, makers: set[str]) -> bool:

@@ -40,6 +40,8 @@ _INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
 """Methods by which attributes change in ways that their names do not show."""
 _RCLPYS = {"ActionServer", "ActionClient", "TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"}
 """Classes that are given the node, and do nothing to attributes that it has of its own."""
+_ASKING = {"call_async", "send_goal_async", "get_result_async", "cancel_goal_async"}
+"""rclpy's methods whose futures are done when an answer has been taken."""
 _BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
 
 
@@ -72,6 +74,7 @@ class Use:
         is_nested: In a function or lambda inside the method, which may run at any time.
         is_started: A call of an `async def` that is not awaited on the spot and runs on its own.
         is_registered: Given to one of the node's `create_...`, as a handler is.
+        is_answered: Given to the future of an answer, which calls it.
         part: The whole of what is looked at, where it is passed on: `self.x.y[2:]`.
     """
 
@@ -83,6 +86,7 @@ class Use:
     is_nested: bool = False
     is_started: bool = False
     is_registered: bool = False
+    is_answered: bool = False
     part: ast.expr | None = None
 
 
@@ -106,6 +110,8 @@ class ClassSource:
     _properties: set[str] = field(default_factory=set)
     _globals: dict[Syntax, dict[str, Any]] = field(default_factory=dict)
     """What the names of each file mean."""
+    _handlers: set[str] = field(default_factory=set)
+    """Methods that are given to one of the node's `create_...`."""
     _is_known: bool = True
 
     def function(self, code: CodeType) -> Function | None:
@@ -173,7 +179,8 @@ class ClassSource:
     def _refuse_strangers(self, method: str, is_handler: bool, owner: str) -> None:
         for use in self.uses(method):
             calls = use.kind == "invoked" or method in self._properties
-            if use.is_nested or use.is_started or not (calls or (is_handler and use.is_registered)):
+            is_begun = (is_handler and use.is_registered) or use.is_answered
+            if use.is_nested or use.is_started or not (calls or is_begun):
                 raise Unknown
         if self.foreign(method, owner):
             raise Unknown
@@ -208,6 +215,13 @@ class ClassSource:
     def _link(self) -> None:
         """Find out what is done to which attribute, and which method calls which."""
         inside: set[ast.AST] = set()
+        self._handlers = {
+            node.attr
+            for functions in self.methods.values()
+            for function in functions
+            for node, parents in walk(function)
+            if isinstance(node, ast.Attribute) and is_own(node) and _registers(parents[-1])
+        }
         defined = {name for syntax in self._files for name in syntax.defined}
         for name, functions in self.methods.items():
             for function in functions:
@@ -269,6 +283,11 @@ class ClassSource:
                 syntax.fresh[function] = messages_of(function, self._globals[syntax])
             if root.id in syntax.fresh[function]:
                 return
+            given = {a.arg for a in function.args.args[1:]} - {
+                n.id for n in ast.walk(function) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)
+            }
+            if function.name in self._handlers and root.id in given and function is parents[0]:
+                return  # what handlers are called with are messages, requests and responses
         self._foreign.setdefault(node.attr, []).append(use_of(method, node, parents))
 
     def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
@@ -348,9 +367,9 @@ def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AS
         return Use(method, node, kind, name, is_nested=nested, part=handed)
     if isinstance(above, ast.withitem) and above.context_expr is node:
         return Use(method, node, "entered", is_nested=nested)
-    return Use(
-        method, node, "read" if looks(node, around) else "given", is_nested=nested, is_registered=_registers(above)
-    )
+    kind = "read" if looks(node, around) else "given"
+    is_answered = _is_for_answer(above, parents[0])
+    return Use(method, node, kind, is_nested=nested, is_registered=_registers(above), is_answered=is_answered)
 
 
 def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
@@ -392,6 +411,24 @@ def _registers(above: ast.AST) -> bool:
         return False
     function = ast.unparse(above.func)
     return function.startswith("self.create_") or function.rpartition(".")[2] == "ActionServer"
+
+
+def _is_for_answer(above: ast.AST, function: ast.AST) -> bool:
+    """Whether a call is `add_done_callback` of a future that `call_async` and the like have made in the function."""
+    match above:
+        case ast.Call(func=ast.Attribute(value=ast.Call() as made, attr="add_done_callback")):
+            return _asks(made)
+        case ast.Call(func=ast.Attribute(value=(ast.Name() | ast.Attribute()) as future, attr="add_done_callback")):
+            name = ast.unparse(future)
+            bound = [
+                n.value for n in ast.walk(function) if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == name
+            ]
+            return bool(bound) and all(map(_asks, bound))
+    return False
+
+
+def _asks(value: ast.expr) -> bool:
+    return isinstance(value, ast.Call) and ast.unparse(value.func).rpartition(".")[2] in _ASKING
 
 
 def _is_awaited(parents: Sequence[ast.AST]) -> bool:

@@ -27,7 +27,7 @@ _BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.Exce
 _NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 _SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
 _LATER = "use call_async(request) and add_done_callback(...)"
-_OWN, _SHARED = "callback_group=MutuallyExclusiveCallbackGroup()", "callback_group=ReentrantCallbackGroup()"
+_OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
 _POOL = "spin with MultiThreadedExecutor()"
 
 
@@ -121,11 +121,10 @@ class _Class:
         if shut_out and group is not None and group.is_exclusive:
             what = "answer" if "the client" in shut_out else f"server {shut_out[0]}"
             needs = f"{who}, whose {what} needs {group}, which {callback.method} holds until it returns"
-            them, each = " and ".join(shut_out), " each" if len(shut_out) > 1 else ""
+            apart = f"make {callback.method} with {_OWN}"
             if not wait.holds_thread:
-                return f"{needs}: make {them} with {_SHARED}"
-            pool = "" if wait.spins else f", and {_POOL}"
-            return f"{needs}: {_LATER}; or make {them} with {_OWN}{each}{pool}"
+                return f"{needs}: {apart}"
+            return f"{needs}: {_LATER}; or {apart}{'' if wait.spins else f', and {_POOL}'}"
         if self.is_single and wait.holds_thread and not wait.spins:
             needs = f"{who}, which needs a thread that spins, and the only one is in {callback.method}"
             return f"{needs}: {_LATER if wait.client else 'let a timer call back at that rate'}; or {_POOL}"

@@ -179,7 +179,7 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     others = [queue for queue in queues_of(edge, graph) if queue.handler != graph.activities[name].handler]
     if not others:
         return [f"{who} waits for {what},", f"which only another run of it {edge.via.deed}"]
-    kept = " and ".join(queue.handler for queue in others)
+    kept = " and ".join(queue.work for queue in others)
     is_one = len(others) == 1
     if edge.group and graph.groups[edge.group].is_start:
         return [f"{who} waits for {what},", f"and {kept}, which {edge.via.deed} it, runs when on_start has returned"]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from graphflow.machines.clauses import filled
 from graphflow.machines.moves import moves
-from graphflow.machines.rclpy_remedies import in_rclpys_words
+from graphflow.machines.rclpy_remedies import in_rclpys_words, members_of
 from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.rings import Deadlock, Edge
 from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, SetBy, WaitGraph
@@ -15,15 +15,18 @@ from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueVi
 def remedies(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
     """The changes, each as lines; of a kind that would help at several members of the ring, the first."""
     found: list[str] = []
+    holding, alone = members_of(deadlock, graph)
+    if alone:  # whatever is changed elsewhere, they would not go on
+        return list(in_rclpys_words(holding, alone, graph))
     for move in moves(deadlock, graph)[:1]:
         queues = [q for q in graph.queues.values() if q.node == move.node and q.handler in move.handlers]
         found += own_group(queues, graph)
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
         activity, wanted_of_it = graph.activities[name], graph.groups.get(deadlock.edges[i - 1].group)
-        if edge.group and graph.groups[edge.group].sort:
-            found += in_rclpys_words(edge, deadlock.edges[(i + 1) % len(deadlock.edges)], graph)
-        else:
+        if not (edge.group and graph.groups[edge.group].sort):
             found += [*_changes(edge, graph), *_release(activity, wanted_of_it)]
+    if holding:
+        found += in_rclpys_words(holding, alone, graph)
     return _one_of_a_kind(found)
 
 

@@ -198,6 +198,11 @@ class QueueView:
         """The method that is run: `add` of `service add`."""
         return method_of(self.label)
 
+    @property
+    def work(self) -> str:
+        """What its items have done, in words: the method that is run, or what follows an answer."""
+        return f"what follows the answer of {self.handler}" if self.label.startswith("reply ") else self.handler
+
 
 @dataclass(frozen=True, slots=True)
 class WaitGraph:

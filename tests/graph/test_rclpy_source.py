@@ -71,7 +71,7 @@ ASYNC = "future = self.client.call_async(Trigger.Request())\n        "
 
 
 GROUP = ", callback_group=self.group"
-OWN, SHARED = "callback_group=MutuallyExclusiveCallbackGroup()", "callback_group=ReentrantCallbackGroup()"
+OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
 AWAIT = "async def tick(self):\n        await self.client.call_async(Trigger.Request())"
 
 
@@ -108,21 +108,21 @@ def test_a_group_of_its_own_is_enough_with_threads_only(tmp_path: Path) -> None:
         (
             {"name": "own"},
             "answer needs the default callback group",
-            f"make on_own and the client with {OWN} each, and ",
+            f"make tick with {OWN}, and ",
         ),
-        ({"name": "own", "client": GROUP}, "server on_own needs the default", f"make on_own with {OWN}, and "),
-        ({"name": "own", "tick": AWAIT}, "answer needs the default", f"make on_own and the client with {SHARED}"),
+        ({"name": "own", "client": GROUP}, "server on_own needs the default", f"make tick with {OWN}, and "),
+        ({"name": "own", "tick": AWAIT}, "answer needs the default", f"make tick with {OWN}"),
         (
             {"tick": TICK + "self.goals.send_goal(Fibonacci.Goal())"},
             "answer needs the default",
-            "the action server and",
+            f"make tick with {OWN}",
         ),
     ],
 )
 def test_an_answer_that_the_node_itself_would_give(
     tmp_path: Path, settings: dict[str, str], needs: str, change: str
 ) -> None:
-    """The change frees its server, too."""
+    """The change frees its server as well."""
     settings = {"tick": TICK + CALL, "client": "", **settings}
     text = HEAD.replace('"ask"', f'"{settings.pop("name", "ask")}"').replace('"count"', '"act"')
     rest = dict.fromkeys(("timer", "init", "own", "execute"), "pass") | {"timer": "", "spin": POOL}

@@ -11,6 +11,7 @@ import time
 from typing import Any
 
 from example_interfaces.action import Fibonacci
+from geometry_msgs.msg import Twist, Vector3
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
@@ -27,6 +28,7 @@ class Asker(Node):
     threads = 1
     client_group: Any = None
     service_group: Any = None
+    timer_group: Any = None
 
     def __init__(self) -> None:
         super().__init__("asker")
@@ -34,7 +36,7 @@ class Asker(Node):
         self.fires = 0
         self.client = self.create_client(Trigger, "answer", callback_group=self.made(self.client_group))
         self.server = self.create_service(Trigger, "answer", self.answer, callback_group=self.made(self.service_group))
-        self.timer = self.create_timer(0.05, self.fire)
+        self.timer = self.create_timer(0.05, self.fire, callback_group=self.made(self.timer_group))
 
     @staticmethod
     def made(group: Any) -> Any:
@@ -64,9 +66,9 @@ class FixedCalls(Calls):
         future.add_done_callback(lambda _: self.done.set())
 
 
-class CallsWithGroups(Calls):
+class CallsInAGroupOfItsOwn(Calls):
     threads = 2
-    client_group = service_group = MutuallyExclusiveCallbackGroup
+    timer_group = MutuallyExclusiveCallbackGroup
 
 
 class CallsWithThreads(Asker):
@@ -91,7 +93,7 @@ class CallsAcross(Asker):
 
 
 class FixedCallsAcross(CallsAcross):
-    client_group = MutuallyExclusiveCallbackGroup
+    timer_group = MutuallyExclusiveCallbackGroup
 
 
 class CallsWithALimit(Asker):
@@ -108,7 +110,7 @@ class SpinsWithin(Asker):
 
 
 class FixedSpinsWithin(SpinsWithin):
-    client_group = service_group = MutuallyExclusiveCallbackGroup
+    timer_group = MutuallyExclusiveCallbackGroup
 
 
 class SpinsIntoACall(Asker):
@@ -162,7 +164,7 @@ class PollsTheFuture(Asker):
 
 
 class FixedPollsTheFuture(PollsTheFuture):
-    client_group = service_group = MutuallyExclusiveCallbackGroup
+    timer_group = MutuallyExclusiveCallbackGroup
 
 
 class Awaits(Asker):
@@ -267,8 +269,8 @@ class Waits(Node):
         self.items: queue.Queue[int] = queue.Queue()
         self.future: Future[int] = Future()
         group = self.group() if self.group else None
-        self.timer = self.create_timer(0.05, self.fire)
-        self.other = self.create_timer(0.1, self.arrive, callback_group=group)
+        self.timer = self.create_timer(0.05, self.fire, callback_group=group)
+        self.other = self.create_timer(0.1, self.arrive)
         self.create_subscription(String, "news", self.on_news, 10)
 
     def fire(self) -> None:
@@ -392,6 +394,99 @@ class FixedCallsInsideALock(CallsInsideALock):
             self.done.set()
 
 
+class WaitsForWhatFollows(Asker):
+    """What sets it is called when the answer has been taken."""
+
+    threads = 2
+
+    def __init__(self) -> None:
+        self.came = threading.Event()
+        super().__init__()
+
+    def tick(self) -> None:
+        self.client.call_async(Trigger.Request()).add_done_callback(self.on_answer)
+        self.came.wait()  # stuck: WaitsForWhatFollows
+        self.done.set()
+
+    def on_answer(self, future: Any) -> None:
+        self.came.set()
+
+
+class FixedWaitsForWhatFollows(WaitsForWhatFollows):
+    timer_group = MutuallyExclusiveCallbackGroup
+
+
+class PollsWhatAGoalSets(Node):
+    """What sets it follows what follows, and is not asked for yet."""
+
+    threads = 1
+    group: Any = None
+
+    def __init__(self) -> None:
+        super().__init__("actor")
+        self.done = threading.Event()
+        self.finished = False
+        self.server = ActionServer(self, Fibonacci, "count", self.execute)
+        self.client = ActionClient(self, Fibonacci, "count")
+        self.timer = self.create_timer(0.05, self.tick, callback_group=self.group() if self.group else None)
+
+    def execute(self, goal: Any) -> Any:
+        goal.succeed()
+        return Fibonacci.Result()
+
+    def tick(self) -> None:
+        self.timer.cancel()
+        self.sending = self.client.send_goal_async(Fibonacci.Goal(order=3))
+        self.sending.add_done_callback(self.accepted)
+        while not self.finished and rclpy.ok():
+            time.sleep(0.02)  # stuck: PollsWhatAGoalSets
+        self.done.set()
+
+    def accepted(self, future: Any) -> None:
+        future.result().get_result_async().add_done_callback(self.on_result)
+
+    def on_result(self, future: Any) -> None:
+        self.finished = True
+
+
+class FixedPollsWhatAGoalSets(PollsWhatAGoalSets):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class DrivesThere(Waits):
+    """Its loop sends messages, whose fields are called as what it waits for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.x = 0.0
+        self.command = Twist()
+        self.driving = self.create_publisher(Twist, "drive", 1)
+        self.seen = self.create_subscription(Vector3, "odometry", self.on_odometry, 10)
+
+    def on_odometry(self, message: Any) -> None:
+        self.x = message.x
+
+    def tick(self) -> None:
+        goal = Vector3()
+        goal.x = 0.5
+        self.command.linear.x = 0.2
+        while rclpy.ok():
+            self.driving.publish(self.command)
+            if self.x >= 0.5:
+                break
+            time.sleep(0.02)  # stuck: DrivesThere
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.seen.callback(Vector3(x=1.0))
+
+
+class FixedDrivesThere(DrivesThere):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
 class SendsAGoal(Node):
     """It waits for a goal that it executes itself."""
 
@@ -445,33 +540,36 @@ class FixedCallsInAGoal(CallsInAGoal):
     threads = 2
 
 
-BOTH = "make answer and the client of /answer of /asker with callback_group=MutuallyExclusiveCallbackGroup() each"
+OWN = "make fire of /asker with callback_group=MutuallyExclusiveCallbackGroup()"
 
 PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (Calls, FixedCalls, "future = client.call_async(request), then future.add_done_callback(...)"),
-    (Calls, CallsWithGroups, BOTH),
-    (CallsWithThreads, CallsWithGroups, BOTH),
+    (Calls, CallsInAGroupOfItsOwn, OWN),
+    (CallsWithThreads, CallsInAGroupOfItsOwn, OWN),
     (
         CallsAcross,
         FixedCallsAcross,
-        "make the client of /answer of /asker with callback_group=MutuallyExclusiveCallbackGroup()",
+        OWN,
     ),
     (CallsWithALimit, FixedCalls, "then future.add_done_callback(...)"),
-    (SpinsWithin, FixedSpinsWithin, BOTH),
+    (SpinsWithin, FixedSpinsWithin, OWN),
     (SpinsIntoACall, FixedSpinsIntoACall, "future = client.call_async(request), then future.add_done_callback(...)"),
-    (SpinsOnceWithin, FixedSpinsWithin, BOTH),
-    (SpinsAndBreaks, FixedSpinsWithin, BOTH),
-    (PollsTheFuture, FixedPollsTheFuture, BOTH),
+    (SpinsOnceWithin, FixedSpinsWithin, OWN),
+    (SpinsAndBreaks, FixedSpinsWithin, OWN),
+    (PollsTheFuture, FixedPollsTheFuture, OWN),
     (Awaits, FixedAwaits, "callback_group=ReentrantCallbackGroup()"),
     (Sleeps, FixedSleeps, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AllThreads, FixedAllThreads, "spin with MultiThreadedExecutor(num_threads=3)"),
     (ServesByCalling, FixedServesByCalling, "make on_second async def, and await client.call_async(request),"),
     (WaitsForEvent, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
-    (WaitsInAGroup, FixedWaitsInAGroup, "make arrive of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (WaitsInAGroup, FixedWaitsInAGroup, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
     (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),
     (CallsInsideALock, FixedCallsInsideALock, "out of the `with self.lock` block"),
+    (WaitsForWhatFollows, FixedWaitsForWhatFollows, OWN),
+    (PollsWhatAGoalSets, FixedPollsWhatAGoalSets, "make tick of /actor with callback_group=Mutually"),
+    (DrivesThere, FixedDrivesThere, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup(),"),
     (SendsAGoal, FixedSendsAGoal, "future = client.send_goal_async(goal), then future.add_done_callback(...)"),
     (CallsInAGoal, FixedCallsInAGoal, "spin with MultiThreadedExecutor(num_threads=2)"),
 ]

@@ -56,9 +56,9 @@ def read(programs: list[Program], seconds: float = 0.1) -> None:
 
 
 RINGS = [
-    ("calls", "timer", "ask", "make on_ask and the client of /b/ask of /a with"),
+    ("calls", "timer", "ask", "with callback_group=MutuallyExclusiveCallbackGroup() each"),
     ("awaits", "async timer", "async ask", "ReentrantCallbackGroup()"),
-    ("pools", "timer", "ask", "make on_ask and the client of /b/ask of /a with callback_group="),
+    ("pools", "timer", "ask", "with callback_group=MutuallyExclusiveCallbackGroup() each"),
     ("acts", "goal", "act", "future = client.send_goal_async(goal)"),
 ]
 
@@ -90,7 +90,7 @@ def test_a_ring_with_a_node_of_graphflows(machine: Machine) -> None:
         [native, first],
         line("ring.py", "timer"),
         line("native.py", "native ask"),
-        "make on_ask and the client of /b/ask of /a with callback_group=",
+        "make on_timer of /a with callback_group=",
     )
 
 

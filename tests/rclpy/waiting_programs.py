@@ -55,7 +55,8 @@ class Waiter(Node):
         self.lock = threading.Lock()
         self.condition = threading.Condition()
         self.items: queue.Queue[int] = queue.Queue()
-        self.flag = False
+        self.flag = self.finished = False
+        self.came = threading.Event()
         self.store = Store()
         self.future: Future[int] = Future()
         self.promise: concurrent.futures.Future[int] = concurrent.futures.Future()
@@ -92,6 +93,17 @@ class Waiter(Node):
         self.way()
         self.done.set()
 
+    def answered(self, future: Any) -> None:
+        time.sleep(LONG)
+        self.came.set()
+
+    def accepted(self, future: Any) -> None:
+        future.result().get_result_async().add_done_callback(self.ended)
+
+    def ended(self, future: Any) -> None:
+        time.sleep(LONG)
+        self.finished = True
+
     # ways
 
     def call(self) -> None:
@@ -123,6 +135,17 @@ class Waiter(Node):
         came = threading.Event()
         self.client.call_async(Trigger.Request()).add_done_callback(lambda _: came.set())
         came.wait()
+
+    def event_of_answer(self) -> None:
+        self.client.call_async(Trigger.Request()).add_done_callback(self.answered)
+        self.came.wait()
+
+    def flag_of_result(self) -> None:
+        self.goals.wait_for_server()
+        self.sending = self.goals.send_goal_async(Fibonacci.Goal(order=1))
+        self.sending.add_done_callback(self.accepted)
+        while rclpy.ok() and not self.finished:
+            time.sleep(0.01)
 
     def take(self) -> None:
         self.items.get()
@@ -208,7 +231,7 @@ class CoroutineTimer(Awaiter):
 
 
 WAYS = [name for name, value in vars(Waiter).items() if callable(value) and not name.startswith("_")]
-WAYS = [name for name in WAYS if name not in ("arrive", "keep_lock", "fire", "go")]
+WAYS = WAYS[WAYS.index("call") :]
 AWAITS = [name for name in vars(Awaiter) if name.startswith("await_")]
 ARRANGEMENTS = ["groups", "reentrant", "executors", "worker"]
 

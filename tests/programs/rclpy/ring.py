@@ -24,18 +24,17 @@ class Member(Node):
         super().__init__(name)
         self.how, self.starts = how, starts
         group = ReentrantCallbackGroup() if how == "later" else None
-        own = MutuallyExclusiveCallbackGroup() if how == "apart" else group
+        own = MutuallyExclusiveCallbackGroup() if how == "apart" else group  # of what waits
         on = {"awaits": self.on_ask_async, "later": self.on_ask_async}.get(how, self.on_ask)
-        self.service = self.create_service(
-            Trigger, f"/{name}/ask", on, callback_group=MutuallyExclusiveCallbackGroup() if how == "apart" else group
-        )
+        self.service = self.create_service(Trigger, f"/{name}/ask", on, callback_group=group if starts else own)
         self.action = ActionServer(self, Fibonacci, f"/{name}/act", self.on_goal)
-        self.client = self.create_client(Trigger, f"/{asked}/ask", callback_group=own)
+        self.client = self.create_client(Trigger, f"/{asked}/ask", callback_group=group)
         self.goals = ActionClient(self, Fibonacci, f"/{asked}/act")
         if starts:
             wanted = self.goals.wait_for_server if how in ("acts", "goals") else self.client.wait_for_service
             wanted()
-            self.timer = self.create_timer(0.3, {"awaits": self.on_timer_async}.get(how, self.on_timer))
+            on = {"awaits": self.on_timer_async}.get(how, self.on_timer)
+            self.timer = self.create_timer(0.3, on, callback_group=own)
             if how in ("later", "goals"):
                 self.timer.callback = self.on_timer_later
 

@@ -57,6 +57,8 @@ def role_of(entity: Any) -> Role:
 
 def name_of(callback: Any) -> str:
     """What a function is called; empty for other things that can be called."""
+    while isinstance(callback, partial):
+        callback = callback.func
     return str(getattr(callback, "__name__", ""))
 
 
@@ -99,6 +101,19 @@ def _answers(endpoint: Any) -> tuple[tuple[str, ...], int]:
         return tuple(endpoint.call_id(answered.sequence) for answered in items), len(items)
     except ClosedError:
         return (), len(items)
+
+
+def after_answers(entity: Any, node: Any) -> Iterator[str]:
+    """The methods of a node that are called when answers have been taken for which a client waits."""
+    futures: list[Any] = []
+    if isinstance(entity, Client):
+        futures = list(entity._pending.values())
+    elif isinstance(entity, ActionClient):
+        futures = [future for future, _ in list(entity._graphflow_waiting.values())]
+    for future in futures:
+        for callback in list(future._callbacks):
+            if getattr(callback, "__self__", None) is node:
+                yield name_of(callback)
 
 
 def goal_of(run: Run) -> ServerGoalHandle | None:

@@ -80,6 +80,7 @@ class Run(Task[Any]):
     """A task of an executor, or one run of a callback, for which a place in its group is held until it has ended.
 
     Attributes:
+        called: What it runs.
         entity, node: Whose callback it is; None for tasks.
         thread: The number of the thread that runs it right now; 0 while none does.
     """
@@ -88,7 +89,7 @@ class Run(Task[Any]):
         self, executor: Spins, handler: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
     ) -> None:
         super().__init__(handler, args, kwargs, executor=executor)
-        self.executor = executor
+        self.executor, self.called = executor, handler
         self.entity: Any = None
         self.node: Any = None
         self.group: CallbackGroup | None = None

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from graphflow.deadlock.asyncio_frames import know_futures
+from graphflow.deadlock.fresh import know_messages
 from graphflow.deadlock.held import setters
 from graphflow.deadlock.user_code import Pause, where
 from graphflow.errors import ClosedError
@@ -35,6 +36,7 @@ from graphflow.machines.wait_graph import (
     WaitGraph,
 )
 from graphflow.rclpy.life import LOOP
+from graphflow.rclpy.messages import StrictMessage
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
 from rclpy.action.client import ActionClient
@@ -42,7 +44,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
 from rclpy.impl.blocking import Blocked, blocked, holds, is_only_entered
-from rclpy.impl.entities import Role, arrived, entities_of, frames_of, goal_of, name_of, role_of, served
+from rclpy.impl.entities import Role, after_answers, arrived, entities_of, frames_of, goal_of, name_of, role_of, served
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
 from rclpy.task import Future
@@ -60,6 +62,7 @@ ATTEMPTS = 5
 """How often things are looked at that other threads change meanwhile."""
 
 know_futures(Future)
+know_messages(StrictMessage)
 
 
 class Waiting:
@@ -320,7 +323,7 @@ class _Look:
             return Role("action", name_of(run._args[0]) or "execute")
         known = self._roles.get(run.entity)
         if known is None:
-            return Role("task", name_of(run._coroutine or run._handler) or "task")
+            return Role("task", name_of(run.called) or "task")
         return known
 
     # conditions
@@ -385,20 +388,18 @@ class _Look:
 
     def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
         """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
-        subject = _Subject(node, [role for entity, role in self._roles.items() if self._owners[entity] is node])
+        own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
+        own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
+        tasks = [run for run in self._runs if getattr(run.called, "__self__", None) is node]
+        subject = _Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
         found = setters(level.frames, future, subject)  # type: ignore[arg-type]
         others = [_Subject(other, []) for other in self._nodes if other is not node]
-        if found is None or not found.handlers or found.lock is not None:
-            return FREE
-        if found.is_shared(subject, others):  # type: ignore[arg-type]
+        is_known = found is not None and found.handlers and found.lock is None
+        if found is None or not is_known or found.is_shared(subject, others):  # type: ignore[arg-type]
             return FREE
         self._pause = found.pause
-        queues = [
-            self._id(entity, "q")
-            for entity, role in self._roles.items()
-            if self._owners[entity] is node and role.handler in found.handlers
-        ]
-        others_runs = [r for r in self._runs if r is not run and r.node is node]
+        queues = {self._id(entity, "q") for entity, handler in own if handler in found.handlers}
+        others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]
         active = sorted(self._id(r) for r in others_runs if self._role(r).handler in found.handlers)
         return SetBy(found.what, tuple(sorted(queues)), tuple(active), deed=found.deed, gives_up=found.gives_up)
 
@@ -437,9 +438,9 @@ def _plain(group: Any, node: Any) -> dict[str, Any]:
 class _Subject:
     """A node, as the reading of its source sees it."""
 
-    def __init__(self, node: Any, roles: Iterable[Role]) -> None:
+    def __init__(self, node: Any, handlers: Iterable[str]) -> None:
         self.instance, self.full_name = node, _name(node)
-        self.runners = [_Runner(role) for role in roles]
+        self.runners = [_Runner(Role("", handler)) for handler in handlers]
         self.tasks: set[Any] = set()
         self.starting = None
         self.unopened: tuple[Any, ...] = ()
