@@ -134,6 +134,7 @@ def _go_private(domain: int | None) -> int:
 
 def _show_args(path: Path) -> int:
     from graphflow.graph.faults import Problems
+    from graphflow.graph.model import FROM_LAUNCH
     from graphflow.graph.project import shown
     from graphflow.graph.reading import read
     from graphflow.supervisor.launch_python import described
@@ -143,12 +144,13 @@ def _show_args(path: Path) -> int:
     problems.raise_any()
     args = top.entries.get("args") if isinstance(top.value, dict) else None
     declared: Any = None if args is None or not isinstance(args.value, dict) else args.plain()
+    texts = top.entries[FROM_LAUNCH].plain() if FROM_LAUNCH in top.entries else {}
     output.data("Arguments (pass arguments as '<name>:=<value>'):\n")
     for name, spec in (declared or {}).items():
         spec = spec if isinstance(spec, dict) else {}
         unit = f" [{spec['unit']}]" if spec.get("unit") else ""
         output.data(f"    '{name}':\n        {spec.get('doc') or 'no description given'}{unit}")
-        output.data(f"        (default: {spec['default']!r})\n" if "default" in spec else "")
+        output.data(f"        (default: {texts.get(name, spec['default'])!r})\n" if "default" in spec else "")
     if not declared:
         output.data("    no arguments")
     return exits.OK

@@ -9,6 +9,7 @@ from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
 from graphflow.graph.faults import Problems
 from graphflow.graph.model import ARG_TYPES, Arg, keys_of
+from graphflow.graph.substitutions import Written
 from graphflow.graph.tree import Item
 from graphflow.names import did_you_mean
 
@@ -37,6 +38,7 @@ class Arguments:
         outer: Mapping[str, Any],
         fixed: Mapping[str, Item],
         substitute: Callable[[Item, Mapping[str, Any]], Item] = lambda item, _: item,
+        texts: Mapping[str, str] | None = None,
     ) -> dict[str, Any]:
         """The values of what a file declares.
 
@@ -45,6 +47,7 @@ class Arguments:
             outer: The values in force where the file is included.
             fixed: Values that the including file gives.
             substitute: Makes the substitutions in a default, with the values of the arguments before it.
+            texts: Of a launch file of ROS's, whose arguments are texts: the defaults as they are written.
         """
         specs = declared.entries if declared is not None else {}
         for name, item in fixed.items():
@@ -55,13 +58,14 @@ class Arguments:
         for name, spec in specs.items():
             if name in fixed:
                 found[name] = self._checked(name, fixed[name].plain(), spec, fixed[name].place)
+                found[name] = found[name] if texts is None else Written(_written(found[name]))
                 continue
             if name not in outer:
                 if "default" in spec.entries:
                     default = substitute(spec.entries["default"], found)
                     spec = spec._replace(value={**spec.entries, "default": default})
-                found[name] = self._own(name, spec)
-            self.values[name] = found[name]
+                found[name] = self._own(name, spec) if texts is None else self._text(name, spec, texts.get(name, "$("))
+            self.values[name] = found[name].value if isinstance(found[name], Written) else found[name]
         return found
 
     def refuse_strays(self) -> None:
@@ -70,6 +74,15 @@ class Arguments:
             if name not in self.values:
                 help_ = did_you_mean(name, self.values) or "; the file declares none under args:"
                 self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
+
+    def _text(self, name: str, spec: Item, default: str) -> Written:
+        """The value of a launch file's argument; any text will do, if it is among the choices."""
+        if name not in self._given:
+            value = self._own(name, spec)
+            return Written(_written(value) if "$(" in default else default)
+        text = Written(self._given[name])
+        self._refuse_others(name, text.value, spec)
+        return text
 
     def _own(self, name: str, spec: Item) -> Any:
         settings = spec.entries
@@ -96,11 +109,15 @@ class Arguments:
             default = settings["default"].plain()
             text = f"argument {name!r}: expected {_kind(default)}, as its default {_written(default)} is, got {value!r}"
             self._problems.add(place, text)
-        choices = settings["choices"].plain() if "choices" in settings else None
+        self._refuse_others(name, value, spec)
+        return value
+
+    def _refuse_others(self, name: str, value: Any, spec: Item) -> None:
+        """Report a value that is not among the choices."""
+        choices = spec.entries["choices"].plain() if "choices" in spec.entries else None
         if isinstance(choices, list) and choices and value not in choices:
             shown = ", ".join(map(str, choices))
             self._problems.add(spec.at, f"argument {name!r} is {value!r}, but must be one of {shown}")
-        return value
 
 
 def given_values(words: Sequence[str]) -> dict[str, str]:

@@ -121,13 +121,16 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         known_packages = [*workspace.packages, *(known for known, _ in EXECUTABLES)]
         near = did_you_mean(package, (), hidden=known_packages)
         text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
-        raise NoExecutable(text, is_slip=nearest(package, known_packages, cutoff=SLIP) is not None)
+        meant = nearest(package, known_packages, cutoff=SLIP)
+        raise NoExecutable(text, is_slip=meant is not None and abs(len(meant) - len(package)) <= 2)
     known = own.known_as(name)
     if known is None:
         if name in own.compiled:
             text = f"{name} of the package {package!r} is C++, which only colcon builds; graphflow runs Python"
             raise NoExecutable(text, is_slip=False)
-        near = did_you_mean(name, own.executables) or f"; there is {', '.join(own.executables) or 'none'}"
+        if not own.executables:
+            raise NoExecutable(f"the package {package!r} has no executable that graphflow can run", is_slip=False)
+        near = did_you_mean(name, own.executables) or f"; there is {', '.join(own.executables)}"
         raise NoExecutable(f"the package {package!r} has no executable {name!r}{near}", is_slip=True)
     fault = own.fault_of(known)
     if fault is not None:

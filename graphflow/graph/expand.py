@@ -10,7 +10,7 @@ the place where it was written.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
@@ -111,7 +111,7 @@ class Expansion:
     def _file(self, top: Item, path: Path, scope: _Scope, fixed: Mapping[str, Item]) -> Mapping[str, Item]:
         """Take in a file; returns its templates."""
         self.files[top.place.file] = path.resolve()
-        if FROM_LAUNCH in top.entries:
+        if (launch := top.entries.get(FROM_LAUNCH)) is not None:
             self._problems.launch_files.add(top.place.file)
         entries = top.without(FROM_LAUNCH).entries
         if entries.get("args") is None or isinstance(entries["args"].value, dict):
@@ -120,7 +120,8 @@ class Expansion:
             def substituted(item: Item, known: Mapping[str, Any]) -> Item:
                 return self._substituted(item, replace(outer, values=known))
 
-            values = self.arguments.of_file(entries.get("args"), scope.values, fixed, substituted)
+            texts = launch and launch.plain()
+            values = self.arguments.of_file(entries.get("args"), scope.values, fixed, substituted, texts)
             scope = replace(scope, values=values)
         templates = entries.get("templates")
         if templates is not None:
@@ -146,11 +147,10 @@ class Expansion:
     def _take_settings(self, entries: Mapping[str, Item], scope: _Scope) -> None:
         """Keep what a file says of the whole graph, over what those that it includes say."""
         for key, item in entries.items():
+            is_others = key == "name" and len(scope.files) > 1  # the graph is called as its own file says
             if key == "args" and isinstance(item.value, dict):
                 self.settings[key] = merged(self.settings.get(key, Item({}, item.place)), item)
-            elif key == "name" and len(scope.files) > 1:  # the graph is called as its own file says
-                continue
-            elif key in TOP_KEYS and key not in (*BLOCKS, "templates", "override"):
+            elif key in TOP_KEYS and key not in (*BLOCKS, "templates", "override") and not is_others:
                 self.settings[key] = item if key == "args" else self._substituted(item, scope)
 
     def _include(self, item: Item, scope: _Scope, overridden: Item | None = None) -> _Scope:
@@ -327,7 +327,8 @@ class Expansion:
                 self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
         if self._is_taken(name, item, self.nodes, "nodes"):
             return
-        item = self._substituted(item.without("if", "unless", "template", "namespace"), scope)
+        with self._problems.of_node(name):
+            item = self._substituted(item.without("if", "unless", "template", "namespace"), scope, ("args", "command"))
         if own is not None and not isinstance(own.value, str):
             item = item._replace(value={**item.entries, "namespace": own})
         if isinstance(item.value, dict):
@@ -450,31 +451,31 @@ class Expansion:
                 self._problems.add_unknown(condition.place, text)
         return left_out
 
-    def _one(self, value: Any, place: Place, scope: _Scope) -> Any:
+    def _one(self, value: Any, place: Place, scope: _Scope, *, is_word: bool = False) -> Any:
         if not isinstance(value, str) or "$(" not in value:
             return value
         file = self.files.get(place.file, Path())
         params = first_of([group["params"].entries for group in scope.shared if "params" in group])
         values = {name: item.plain() for name, item in params.items()} if "param" in value else {}
         try:
-            return Substitutions(scope.values, file, self._outside, values).apply(value)
+            return Substitutions(scope.values, file, self._outside, values).apply(value, is_word=is_word)
         except SubstitutionError as error:
             self._problems.add_unknown(place, str(error))
             return value
 
-    def _substituted(self, item: Item, scope: _Scope) -> Item:
-        """The same with every substitution made, in keys too."""
+    def _substituted(self, item: Item, scope: _Scope, words: Collection[str] = (), *, is_word: bool = False) -> Item:
+        """The same with every substitution made, in keys too; `words` are keys of lists of texts."""
         if isinstance(item.value, dict):
             result: dict[str, Item] = {}
             for key, inner in item.value.items():
                 name = str(self._one(key, inner.at, scope))
                 if name in result:
                     self._problems.add(inner.at, f"the key {key!r} becomes {name!r}, which is already here")
-                result[name] = self._substituted(inner, scope)
+                result[name] = self._substituted(inner, scope, is_word=name in words)
             return item._replace(value=result)
         if isinstance(item.value, list):
-            return item._replace(value=[self._substituted(inner, scope) for inner in item.value])
-        value = self._one(item.value, item.place, scope)
+            return item._replace(value=[self._substituted(inner, scope, is_word=is_word) for inner in item.value])
+        value = self._one(item.value, item.place, scope, is_word=is_word)
         self._count(value, item.place)
         return located(value, item.place)._replace(key=item.key)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
@@ -22,6 +23,7 @@ class Problems(list[Problem]):
     def __init__(self) -> None:
         super().__init__()
         self._unknown: set[Place] = set()
+        self._of_nodes: dict[str, list[Problem]] = {}
         self.launch_files: set[str] = set()
         """Files of ROS's, whose users expect that what ROS lets pass is let pass."""
         self.remarks: list[Problem] = []
@@ -46,6 +48,18 @@ class Problems(list[Problem]):
         """Add a problem that leaves the value unknown: further reports about it would only confuse."""
         self.add(place, message)
         self._unknown.add(place)
+
+    @contextmanager
+    def of_node(self, name: str) -> Iterator[None]:
+        """What is added within belongs to a node."""
+        known = len(self)
+        yield
+        self._of_nodes[name] = self[known:]
+
+    def excuse(self, names: Iterable[str]) -> None:
+        """Forget what belongs to nodes that are left out."""
+        forgotten = [fault for name in names for fault in self._of_nodes.get(name, ())]
+        self[:] = [problem for problem in self if problem not in forgotten]
 
     def raise_any(self) -> None:
         """Raise GraphFileError if there are any."""

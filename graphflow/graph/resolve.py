@@ -95,6 +95,7 @@ def _resolve(
     programs = _Programs(src, outside, problems)
     nodes = _nodes(src, model, files, programs, problems)
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
+    problems.excuse(map(str, programs.left_out))
     if nodes:
         problems.remarks += programs.left_out.values()
     else:
@@ -136,22 +137,24 @@ class _Programs:
 
     def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
         """The words that run a node's program: none for a class, None for one that is left out."""
-        before = self._prefix(spec, at)
-        if before is None:
+        command = self._executable(spec, at) if spec.pkg else tuple(map(str, spec.command))
+        before = None if command is None else self._prefix(spec, at)
+        if command is None or before is None:
             return None
-        if not spec.pkg:
-            return tuple(map(str, spec.command))
+        return (*before, *command, *map(str, spec.args)) if spec.pkg else command
+
+    def _executable(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
+        """The words that run an executable of a package; None for one that is left out, since nobody here has it."""
         place = self._src.place((*at, "exec"))
         try:
-            command = command_of(spec.pkg, spec.exec_, self._workspace, self._outside.env)
+            return command_of(spec.pkg, spec.exec_, self._workspace, self._outside.env)
         except NoExecutable as error:
             if not error.is_slip and place.file in self._problems.launch_files:
                 self.left_out[at[-1]] = Problem(place, f"{spec.exec_} is left out: {error}")
                 return None
             if error.is_slip or spec.pkg in self._workspace.packages:
                 self._problems.add(place, str(error))
-            command = ("ros2", "run", spec.pkg, spec.exec_)
-        return (*before, *command, *map(str, spec.args))
+            return ("ros2", "run", spec.pkg, spec.exec_)
 
     def _prefix(self, spec: NodeSpec, at: source.Path) -> list[str] | None:
         """The words before a program's own; None for one that is left out, since nobody here has what they name."""
@@ -166,7 +169,8 @@ class _Programs:
             text = f"prefix: goes with pkg: and exec:; to run this class by itself with it: {run}"
             self._problems.add_unless_ros(place, text)
         elif words and which(words[0], path=self._outside.env.get("PATH")) is None:
-            run = f"run it by itself: graphflow run {spec.pkg} {spec.exec_}"
+            rules = "".join(f" -r {old}:={new}" for old, new in spec.remap.items())
+            run = f"run it by itself: graphflow run {spec.pkg} {spec.exec_}{rules and f' --ros-args{rules}'}"
             text = f"there is no program {words[0]!r} on the PATH, which prefix: names; {run}"
             if place.file not in self._problems.launch_files:
                 self._problems.add(place, text)

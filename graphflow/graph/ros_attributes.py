@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 
 from graphflow.graph.tree import Item
@@ -27,9 +28,38 @@ def words(item: Item | None) -> list[str]:
     if isinstance(item.value, list):
         return [str(word.value) for word in item.value]
     try:
-        return shlex.split(str(item.value))
+        return split(str(item.value))
     except ValueError:  # a quote that is not closed
         return str(item.value).split()
+
+
+_MARK = re.compile("\ue000(\\d+)\ue001")
+"""What stands for a substitution, in two characters that no text has."""
+
+
+def split(text: str) -> list[str]:
+    """The words of a text, as a shell has them; spaces in a substitution, `$(var rate)`, do not part it.
+
+    Raises:
+        ValueError: A quote is not closed.
+    """
+    spans: list[str] = []
+    rest, kept = text.replace("\ue000", " "), ""
+    while (begin := rest.find("$(")) >= 0 and (end := _end(rest, begin + 2)):
+        kept += f"{rest[:begin]}\ue000{len(spans)}\ue001"
+        spans.append(rest[begin:end])
+        rest = rest[end:]
+    return [_MARK.sub(lambda found: spans[int(found[1])], word) for word in shlex.split(kept + rest)]
+
+
+def _end(text: str, begin: int) -> int:
+    """Where the parenthesis ends that is open at a place; 0 if it does not."""
+    depth = 1
+    for place in range(begin, len(text)):
+        depth += {"(": 1, ")": -1}.get(text[place], 0)
+        if depth == 0:
+            return place + 1
+    return 0
 
 
 def says(item: Item, key: str, *wanted: str) -> bool:

@@ -16,14 +16,13 @@ Source: launch and launch_ros, the parsers of their frontends; the design articl
 from __future__ import annotations
 
 import re
-import shlex
 from pathlib import Path
 from typing import Any
 
 from graphflow.errors import Place
 from graphflow.graph import executables
 from graphflow.graph.model import FROM_LAUNCH
-from graphflow.graph.ros_attributes import children, items, says
+from graphflow.graph.ros_attributes import children, items, says, split
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
@@ -120,6 +119,7 @@ class _Translation:
     def __init__(self, root: Path, complain: Complain, note: Complain) -> None:
         self._root, self._complain, self._note = root, complain, note
         self._args: dict[str, Item] = {}
+        self._texts: dict[str, Item] = {}  # their defaults as they are written
         self._count: dict[str, int] = {}
         self._numbered: dict[int, str] = {}
         """The names of actions that others come after."""
@@ -127,7 +127,7 @@ class _Translation:
     def file(self, top: Item) -> Item:
         body = self._block(top.entries["launch"].value)
         args = {"args": Item(self._args, top.place)} if self._args else {}
-        return top._replace(value={FROM_LAUNCH: Item(True, top.place), **args, **body})
+        return top._replace(value={FROM_LAUNCH: Item(self._texts, top.place), **args, **body})
 
     # lists of actions
 
@@ -254,7 +254,8 @@ class _Translation:
             return
         spec: dict[str, Item] = {}
         if "default" in item.entries:
-            spec["default"] = typed(item.entries["default"])
+            default = item.entries["default"]
+            spec["default"], self._texts[name.value] = typed(default), default._replace(value=str(default.value))
         if "description" in item.entries and item.entries["description"].value:
             spec["doc"] = item.entries["description"]
         if "choice" in item.entries:
@@ -400,7 +401,7 @@ class _Translation:
         entries = self._common(item)
         words = [str(word.value) for word in command.value] if isinstance(command.value, list) else None
         try:
-            words = words or shlex.split(str(command.value))
+            words = words or split(str(command.value))
         except ValueError as error:
             self._complain(command.place, f"cmd: {error}")
             return

@@ -31,6 +31,18 @@ class SubstitutionError(ValueError):
     """A substitution is malformed, unknown, or has no value."""
 
 
+class Written(str):
+    """The value of a launch file's argument: a text, as all are in ROS, which is read where a value is wanted."""
+
+    @property
+    def value(self) -> Any:
+        """What it reads as."""
+        try:
+            return scalar(self)
+        except ValueError:  # a number with too many digits
+            return str(self)
+
+
 Run = Callable[[list[str], str, Path, Mapping[str, str]], str]
 """Runs a program in a folder and returns what it prints; the second argument is one of `ON_STDERR`."""
 
@@ -67,8 +79,11 @@ class Substitutions:
         self._env, self._root, self._logs, self._run, _ = outside
         self._params = params or {}
 
-    def apply(self, value: Any) -> Any:
+    def apply(self, value: Any, *, is_word: bool = False) -> Any:
         """The value with every substitution in it made; a text that is one substitution takes its type.
+
+        Args:
+            is_word: Whether it is a word of a program, so that it stays a text.
 
         Raises:
             SubstitutionError: A substitution cannot be made.
@@ -76,8 +91,8 @@ class Substitutions:
         if not isinstance(value, str) or "$(" not in value:
             return value
         parts = self._parts(value, 1)
-        if len(parts) == 1:
-            return parts[0]
+        if len(parts) == 1 and not is_word:
+            return parts[0].value if isinstance(parts[0], Written) else parts[0]
         texts = [_text(part) for part in parts]
         if sum(map(len, texts)) > MAX_TEXT:  # arguments made of arguments could grow without end
             raise SubstitutionError(f"the text has more than {MAX_TEXT:,} characters")
@@ -131,7 +146,8 @@ class Substitutions:
         if quote in ("'", '"') and text[-1:] == quote and text.count(quote) == 2 and len(text) > 2:
             text = text[1:-1]  # as ROS's files write it
         try:
-            return evaluate(text, self._args)
+            values = {name: arg.value if isinstance(arg, Written) else arg for name, arg in self._args.items()}
+            return evaluate(text, values)
         except ExpressionError as error:
             raise SubstitutionError(f"$(eval {text[:60]}): {error}") from None
 

@@ -60,7 +60,7 @@ class RemoteParameters:
         if not len(found):
             answers = [self._call("describe_parameters", "DescribeParameters", names=[n]).descriptors for n in names]
             found = [descriptor for answer in answers for descriptor in answer]
-        return {d.name: d for d in found if d.type}
+        return {d.name: d for d in found if d.type or d.dynamic_typing}  # one that is declared and not set has no type
 
     def set(self, values: dict[str, ParameterValue]) -> list[SetParametersResult]:
         """Set parameters one by one; one result for each."""

@@ -27,7 +27,8 @@ class MessagePackages:
         if not rest:
             return self._spec(fullname) if is_package(package) and not _is_elsewhere(fullname, path) else None
         kind, _, inner = rest.partition(".")
-        if kind not in KINDS or not _is_ours(package):
+        is_beside = package in KNOWN and not _is_elsewhere(fullname, path)  # of a package that has code as well
+        if kind not in KINDS or not (_is_ours(package) or is_beside):
             return None
         if inner and not inner.startswith("_"):
             return None
@@ -72,8 +73,8 @@ class MessagePackages:
         names = registry.names_in(package, kind)
         if len(rest) > 1:  # rosidl's modules of one class: geometry_msgs.msg._twist
             names = [name for name in names if f"_{messages.snake(name)}" == rest[1]]
-            if not names:
-                raise ModuleNotFoundError(f"No module named {module.__name__!r}", name=module.__name__)
+        if not names:
+            raise ModuleNotFoundError(f"No module named {module.__name__!r}", name=module.__name__)
         module.__doc__ = f"The {kind} interfaces of the package {package}."
         module.__dict__["__all__"] = names
         module.__getattr__ = make  # type: ignore[method-assign]

@@ -101,11 +101,20 @@ def run(program: Program) -> None:
         UsageFault: It has not the function that it is said to be.
     """
     make_importable(program.workspace)
-    sys.excepthook = partial(_tell, program.workspace)
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts jobs; rclpy ends all the same
         signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     sys.argv = [str(program.file), *program.words]
+    hook = sys.excepthook
+    try:
+        _begin(program)
+    except BaseException:
+        if sys.excepthook is hook:  # not before: some libraries look whether it is Python's own
+            sys.excepthook = partial(_tell, program.workspace)
+        raise
+
+
+def _begin(program: Program) -> None:
     if program.entry is None:
         if program.file.suffix != ".py" and not _is_python(program.file):
             if not os.access(program.file, os.X_OK):

@@ -38,7 +38,8 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     except subprocess.TimeoutExpired:
         raise SubstitutionError(f"{written}: it has not ended within {LIMIT:g} s") from None
     except FileNotFoundError:
-        raise SubstitutionError(f"{written}: there is no program {words[0]!r} on the PATH") from None
+        hint = "; it is on PyPI: pip install xacro" if words[0] == "xacro" else ""
+        raise SubstitutionError(f"{written}: there is no program {words[0]!r} on the PATH{hint}") from None
     except (OSError, ValueError) as error:
         raise SubstitutionError(f"{written}: {error}") from None
     complaint = (ended.stderr or b"").decode(errors="replace").strip()

@@ -29,7 +29,15 @@ def test_items() -> None:
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [("'a \"b c\"'", ["a", "b c"]), ("[a, 1]", ["a", "1"]), ('"a \'b"', ["a", "'b"]), ("5", ["5"])],
+    [
+        ("'a \"b c\"'", ["a", "b c"]),
+        ("[a, 1]", ["a", "1"]),
+        ('"a \'b"', ["a", "'b"]),
+        ("5", ["5"]),
+        ("-d $(var x) --a=$(env HOME)/b", ["-d", "$(var x)", "--a=$(env HOME)/b"]),
+        ("$(find-pkg-share $(var p) )/'a b' $(eval '(1)')", ["$(find-pkg-share $(var p) )/a b", "$(eval '(1)')"]),
+        ("a $(var x", ["a", "$(var", "x"]),
+    ],
 )
 def test_words(text: str, expected: list[str]) -> None:
     """As a shell splits them; a quote that is not closed is none."""

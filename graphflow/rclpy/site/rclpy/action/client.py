@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import ServerLost
-from graphflow.machines.goal import GoalStatus
+from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.wake import Wake
@@ -33,7 +33,7 @@ class ClientGoalHandle:
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client, self._goal_id, self._goal_response = action_client, goal_id, goal_response
-        self._status = int(GoalStatus.UNKNOWN)
+        self._status = int(Status.UNKNOWN)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ClientGoalHandle) and self._goal_id == other._goal_id
@@ -213,7 +213,7 @@ class ActionClient(Waitable):
             handle = self._goal_handles.get(key)
             if handle is not None:
                 handle._status = row.status
-                if GoalStatus(row.status).is_terminal:
+                if Status(row.status).is_terminal:
                     del self._goal_handles[key]
 
     # goals

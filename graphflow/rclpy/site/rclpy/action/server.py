@@ -13,7 +13,8 @@ from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from graphflow.machines.goal import CancelCode, GoalStatus
+from graphflow.machines.goal import CancelCode
+from graphflow.machines.goal import GoalStatus as Status
 from graphflow.msgs import registry
 from graphflow.rclpy import held, messages
 from graphflow.rclpy.life import LOOP
@@ -49,14 +50,14 @@ class CancelResponse(Enum):
 
 
 _STEPS = {
-    (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
-    (GoalStatus.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
-    (GoalStatus.EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.CANCELING,
-    (GoalStatus.EXECUTING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
-    (GoalStatus.EXECUTING, GoalEvent.ABORT): GoalStatus.ABORTED,
-    (GoalStatus.CANCELING, GoalEvent.SUCCEED): GoalStatus.SUCCEEDED,
-    (GoalStatus.CANCELING, GoalEvent.ABORT): GoalStatus.ABORTED,
-    (GoalStatus.CANCELING, GoalEvent.CANCELED): GoalStatus.CANCELED,
+    (Status.ACCEPTED, GoalEvent.EXECUTE): Status.EXECUTING,
+    (Status.ACCEPTED, GoalEvent.CANCEL_GOAL): Status.CANCELING,
+    (Status.EXECUTING, GoalEvent.CANCEL_GOAL): Status.CANCELING,
+    (Status.EXECUTING, GoalEvent.SUCCEED): Status.SUCCEEDED,
+    (Status.EXECUTING, GoalEvent.ABORT): Status.ABORTED,
+    (Status.CANCELING, GoalEvent.SUCCEED): Status.SUCCEEDED,
+    (Status.CANCELING, GoalEvent.ABORT): Status.ABORTED,
+    (Status.CANCELING, GoalEvent.CANCELED): Status.CANCELED,
 }
 """What follows when something happens to a goal. Source: the ROS 2 design article "Actions"."""
 
@@ -67,7 +68,7 @@ class ServerGoalHandle:
     def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
         self._action_server, self._goal_request = action_server, goal_request
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
-        self._status = GoalStatus.ACCEPTED
+        self._status = Status.ACCEPTED
         self._lock = threading.Lock()
         self._result: Future[Any] = Future()
 
@@ -89,7 +90,7 @@ class ServerGoalHandle:
     @property
     def is_cancel_requested(self) -> bool:
         """Whether it is to end early: call `canceled` then, and return."""
-        return self._status is GoalStatus.CANCELING
+        return self._status is Status.CANCELING
 
     @property
     def status(self) -> int:
@@ -372,7 +373,7 @@ class ActionServer(Waitable):
         if goal is None:
             self._logger.debug("Sending result response for unknown goal ID")
             with sending():
-                self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(GoalStatus.UNKNOWN))))
+                self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
         goal._result._when_done(partial(self._graphflow_answer_result, asked, goal))
 

@@ -28,8 +28,12 @@ _MESSAGE = {"rclpy.event_handler": ("EventHandler", "PublisherEventCallbacks", "
 _MESSAGE_TYPE = {"rclpy.type_support": ("MsgType",)}
 _NODE: dict[str, tuple[str, ...]] = {"rclpy.node": ("Node",)}
 PASSED: dict[str, dict[str, tuple[str, ...]]] = {
-    "action.client": {"action_msgs.srv": ("CancelGoal",), "unique_identifier_msgs.msg": ("UUID",)},
-    "action.server": {"action_msgs.msg": ("GoalInfo",)},
+    "action.client": {
+        "action_msgs.msg": ("GoalStatus",),
+        "action_msgs.srv": ("CancelGoal",),
+        "unique_identifier_msgs.msg": ("UUID",),
+    },
+    "action.server": {"action_msgs.msg": ("GoalInfo", "GoalStatus"), "rclpy._rclpy_pybind11": ("RCLError",)},
     "client": {"rclpy.clock": ("Clock",), "rclpy.context": ("Context",), **_SERVICE, **_GROUP, **_QOS},
     "event_handler": {"rclpy.logging": ("get_logger",), "rclpy.waitable": ("NumberOfEntities",), **_GROUP},
     "executors": {
