@@ -1,4 +1,4 @@
-"""`python -m graphflow.rclpy FILE ...`, `python -m graphflow.rclpy PACKAGE EXECUTABLE ...`."""
+"""`python -m graphflow.rclpy FILE ...`, `python -m graphflow.rclpy PACKAGE EXECUTABLE ...`, `... -m MODULE FILE`."""
 
 import sys
 

@@ -184,7 +184,12 @@ def _is_python(file: Path) -> bool:
 
 
 def main(words: Sequence[str]) -> None:
-    """Run what the words mean: a file, or a package and an executable, and its arguments."""
+    """Run what the words mean: a file, or a package and an executable, and its arguments; or `-m MODULE FILE`."""
+    if words[0] == "-m":  # a module of graphflow's that is to read a file of a workspace
+        make_importable(find_workspace(Path(words[2])))
+        sys.argv = list(words[1:])
+        runpy.run_module(words[1], run_name="__main__", alter_sys=True)
+        return
     try:
         program = find_program(words[0], words[1:], Path.cwd())
         if program is None:

@@ -25,12 +25,15 @@ def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[s
     Raises:
         GraphFileError: It failed, or took too long.
     """
-    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    # By way of what lets Python import rclpy and the packages of the file's workspace.
+    command = [sys.executable, "-P", "-m", "graphflow.rclpy", "-m", "graphflow.supervisor.launch_recorder", str(file)]
     command += [] if values is None else [json.dumps(values)]
     try:
         ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PYTHON_LIMIT, check=False)
     except subprocess.TimeoutExpired:
         raise GraphFileError([Problem(Place(name), f"it has not described itself within {PYTHON_LIMIT:g} s")]) from None
+    if values is not None:  # what it prints is for whoever starts it
+        sys.stderr.write(ran.stderr.decode(errors="replace"))
     try:
         told: dict[str, Any] = json.loads(ran.stdout)
     except ValueError:

@@ -1,6 +1,7 @@
 """A launch file in Python, run in a process of its own against stand-ins that record what it describes.
 
-    python -m graphflow.supervisor.launch_recorder FILE [VALUES]   ->   {"actions": [...], "problems": [...]}
+    python -m graphflow.rclpy -m graphflow.supervisor.launch_recorder FILE [VALUES]
+        ->   {"actions": [...], "problems": [...]}
 
 What they are called with is written down as the actions of ROS's YAML dialect, each with its line. With VALUES, the
 file's arguments as JSON, it is about to be started: folders of packages are what they are, and a function that asks
@@ -10,42 +11,15 @@ for a value is told it.
 from __future__ import annotations
 
 import contextlib
-import io
 import json
 import os
 import sys
 from collections.abc import Mapping
-from importlib import import_module
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from graphflow.graph.workspace import find_workspace
 from graphflow.supervisor.launch_actions import actions, number_targets
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
 from graphflow.wire.profile import wire_profile
-
-
-class _Messages(MetaPathFinder, Loader):
-    """Finds ROS's message packages, from which launch files take constants."""
-
-    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        try:
-            known = find_spec(f"graphflow.msgs.{name}")
-        except ModuleNotFoundError:  # of a package that is none of messages
-            return None
-        return (
-            None if known is None else ModuleSpec(name, self, is_package=known.submodule_search_locations is not None)
-        )
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType:
-        return import_module(f"graphflow.msgs.{spec.name}")
-
-    def exec_module(self, module: ModuleType) -> None:
-        """It has been imported."""
 
 
 class _Environment(dict[str, str]):
@@ -65,8 +39,6 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
     if values is not None:
         RECORDING.values = {name: as_text(value) for name, value in values.items()}
     sys.meta_path.insert(0, StandIns())
-    sys.meta_path.append(_Messages())
-    sys.path[:0] = [str(folder) for folder in find_workspace(Path(path)).import_roots]
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
     found: list[dict[str, Any]] = []
@@ -97,7 +69,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
 def main() -> None:
     out = os.dup(1)
     os.dup2(2, 1)  # what the file prints is not the answer
-    with contextlib.redirect_stdout(io.StringIO()):
+    with contextlib.redirect_stdout(sys.stderr):
         found = record(os.path.abspath(sys.argv[1]), json.loads(sys.argv[2]) if len(sys.argv) > 2 else None)
     os.write(out, json.dumps(found).encode())
 

@@ -18,7 +18,7 @@ ROBOT = PROGRAMS / "launch" / "robot.launch.py"
 
 def record(file: Path, **values: Any) -> Any:
     """What a file describes, and what has no words, as lines; with values when it is about to be started."""
-    command = [sys.executable, "-P", "-m", "graphflow.supervisor.launch_recorder", str(file)]
+    command = [sys.executable, "-P", "-m", "graphflow.rclpy", "-m", "graphflow.supervisor.launch_recorder", str(file)]
     command += [json.dumps(values)] if values else []
     ran = subprocess.run(command, capture_output=True, timeout=30, check=True)
     return json.loads(ran.stdout)
