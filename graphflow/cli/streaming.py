@@ -223,14 +223,18 @@ class _Stream:
         output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
         for node in self._nodes:
             place = self._classes.get(node["class"], "")
-            output.talk(f"  {node['node']:{width}}  {node['class']:{class_width}}  {_shown(place)}")
+            label = node["node"] if node["is_named"] else node["node"].removeprefix("/")  # of a process
+            output.talk(f"  {label:{width}}  {node['class']:{class_width}}  {_shown(place)}")
         output.talk("")
         output.talk("In another terminal:")
-        name = self._nodes[0]["node"]
-        hints = {
-            "graphflow topic list": "what the nodes say to each other",
+        name = next((node["node"] for node in self._nodes if node["is_named"]), "")
+        of_node = {
             f"graphflow node info {name}": "what a node does",
             f"graphflow param list {name}": "what can be set",
+        }
+        hints = {
+            "graphflow topic list": "what the nodes say to each other",
+            **(of_node if name else {"graphflow node list": "which nodes there are"}),
             "graphflow ps": "how the nodes are doing",
         }
         if run["domain"] != domain_id():

@@ -7,8 +7,8 @@ from typing import Any
 from graphflow.names import did_you_mean
 from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
 
-_described: set[int] = set()
-"""Actions that have been written down."""
+_described: dict[int, Said] = {}
+"""Actions that have been written down, which are kept, so that no other has their number."""
 _numbers: dict[int, int] = {}
 """Numbers of actions that others come after."""
 _ending: set[int] = set()
@@ -34,7 +34,7 @@ def actions(said: Any) -> list[dict[str, Any]]:
     if not isinstance(said, Said):
         RECORDING.problems.append({"line": 1, "message": f"{said!r} is no action"})
         return []
-    _described.add(id(said))
+    _described[id(said)] = said
     name, attributes = _action(said)
     if name == "":
         return list(attributes)

@@ -96,6 +96,7 @@ class Process:
         return [
             {
                 "node": node.name,
+                "is_named": bool(node.class_path or node.executable) and not node.keeps_names,
                 "state": self.word,
                 "lifecycle": self.lifecycle.get(node.name, "") if self.word == "ready" else "",
                 "pid": self.pid,

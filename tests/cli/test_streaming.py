@@ -82,7 +82,7 @@ def test_colours_are_for_terminals(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
     run = {"graph": "lab", "domain": 7, "logs": str(tmp_path), "socket": ""}
-    nodes = [{"node": "/a", "class": "nodes.lab:Good", "log": str(tmp_path / "a.log")}]
+    nodes = [{"node": "/a", "class": "nodes.lab:Good", "log": str(tmp_path / "a.log"), "is_named": True}]
     client: Any = ControlClient.__new__(ControlClient)
     return _Stream(run, {"nodes.lab:Good": f"{tmp_path}/lab.py:3"}, nodes, client, detach, [])
 
@@ -140,6 +140,14 @@ def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     err = capsys.readouterr().err
     assert "  export GRAPHFLOW_DOMAIN=7  " in err
     assert "Open the console with: graphflow attach\nStop with: graphflow down\n" in err
+
+    unnamed = streaming(tmp_path)
+    unnamed._nodes = [{**unnamed._nodes[0], "is_named": False}]  # whose nodes have the names that its code gives them
+    unnamed._show({"event": "up", "seconds": 0.25})
+    err = capsys.readouterr().err
+    assert "\n  a   nodes.lab:Good" in err
+    assert "  graphflow node list  " in err
+    assert "node info" not in err
 
 
 @pytest.mark.real

@@ -23,6 +23,19 @@ def test_what_it_describes(tmp_path: Path) -> None:
     assert told["actions"] == [{"node": {"line": 4, "pkg": "a", "exec": "b"}}]
 
 
+def test_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is shown to whoever starts it, and to nobody else."""
+    file = tmp_path / "a.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\nprint('reading')\n"
+        "def generate_launch_description():\n    print('describing')\n    return LaunchDescription([])\n"
+    )
+    described(file, "a.launch.py", None)
+    assert capsys.readouterr().err == ""
+    described(file, "a.launch.py", {})
+    assert capsys.readouterr().err == "reading\ndescribing\n"
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [
