@@ -518,6 +518,32 @@ class FixedSendsAGoal(SendsAGoal):
         future.result().get_result_async().add_done_callback(lambda _: self.done.set())
 
 
+class WaitsForAResult(Asker):
+    """The goal that it waits for asks a service that it keeps out."""
+
+    threads = 3
+    client_group = MutuallyExclusiveCallbackGroup
+
+    def __init__(self) -> None:
+        super().__init__()
+        free = ReentrantCallbackGroup()
+        self.actions = ActionServer(self, Fibonacci, "count", self.execute, callback_group=free)
+        self.goals = ActionClient(self, Fibonacci, "count", callback_group=free)
+
+    def tick(self) -> None:
+        self.goals.send_goal(Fibonacci.Goal(order=3))  # stuck: WaitsForAResult
+        self.done.set()
+
+    def execute(self, goal: Any) -> Any:
+        self.client.call(Trigger.Request())
+        goal.succeed()
+        return Fibonacci.Result()
+
+
+class FixedWaitsForAResult(WaitsForAResult):
+    timer_group = MutuallyExclusiveCallbackGroup
+
+
 class CallsInAGoal(Asker):
     """The body of a goal asks a service in the only thread."""
 
@@ -571,6 +597,7 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (PollsWhatAGoalSets, FixedPollsWhatAGoalSets, "make tick of /actor with callback_group=Mutually"),
     (DrivesThere, FixedDrivesThere, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup(),"),
     (SendsAGoal, FixedSendsAGoal, "future = client.send_goal_async(goal), then future.add_done_callback(...)"),
+    (WaitsForAResult, FixedWaitsForAResult, OWN),
     (CallsInAGoal, FixedCallsInAGoal, "spin with MultiThreadedExecutor(num_threads=2)"),
 ]
 """What is stuck, the same with the change applied, and how the report words that change."""

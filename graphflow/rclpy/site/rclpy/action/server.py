@@ -71,6 +71,8 @@ class ServerGoalHandle:
         self._status = Status.ACCEPTED
         self._lock = threading.Lock()
         self._result: Future[Any] = Future()
+        self._graphflow_asked: list[Asked] = []
+        """Who waits for the result."""
 
     @property
     def request(self) -> Any:
@@ -375,6 +377,7 @@ class ActionServer(Waitable):
             with sending():
                 self._graphflow_results.answer(asked, messages.encode(carrier.Response(status=int(Status.UNKNOWN))))
             return
+        goal._graphflow_asked.append(asked)
         goal._result._when_done(partial(self._graphflow_answer_result, asked, goal))
 
     def _graphflow_answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:

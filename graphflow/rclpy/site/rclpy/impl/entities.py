@@ -116,6 +116,14 @@ def after_answers(entity: Any, node: Any) -> Iterator[str]:
                 yield name_of(callback)
 
 
+def results_asked(entity: Any) -> Iterator[tuple[str, str]]:
+    """The calls to an action server that ask for a result, each with the goal for whose end it waits."""
+    if isinstance(entity, ActionServer):
+        for goal in list(entity._goal_handles.values()):
+            if not goal._result.done():
+                yield from ((asked.call, goal_id(bytes(goal.goal_id.uuid))) for asked in list(goal._graphflow_asked))
+
+
 def goal_of(run: Run) -> ServerGoalHandle | None:
     """The goal whose body a run is."""
     return next((a for a in run._args if isinstance(a, ServerGoalHandle)), None)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 from itertools import count
@@ -44,9 +43,21 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
 from rclpy.impl.blocking import Blocked, blocked, holds, is_only_entered
-from rclpy.impl.entities import Role, after_answers, arrived, entities_of, frames_of, goal_of, name_of, role_of, served
+from rclpy.impl.entities import (
+    Role,
+    after_answers,
+    arrived,
+    entities_of,
+    frames_of,
+    goal_of,
+    name_of,
+    results_asked,
+    role_of,
+    served,
+)
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
+from rclpy.impl.subjects import Subject
 from rclpy.task import Future
 from rclpy.timer import Timer
 
@@ -161,6 +172,7 @@ class _Look:
     def graph(self) -> WaitGraph:
         for entity, node in self._owners.items():
             self._add_queue(entity, node)
+            self._add_results(entity, node)
         on_threads = set()
         for stack in self._stacks:
             on_threads |= {level.run for level in stack.levels}
@@ -216,6 +228,13 @@ class _Look:
         self._queues[name] = QueueView(
             name, role.label, _name(node), needs, calls, waiting, process=self._zid, is_declared=False
         )
+
+    def _add_results(self, entity: Any, node: Any) -> None:
+        """Those who have asked for the result of a goal wait until it has ended."""
+        for call, goal in results_asked(entity):
+            name, label = f"{call}:r", f"service {self._roles[entity].handler} get_result"
+            wait = Call(goal, entity._graphflow_goals.name.partition("/_action/")[0])
+            self._activities[name] = ActivityView(name, label, _name(node), (), wait, call, process=self._zid)
 
     def _tick(self, timer: Timer) -> str:
         return f"tick:{self._id(timer, 'q')}"
@@ -391,9 +410,9 @@ class _Look:
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
         tasks = [run for run in self._runs if getattr(run.called, "__self__", None) is node]
-        subject = _Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
+        subject = Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
         found = setters(level.frames, future, subject)  # type: ignore[arg-type]
-        others = [_Subject(other, []) for other in self._nodes if other is not node]
+        others = [Subject(other) for other in self._nodes if other is not node]
         is_known = found is not None and found.handlers and found.lock is None
         if found is None or not is_known or found.is_shared(subject, others):  # type: ignore[arg-type]
             return FREE
@@ -433,25 +452,6 @@ def _plain(group: Any, node: Any) -> dict[str, Any]:
     """A callback group as plain data, with nothing in it yet."""
     about = {"name": _called(group, node), "limit": 1 if _is_exclusive(group) else None, "when_full": "wait"}
     return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}
-
-
-class _Subject:
-    """A node, as the reading of its source sees it."""
-
-    def __init__(self, node: Any, handlers: Iterable[str]) -> None:
-        self.instance, self.full_name = node, _name(node)
-        self.runners = [_Runner(Role("", handler)) for handler in handlers]
-        self.tasks: set[Any] = set()
-        self.starting = None
-        self.unopened: tuple[Any, ...] = ()
-        self.hooks: set[str] = set()
-
-
-class _Runner:
-    """What runs a callback, as the reading of a node's source sees it."""
-
-    def __init__(self, role: Role) -> None:
-        self.spec = role
 
 
 def executors() -> list[Executor]:
