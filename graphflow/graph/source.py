@@ -80,11 +80,12 @@ class _Frame(NamedTuple):
     path: Path
 
 
-def read_file(path: pathlib.Path, name: str) -> Source:
+def read_file(path: pathlib.Path, name: str, *, merges: bool = False) -> Source:
     """Read a YAML file.
 
     Args:
         name: The file as messages show it.
+        merges: As for `read`.
 
     Raises:
         GraphFileError: As for `read`; also when there is no such file, or it is not text.
@@ -94,17 +95,18 @@ def read_file(path: pathlib.Path, name: str) -> Source:
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
     try:
-        return read(data.decode("utf-8-sig"), name)
+        return read(data.decode("utf-8-sig"), name, merges=merges)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
-def read(text: str, file: str) -> Source:
+def read(text: str, file: str, *, merges: bool = False) -> Source:
     """Read one YAML document.
 
     Args:
         file: The name to give in messages.
+        merges: Whether mappings under the same key are one, as in ROS's files of parameters.
 
     Raises:
         GraphFileError: `text` is not YAML, or uses what is refused here; the first such place.
@@ -117,7 +119,7 @@ def read(text: str, file: str) -> Source:
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
         raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
-        return _build(text, file)
+        return _build(text, file, merges=merges)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
         lines = text.splitlines()
@@ -162,13 +164,16 @@ def _error(place: Place, message: str) -> GraphFileError:
     return GraphFileError([Problem(place, message)])
 
 
-def _build(text: str, file: str) -> Source:
+def _build(text: str, file: str, *, merges: bool) -> Source:
     places: dict[Path, Place] = {}
     keys: dict[Path, Place] = {}
     stack: list[_Frame] = []
     pending: list[str | None] = []
     root: list[Any] = []
     documents = count = 0
+
+    def twice(key: str, first: Place, place: Place) -> GraphFileError:
+        return _error(place, f"the key {key!r} is here twice, first on line {first.line}; remove one")
 
     def put(value: Any, place: Place) -> Path:
         if not stack:
@@ -183,6 +188,8 @@ def _build(text: str, file: str) -> Source:
             key = pending[-1]
             assert key is not None
             path = (*above, key)
+            if key in container:
+                raise twice(key, keys[path], place)
             container[key] = value
             pending[-1] = None
         places[path] = place
@@ -212,17 +219,20 @@ def _build(text: str, file: str) -> Source:
             if waits_for_key:
                 key = _key(event, place)
                 container, above = stack[-1]
-                if key in container:
-                    first = keys[(*above, key)]
-                    raise _error(place, f"the key {key!r} is here twice, first on line {first.line}; remove one")
-                keys[(*above, key)] = place
+                if key in container and not (merges and isinstance(container[key], dict)):
+                    raise twice(key, keys[(*above, key)], place)
+                keys.setdefault((*above, key), place)
                 pending[-1] = key
                 continue
             if isinstance(event, yaml.ScalarEvent):
                 put(_scalar_value(event, place), place)
                 continue
             new: Any = {} if isinstance(event, yaml.MappingStartEvent) else []
-            path = put(new, place)
+            before = stack[-1].container.get(pending[-1]) if stack and isinstance(stack[-1].container, dict) else None
+            if isinstance(before, dict) and isinstance(new, dict):  # it goes on with what stands there already
+                new, path, pending[-1] = before, (*stack[-1].path, str(pending[-1])), None
+            else:
+                path = put(new, place)
             stack.append(_Frame(new, path))
             if isinstance(new, dict):
                 pending.append(None)

@@ -223,3 +223,12 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
     """With the one that was probably meant."""
     with pytest.raises(GraphFileError, match=r"g\.yaml:1:39: there is no file .*parms\.yaml; did you mean 'params"):
         plan_of(tmp_path, "nodes: {/a: {class: x:A, params_file: parms.yaml}}", params="{}")
+
+
+def test_a_section_that_goes_on_further_down(tmp_path: Path) -> None:
+    """As in the files of some robots; what stands in it twice is a mistake all the same."""
+    text = "/**: {ros__parameters: {a: 1}}\nn: {ros__parameters: {b: 2}}\n/**: {ros__parameters: {c: {d: 3}}}\n"
+    assert values(sections(tmp_path, text), "/n") == {"a": 1, "b": 2, "c.d": 3}
+    for again, line in (("/**: {ros__parameters: {a: 4}}", 4), ("n: 5", 4)):
+        with pytest.raises(GraphFileError, match=rf"p.yaml:{line}:\d+: .* is here twice, first on line"):
+            sections(tmp_path, f"{text}{again}\n")

@@ -251,14 +251,14 @@ class SubscriptionEventCallbacks:
         subscription: Any,
         topic_name: str,
         bell: NodeBell | None = None,
-        logger: Any = None,
+        logger_name: str = "event",
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSSubscriptionEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, logger, topic_name, _OFFERING)
-            incompatible_type = incompatible_type or partial(_warn_type, logger, topic_name)
+            incompatible_qos = incompatible_qos or partial(_warn_qos, logger_name, topic_name, _OFFERING)
+            incompatible_type = incompatible_type or partial(_warn_type, logger_name, topic_name)
         wanted = {
             kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: incompatible_qos,
@@ -293,14 +293,14 @@ class PublisherEventCallbacks:
         publisher: Any,
         topic_name: str,
         bell: NodeBell | None = None,
-        logger: Any = None,
+        logger_name: str = "event",
     ) -> list[EventHandler]:
         """The handlers of these callbacks."""
         kinds = QoSPublisherEventType
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
-            incompatible_qos = incompatible_qos or partial(_warn_qos, logger, topic_name, _REQUESTING)
-            incompatible_type = incompatible_type or partial(_warn_type, logger, topic_name)
+            incompatible_qos = incompatible_qos or partial(_warn_qos, logger_name, topic_name, _REQUESTING)
+            incompatible_type = incompatible_type or partial(_warn_type, logger_name, topic_name)
         wanted = {
             kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: self.deadline,
             kinds.RCL_PUBLISHER_LIVELINESS_LOST: self.liveliness,
@@ -323,14 +323,15 @@ _OFFERING = "New publisher discovered on topic '{}', offering incompatible QoS. 
 _REQUESTING = "New subscription discovered on topic '{}', requesting incompatible QoS. No messages will be sent to it."
 
 
-def _warn_qos(logger: Any, topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
+def _warn_qos(logger_name: str, topic: str, text: str, info: QoSRequestedIncompatibleQoSInfo) -> None:
     policy = qos_policy_name_from_kind(info.last_policy_kind)
-    (logger or rclpy.logging._root_logger).warn(f"{text.format(topic)} Last incompatible policy: {policy}")
+    logger = rclpy.logging._root_logger.get_child(logger_name)
+    logger.warn(f"{text.format(topic)} Last incompatible policy: {policy}")
 
 
-def _warn_type(logger: Any, topic: str, info: IncompatibleTypeInfo) -> None:
+def _warn_type(logger_name: str, topic: str, info: IncompatibleTypeInfo) -> None:
     text = f"Incompatible type on topic '{topic}', no messages will be sent to it"
-    (logger or rclpy.logging._root_logger).warn(text)
+    rclpy.logging._root_logger.get_child(logger_name).warn(text)
 
 
 def __getattr__(name: str) -> Any:

@@ -224,7 +224,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             _declare_qos_parameters(Publisher, self, name, qos, qos_overriding_options)
         inner = self._graphflow
         callbacks = event_callbacks or PublisherEventCallbacks()
-        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger)
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger.name)
         told = dispatcher(handlers)
         with self.handle:
             endpoint = held.add(
@@ -271,7 +271,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             _declare_qos_parameters(Subscription, self, name, qos, qos_overriding_options)
         inner = self._graphflow
         callbacks = event_callbacks or SubscriptionEventCallbacks()
-        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger)
+        handlers = callbacks.create_event_handlers(group, None, topic, inner.bell, inner.logger.name)
         told, mark = dispatcher(handlers), _Mark(inner.bell)
         with self.handle:
             endpoint = held.add(
