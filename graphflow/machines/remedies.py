@@ -73,9 +73,7 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield _text(f"let on_start return: move the wait in {graph.activities[edge.to].line} into a @task")
         return
     if isinstance(edge.via, SetBy) and edge.via.is_held:
-        holder = graph.activities[edge.to]
-        wait = "await" if holder.is_async else "wait"
-        yield _text(f"move the {wait} in {holder.line}", f"out of the `with {edge.via.what}` block around it")
+        yield from _apart_from_the_lock(edge.via.what, graph.activities[edge.to])
     if queue is None or group is None:
         return
     if queue.label.startswith("reply "):
@@ -90,6 +88,18 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         made = [f"{own} = Group(None),", f"and group={own} where it is declared"]
         made = made if queue.is_declared else ["group=Group(None) where it is made"]
         yield _text(f"let several runs of {queue.handler} overlap:", *made)
+
+
+def _apart_from_the_lock(lock: str, holder: ActivityView) -> Iterator[str]:
+    """What ends a wait for a lock whose holder waits as well."""
+    wait, other = "await" if holder.is_async else "wait", holder.wait
+    if isinstance(other, SetBy) and other.is_held and not holder.is_async:
+        if other.what == lock:
+            yield _text(f"let {lock} be a threading.RLock(), which can be entered again from within")
+        else:
+            yield _text(f"take {lock} and {other.what} in the same order everywhere")
+        return
+    yield _text(f"move the {wait} in {holder.line}", f"to where it does not hold {lock}")
 
 
 def _off_the_loop(edge: Edge, graph: WaitGraph) -> Iterator[str]:

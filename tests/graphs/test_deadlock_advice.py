@@ -195,6 +195,8 @@ def test_the_line_of_a_lock(lab: Lab) -> None:
     up = lab.up({"/bank": "class: nodes.student:Bank", "/auditor": "class: nodes.student:Auditor"})
     up.wait_for(in_ring(3, "LIKELY DEADLOCK"))
     up.wait_for("service balance of /bank waits for self.vault   (student.py:")
-    up.wait_for(f"move the await in student.py:{line_of('stuck', 'advice/lock.py')} out of the `with self.vault` block")
+    up.wait_for(
+        f"move the await in student.py:{line_of('stuck', 'advice/lock.py')} to where it does not hold self.vault"
+    )
     assert up.end() == 0
     assert "concurrency:" not in up.text

@@ -266,7 +266,7 @@ def test_a_lock_that_is_held() -> None:
     lines = report(replace(TICK, id="a", wait=held, age=9.0), other, MOTION)
 
     assert lines[2] == "    -> which task run of /arm holds"
-    assert "  move the await in b.py:7 out of the `with self.lock` block around it" in lines
+    assert "  move the await in b.py:7 to where it does not hold self.lock" in lines
 
 
 def test_a_blocked_loop() -> None:

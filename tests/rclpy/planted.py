@@ -20,6 +20,7 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.node import Node
 from rclpy.task import Future
+from tests.rclpy.store import Store
 
 
 class Asker(Node):
@@ -394,6 +395,40 @@ class FixedCallsInsideALock(CallsInsideALock):
             self.done.set()
 
 
+class CrossesLocks(Waits):
+    """Two callbacks take two locks, each the other first: one of them by `acquire`, and of another object."""
+
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+    def __init__(self) -> None:
+        self.store = Store()
+        super().__init__()
+
+    def tick(self) -> None:
+        with self.lock:
+            time.sleep(0.3)
+            with self.store.lock:  # stuck: CrossesLocks
+                self.done.set()
+
+    def arrive(self) -> None:
+        self.other.cancel()
+        self.store.lock.acquire()
+        try:
+            time.sleep(0.3)
+            with self.lock:
+                self.flag = True
+        finally:
+            self.store.lock.release()
+
+
+class FixedCrossesLocks(CrossesLocks):
+    def arrive(self) -> None:
+        self.other.cancel()
+        with self.lock, self.store.lock:
+            self.flag = True
+
+
 class WaitsForWhatFollows(Asker):
     """What sets it is called when the answer has been taken."""
 
@@ -592,7 +627,8 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),
-    (CallsInsideALock, FixedCallsInsideALock, "out of the `with self.lock` block"),
+    (CallsInsideALock, FixedCallsInsideALock, "to where it does not hold self.lock"),
+    (CrossesLocks, FixedCrossesLocks, "in the same order everywhere"),
     (WaitsForWhatFollows, FixedWaitsForWhatFollows, OWN),
     (PollsWhatAGoalSets, FixedPollsWhatAGoalSets, "make tick of /actor with callback_group=Mutually"),
     (DrivesThere, FixedDrivesThere, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup(),"),

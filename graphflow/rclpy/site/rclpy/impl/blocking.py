@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import ast
-import threading
 from collections.abc import Iterator
 from types import FrameType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.source import Unknown, source_of
-from graphflow.deadlock.syntax import first_line, syntax_of
-from graphflow.deadlock.user_code import is_users
+from graphflow.deadlock.source import Unknown
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
+from rclpy.impl.locks import Entering, entered_at, function_of
 from rclpy.impl.stacks import Level
 from rclpy.task import Future
 from rclpy.timer import Rate, Timer
@@ -26,7 +24,6 @@ _FUTURES = (
 """Functions that block until a future is done, which they call `future`."""
 _SLEEP = Rate.sleep.__code__
 _SEARCHED = (*_FUTURES, _SLEEP)
-_LOCKS = (type(threading.Lock()), type(threading.RLock()))
 
 
 class Blocked(NamedTuple):
@@ -34,8 +31,7 @@ class Blocked(NamedTuple):
 
     future: Future[Any] | None = None
     timer: Timer | None = None
-    lock: str = ""
-    """The attribute of `self` in the innermost frame that is a lock."""
+    lock: Entering | None = None
     timeout: float | None = None
     """Seconds until it gives up, from when it began."""
 
@@ -54,7 +50,7 @@ def blocked(level: Level) -> Blocked:
     users = level.innermost
     if users is None:
         return Blocked()
-    return Blocked(future=_polled(users), lock=_entering(users) if users is level.frames[-1] else "")
+    return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
 
 
 # a loop that asks a future whether it is done
@@ -63,7 +59,7 @@ def blocked(level: Level) -> Blocked:
 def _polled(frame: FrameType) -> Future[Any] | None:
     """The future that the innermost loop around a line asks, if that is all that ends the loop."""
     try:
-        function = _function(frame)
+        function = function_of(frame)
     except Unknown:
         return None
     loops = [n for n in ast.walk(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
@@ -105,74 +101,5 @@ def _value(expression: ast.expr, frame: FrameType) -> Future[Any] | None:
     return found if isinstance(found, Future) else None
 
 
-# locks
-
-
-def _entering(frame: FrameType) -> str:
-    """The attribute of `self` that is a lock and that a line waits to acquire; empty if it does not."""
-    own = frame.f_locals.get("self")
-    try:
-        function = _function(frame)
-    except Unknown:
-        return ""
-    for node in (n for n in ast.walk(function) if isinstance(n, ast.With)):
-        for item in node.items:
-            expression = item.context_expr
-            name = _own(expression)
-            is_here = expression.lineno <= frame.f_lineno < node.body[0].lineno  # on one line, it may be inside
-            if name and is_here and isinstance(vars(own).get(name), _LOCKS):
-                return name
-    return ""
-
-
-def holds(frame: FrameType, name: str, instance: object) -> bool:
-    """Whether the code of a frame is inside `with self.name`, with that instance for `self`."""
-    if frame.f_locals.get("self") is not instance or not is_users(frame.f_code.co_filename):
-        return False
-    try:
-        function = _function(frame)
-    except Unknown:
-        return False
-    return any(
-        _own(item.context_expr) == name and node.body[0].lineno <= frame.f_lineno <= (node.end_lineno or 0)
-        for node in ast.walk(function)
-        if isinstance(node, ast.With)
-        for item in node.items
-    )
-
-
-def is_only_entered(name: str, instance: object) -> bool:
-    """Whether a lock is made in the constructor, entered by `with`, and known to nobody else."""
-    try:
-        source = source_of(instance)
-        uses = source.uses(name)
-    except (Unknown, TypeError, ValueError):
-        return False
-    known = all(use.kind == "entered" or (use.kind == "assigned" and use.method == "__init__") for use in uses)
-    return known and not source.foreign(name)
-
-
-def _own(expression: ast.expr) -> str:
-    """`x` of `self.x`."""
-    match expression:
-        case ast.Attribute(value=ast.Name(id="self"), attr=name):
-            return name
-    return ""
-
-
 def _spans(node: ast.stmt, line: int) -> bool:
     return node.lineno <= line <= (node.end_lineno or line)
-
-
-def _function(frame: FrameType) -> ast.AST:
-    """The source of the function, or module, of a frame. Raises Unknown if there is none."""
-    try:
-        syntax = syntax_of(frame.f_code.co_filename)
-    except (OSError, SyntaxError, ValueError):
-        raise Unknown from None
-    if frame.f_code.co_name == "<module>":
-        return syntax.module
-    for function in syntax.functions:
-        if first_line(function) == frame.f_code.co_firstlineno and function.name == frame.f_code.co_name:
-            return function
-    raise Unknown

@@ -42,7 +42,7 @@ from rclpy.action.client import ActionClient
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
-from rclpy.impl.blocking import Blocked, blocked, holds, is_only_entered
+from rclpy.impl.blocking import blocked
 from rclpy.impl.entities import (
     Role,
     after_answers,
@@ -55,6 +55,7 @@ from rclpy.impl.entities import (
     role_of,
     served,
 )
+from rclpy.impl.locks import Entering, is_inside, is_kept
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
 from rclpy.impl.subjects import Subject
@@ -357,8 +358,8 @@ class _Look:
             return Call(self._tick(found.timer), "rate"), None
         if level.waiting is not None or node is None:
             return FREE, None
-        if found.lock:
-            return self._of_lock(found, level, node, run), None
+        if found.lock is not None:
+            return self._of_lock(found.lock, level, run), None
         return self._closed_world(level, None, node, run), None
 
     def _of_future(self, future: Future[Any], level: Level, node: Any, run: Run | None) -> Condition:
@@ -389,21 +390,15 @@ class _Look:
         """How many servers there are, by service."""
         return Counter(entity.name for entity in list(self._context.cache) if entity.kind is Kind.SERVICE)
 
-    def _of_lock(self, found: Blocked, level: Level, node: Any, run: Run | None) -> Condition:
-        """A lock of the node's that others are inside of."""
-        users = level.innermost
-        if users is None or users.f_locals.get("self") is not node or not is_only_entered(found.lock, node):
+    def _of_lock(self, entering: Entering, level: Level, run: Run | None) -> Condition:
+        """A lock that others are inside of."""
+        others = [(other, there.frames) for other, there in self._levels.items() if other is not run]
+        if run is not None:
+            others.append((run, level.frames[:-1]))  # it may be inside itself
+        inside = [(one, frames) for one, frames in others if any(is_inside(f, entering.lock) for f in frames)]
+        if len(inside) != 1 or not is_kept(entering, [*level.frames, *inside[0][1]]):
             return FREE
-        inside = [
-            self._id(other)
-            for other, there in self._levels.items()
-            if other is not run and any(holds(frame, found.lock, node) for frame in there.frames)
-        ]
-        if run is not None and any(holds(frame, found.lock, node) for frame in level.frames[:-1]):
-            inside.append(self._id(run))  # it is inside itself
-        if len(inside) != 1:
-            return FREE
-        return SetBy(f"self.{found.lock}", (), tuple(inside), True, "releases")
+        return SetBy(entering.text, (), (self._id(inside[0][0]),), True, "releases")
 
     def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
         """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""

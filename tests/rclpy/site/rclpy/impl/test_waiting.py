@@ -69,6 +69,8 @@ class Program:
             self.node.items.put(None)
         if hasattr(self.node, "flag"):
             self.node.flag = True
+        if hasattr(self.node, "store") and self.node.store.lock.locked():
+            self.node.store.lock.release()
         self.thread.join(LIMIT)
         assert not self.thread.is_alive()
 

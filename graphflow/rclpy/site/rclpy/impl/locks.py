@@ -1,0 +1,137 @@
+"""Locks that code waits for, and who is inside of them: read from frames, and from the source of their functions."""
+
+from __future__ import annotations
+
+import ast
+import threading
+from collections.abc import Iterable, Iterator
+from types import FrameType
+from typing import Any, NamedTuple
+
+from graphflow.deadlock.source import Unknown
+from graphflow.deadlock.syntax import Syntax, first_line, syntax_of
+from graphflow.deadlock.user_code import is_users
+
+_LOCKS = (type(threading.Lock()), type(threading.RLock()))
+
+
+class Entering(NamedTuple):
+    """A lock that a line waits to acquire."""
+
+    lock: Any
+    text: str
+    """As it is written: `self.account.lock`."""
+
+
+def entered_at(frame: FrameType) -> Entering | None:
+    """The lock that the line of a frame enters by `with`, or acquires without a limit; None for none, or several."""
+    try:
+        function = function_of(frame)
+    except Unknown:
+        return None
+    found = []
+    for block, expression in _entries(function):
+        if expression.lineno <= frame.f_lineno < block.body[0].lineno:  # on one line, it may be inside
+            found.append(expression)
+    for expression, call in _calls(function, "acquire"):
+        if call.lineno <= frame.f_lineno <= (call.end_lineno or 0):
+            found.append(expression)
+    locks = [Entering(lock, ast.unparse(one)) for one in found if isinstance(lock := _value(one, frame), _LOCKS)]
+    return locks[0] if len(locks) == 1 else None
+
+
+def is_inside(frame: FrameType, lock: object) -> bool:
+    """Whether the code of a frame holds a lock: within `with`, or between `acquire()` and `release()`."""
+    if not is_users(frame.f_code.co_filename):
+        return False
+    try:
+        function = function_of(frame)
+    except Unknown:
+        return False
+    for block, expression in _entries(function):
+        is_in = block.body[0].lineno <= frame.f_lineno <= (block.end_lineno or 0)
+        if is_in and _value(expression, frame) is lock:
+            return True
+    taken, given = (
+        [call.lineno for expression, call in _calls(function, way) if _value(expression, frame) is lock]
+        for way in ("acquire", "release")
+    )
+    before = [line for line in (*taken, *given) if line < frame.f_lineno]
+    return bool(before) and max(before) in taken and any(line >= frame.f_lineno for line in given)
+
+
+def is_kept(entering: Entering, frames: Iterable[FrameType]) -> bool:
+    """Whether whoever acquires a lock releases it, as far as the files of some frames show.
+
+    One that is released elsewhere, or given to other code, such as a `Condition`, may be free all the same.
+    """
+    name = entering.text.rpartition(".")[2]
+    if not name.isidentifier():  # a part of a container
+        return False
+    try:
+        files = [syntax_of(file) for file in {frame.f_code.co_filename for frame in frames} if is_users(file)]
+    except (OSError, SyntaxError, ValueError):
+        return False
+    return not any(_is_let_go(syntax, name) for syntax in files)
+
+
+def _is_let_go(syntax: Syntax, name: str) -> bool:
+    for function in syntax.functions:
+        called = [call.func for call in ast.walk(function) if isinstance(call, ast.Call)]
+        ways = {way.attr for way in called if isinstance(way, ast.Attribute) and _last(way.value) == name}
+        if "release" in ways and "acquire" not in ways:
+            return True
+    given = (
+        argument
+        for call in ast.walk(syntax.module)
+        if isinstance(call, ast.Call)
+        for argument in (*call.args, *(keyword.value for keyword in call.keywords))
+    )
+    return any(_last(argument) == name for argument in given)
+
+
+def _entries(function: ast.AST) -> Iterator[tuple[ast.With, ast.expr]]:
+    """What is entered by `with`."""
+    for block in ast.walk(function):
+        if isinstance(block, ast.With):
+            yield from ((block, item.context_expr) for item in block.items)
+
+
+def _calls(function: ast.AST, way: str) -> Iterator[tuple[ast.expr, ast.Call]]:
+    """What `acquire()` or `release()` is called on, as a statement and without arguments."""
+    for statement in ast.walk(function):
+        match statement:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=attr), args=[], keywords=[]) as call):
+                if attr == way:
+                    yield owner, call
+
+
+def _last(expression: ast.expr) -> str:
+    """`lock` of `self.account.lock`."""
+    return ast.unparse(expression).rpartition(".")[2] if isinstance(expression, (ast.Name, ast.Attribute)) else ""
+
+
+def _value(expression: ast.expr, frame: FrameType) -> Any:
+    """What an expression is in a frame: a name, an attribute that is stored, or part of a container by a constant."""
+    match expression:
+        case ast.Name(id=name):
+            return frame.f_locals.get(name, frame.f_globals.get(name))
+        case ast.Attribute(value=owner, attr=name):
+            found = _value(owner, frame)
+            spaces = [getattr(found, "__dict__", {}), *(vars(cls) for cls in type(found).__mro__)]
+            return next((space[name] for space in spaces if name in space), None)
+    return None
+
+
+def function_of(frame: FrameType) -> ast.AST:
+    """The source of the function, or module, of a frame. Raises Unknown if there is none."""
+    try:
+        syntax = syntax_of(frame.f_code.co_filename)
+    except (OSError, SyntaxError, ValueError):
+        raise Unknown from None
+    if frame.f_code.co_name == "<module>":
+        return syntax.module
+    for function in syntax.functions:
+        if first_line(function) == frame.f_code.co_firstlineno and function.name == frame.f_code.co_name:
+            return function
+    raise Unknown

@@ -1,0 +1,143 @@
+"""Locks that code waits for, and who is inside of them."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from rclpy.impl.locks import Entering, entered_at, is_inside, is_kept
+
+WHOSE = threading.Lock()
+
+
+class Account:
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+
+
+class Bank:
+    """Each method yields its frame, inside of a lock and outside of it."""
+
+    shared = threading.Lock()
+
+    def __init__(self) -> None:
+        self.account = Account()
+        self.first, self.signal, self.given = threading.Lock(), threading.Lock(), threading.Lock()
+        self.condition = threading.Condition(self.given)
+
+    def enters(self) -> Any:
+        with self.first:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def enters_part(self) -> Any:
+        account = self.account
+        with account.lock:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def enters_what_all_have(self) -> Any:
+        with self.shared, WHOSE:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def acquires(self) -> Any:
+        self.first.acquire()
+        try:
+            yield sys._getframe()
+        finally:
+            self.first.release()
+        yield sys._getframe()
+
+    def takes_signal(self) -> Any:
+        self.signal.acquire()
+        yield sys._getframe()
+
+    def gives_signal(self) -> None:
+        self.signal.release()
+
+    def tries(self) -> Any:
+        if self.first.acquire(timeout=1.0):
+            yield sys._getframe()
+            self.first.release()
+
+    def is_inside_on_one_line(self) -> Any:
+        # fmt: off
+        with self.first: yield sys._getframe()  # noqa: E701 - that is the case
+        # fmt: on
+
+
+@pytest.mark.parametrize(
+    ("way", "lock"),
+    [
+        ("enters", lambda bank: bank.first),
+        ("enters_part", lambda bank: bank.account.lock),
+        ("enters_what_all_have", lambda bank: bank.shared),
+        ("enters_what_all_have", lambda bank: WHOSE),
+        ("acquires", lambda bank: bank.first),
+    ],
+)
+def test_who_is_inside(way: str, lock: Any) -> None:
+    """From the first line to the last; another object's lock is another."""
+    bank = Bank()
+    steps = getattr(bank, way)()
+    frame = next(steps)
+    others = Bank().first
+    assert is_inside(frame, lock(bank))
+    assert not is_inside(frame, others)
+    assert next(steps) is frame
+    assert not is_inside(frame, lock(bank))
+
+
+@pytest.mark.parametrize("way", ["takes_signal", "tries"])
+def test_who_may_be_inside_or_not(way: str) -> None:
+    """What is not released there, or was perhaps not acquired."""
+    bank = Bank()
+    frame = next(getattr(bank, way)())
+    for value in vars(bank).values():
+        assert not is_inside(frame, value)
+
+
+def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
+    """So it is nobody who waits."""
+    assert entered_at(next(Bank().is_inside_on_one_line())) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"), [("self.first", True), ("self.account.lock", True), ("self.signal", False), ("self.given", False)]
+)
+def test_locks_that_others_may_release(text: str, kept: bool) -> None:
+    """By a method that has not acquired it, or since it is known elsewhere."""
+    frame = next(Bank().enters())
+    assert is_kept(Entering(object(), text), [frame]) is kept
+
+
+@pytest.mark.parametrize("way", ["enters", "acquires", "enters_part"])
+def test_code_that_waits_is_where_it_enters(way: str) -> None:
+    """As soon as it stands there."""
+    bank, seen = Bank(), threading.Event()
+    lock = bank.account.lock if way == "enters_part" else bank.first
+
+    def enter() -> None:
+        seen.set()
+        steps = getattr(bank, way)()
+        next(steps)
+        steps.close()
+
+    def standing() -> FrameType:
+        frame: FrameType = sys._current_frames()[thread.ident or 0]
+        return frame
+
+    with lock:
+        thread = threading.Thread(target=enter)
+        thread.start()
+        assert seen.wait(10.0)
+        while (found := entered_at(standing())) is None:
+            assert thread.is_alive()
+    thread.join(10.0)
+    assert found.lock is lock
+    assert found.text == {"enters_part": "account.lock"}.get(way, "self.first")
