@@ -13,6 +13,7 @@ from graphflow.machines.wait_graph import (
     Call,
     Free,
     GroupView,
+    Join,
     Opening,
     QueueView,
     SetBy,
@@ -111,6 +112,8 @@ def wanted(edge: Edge, graph: WaitGraph) -> str:
             return "a thread, to go on" if is_thread else "its slot, to return to its group"
         case SetBy(what=what):
             return what
+        case Join() if (other := graph.activities.get(edge.to)) and other.label.startswith("thread "):
+            return f"{other.label}, which works for it"
         case Free():
             return "its event loop"
         case _:

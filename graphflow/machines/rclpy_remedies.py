@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from graphflow.machines.clauses import filled
 from graphflow.machines.rings import Deadlock, Edge
-from graphflow.machines.wait_graph import ActivityView, Call, GroupView, QueueView, SetBy, WaitGraph
+from graphflow.machines.wait_graph import ActivityView, Call, GroupView, Join, QueueView, SetBy, WaitGraph
 
 _REENTRANT = "callback_group=ReentrantCallbackGroup()"
 _EXCLUSIVE = "callback_group=MutuallyExclusiveCallbackGroup()"
@@ -124,6 +124,8 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
         case Call() as call:
             later = "then future.add_done_callback(...)"
             return [f"do not block in {place}:", f"future = {_asynchronous(call)},", later]
+        case Join():
+            return [f"return from {handler} instead of waiting for a thread in {place}:", "let that go on by itself"]
         case SetBy(what=what, is_held=False, queues=queues):
             others = " or ".join(_handlers([name for name in queues if name != _own(holder, graph)], graph))
             if answers:

@@ -16,6 +16,8 @@ logger = logging.getLogger("graphflow.rendezvous")
 
 _JITTER = 0.05
 _RETRY = 0.5
+_PATIENCE = 5
+"""Attempts in vain before somebody is told: commands that come and go may be the rendezvous in turn."""
 
 
 class Takeover:
@@ -34,7 +36,8 @@ class Takeover:
         self._watcher: Closable | None = None
         self._gone: set[str] = set()
         """Sessions whose connection has ended. Zenoh reports that before it takes a router off its own list."""
-        self._warned = False
+        self._failures = 0
+        """Attempts in vain since the last that was not."""
         self._closed = False
 
     def guard(self, session: ZenohSession) -> None:
@@ -85,14 +88,14 @@ class Takeover:
             return
         self._router = attempt.result()
         if self._router is not None:
-            self._warned = False
+            self._failures = 0
             logger.debug("took over the rendezvous at %s", rendezvous_endpoint())
         elif self._is_needed():
             self._alarm = self._loop.call_later(_RETRY, self._try_again)
 
     def _try_again(self) -> None:
-        if self._is_needed() and not self._warned:
-            self._warned = True
+        self._failures = self._failures + 1 if self._is_needed() else 0
+        if self._failures == _PATIENCE:
             logger.warning("%s", occupied(rendezvous_endpoint(), "keeps newcomers from finding this process"))
         self._try()
 

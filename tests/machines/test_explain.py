@@ -135,12 +135,14 @@ def test_headlines(deadlock: Deadlock, words: str) -> None:
         (SetBy("self.arrived", ()), "self.arrived"),
         (FREE, "its event loop"),
         (Join("b"), "another task"),
+        (Join("t"), "thread Thread-1, which works for it"),
         (AnyOf(()), "another task"),
     ],
 )
 def test_what_is_wanted(via: Condition, words: str) -> None:
     """Each kind of wait has its words."""
-    assert wanted(Edge("b", via), WaitGraph()) == words
+    thread = ActivityView("t", "thread Thread-1", "/arm")
+    assert wanted(Edge(via.activity if isinstance(via, Join) else "b", via), WaitGraph({"t": thread})) == words
 
 
 @pytest.mark.parametrize(

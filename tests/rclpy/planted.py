@@ -5,6 +5,7 @@ The line in which each is stuck has a comment with the name of its class. `Fixed
 
 from __future__ import annotations
 
+import concurrent.futures
 import queue
 import threading
 import time
@@ -429,6 +430,39 @@ class FixedCrossesLocks(CrossesLocks):
             self.flag = True
 
 
+class JoinsAThread(Asker):
+    """What the thread asks for is kept out by who waits for its end."""
+
+    def tick(self) -> None:
+        asking = threading.Thread(target=self.ask)
+        asking.start()
+        asking.join()  # stuck: JoinsAThread
+        self.done.set()
+
+    def ask(self) -> None:
+        self.client.call(Trigger.Request())
+
+
+class FixedJoinsAThread(JoinsAThread):
+    threads = 2
+    timer_group = MutuallyExclusiveCallbackGroup
+
+
+class WaitsForAPool(Asker):
+    """The same by way of a pool."""
+
+    threads = 2
+
+    def tick(self) -> None:
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            pool.submit(self.client.call, Trigger.Request()).result()  # stuck: WaitsForAPool
+        self.done.set()
+
+
+class FixedWaitsForAPool(WaitsForAPool):
+    timer_group = MutuallyExclusiveCallbackGroup
+
+
 class WaitsForWhatFollows(Asker):
     """What sets it is called when the answer has been taken."""
 
@@ -628,6 +662,8 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),
     (CallsInsideALock, FixedCallsInsideALock, "to where it does not hold self.lock"),
+    (JoinsAThread, FixedJoinsAThread, OWN),
+    (WaitsForAPool, FixedWaitsForAPool, OWN),
     (CrossesLocks, FixedCrossesLocks, "in the same order everywhere"),
     (WaitsForWhatFollows, FixedWaitsForWhatFollows, OWN),
     (PollsWhatAGoalSets, FixedPollsWhatAGoalSets, "make tick of /actor with callback_group=Mutually"),

@@ -147,6 +147,17 @@ class Waiter(Node):
         while rclpy.ok() and not self.finished:
             time.sleep(0.01)
 
+    def join(self) -> None:
+        asking = threading.Thread(target=self.call)
+        asking.start()
+        asking.join()
+
+    def pool(self) -> None:
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            slow = [pool.submit(time.sleep, LONG), pool.submit(self.call)]
+            concurrent.futures.wait(slow)
+            slow[1].result()
+
     def take(self) -> None:
         self.items.get()
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import ast
+import concurrent.futures.thread
+import sys
+import threading
 from collections.abc import Iterator
 from types import FrameType
 from typing import Any, NamedTuple
@@ -26,12 +29,19 @@ _SLEEP = Rate.sleep.__code__
 _SEARCHED = (*_FUTURES, _SLEEP)
 
 
+_JOIN = threading.Thread.join.__code__
+_RESULT = concurrent.futures.Future.result.__code__
+_POOL = concurrent.futures.thread.__file__
+
+
 class Blocked(NamedTuple):
     """What code waits for; one of these, or nothing that is known."""
 
     future: Future[Any] | None = None
     timer: Timer | None = None
     lock: Entering | None = None
+    thread: int | None = None
+    """The identity of a thread whose end, or whose work in a pool, is waited for."""
     timeout: float | None = None
     """Seconds until it gives up, from when it began."""
 
@@ -47,10 +57,25 @@ def blocked(level: Level) -> Blocked:
                 return Blocked(timer=names["self"]._timer)
             if names.get("future") is not None:
                 return Blocked(future=names["future"], timeout=limit)
+        if frame.f_code in (_JOIN, _RESULT):
+            names = frame.f_locals
+            thread = names["self"].ident if frame.f_code is _JOIN else _worker_of(names["self"])
+            return Blocked(thread=thread, timeout=names.get("timeout"))
     users = level.innermost
     if users is None:
         return Blocked()
     return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
+
+
+def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
+    """The thread of a pool that works for a future."""
+    for thread, innermost in sys._current_frames().items():
+        frame: FrameType | None = innermost
+        while frame is not None:
+            if frame.f_code.co_filename == _POOL and getattr(frame.f_locals.get("self"), "future", None) is future:
+                return thread
+            frame = frame.f_back
+    return None
 
 
 # a loop that asks a future whether it is done

@@ -165,6 +165,7 @@ class _Look:
         mine = [executor for executor in executors() if executor.context.life is waiting._life]
         runs = [run for executor in mine for run in list(executor.spinning.running)]
         self._runs: dict[Run, None] = dict.fromkeys([*runs, *self._levels])
+        self._awaited = {blocked(level).thread for level in self._levels.values()}
         self._now = time.monotonic()
 
     def _id(self, thing: Any, prefix: str = "r") -> str:
@@ -247,7 +248,7 @@ class _Look:
         runs = [level for level in stack.levels if level.run is not None]
         held = (f"{self._zid}:spinner",) if stack.may_spin and f"{self._zid}:spinner" in self._groups else ()
         if not runs:
-            if held and not stack.is_idle:
+            if (held and not stack.is_idle) or stack.thread.ident in self._awaited:
                 self._add_thread(stack, stack.levels[0], held)
             elif held:
                 self._add_idle(stack, held)
@@ -358,6 +359,9 @@ class _Look:
             return Call(self._tick(found.timer), "rate"), None
         if level.waiting is not None or node is None:
             return FREE, None
+        if found.thread is not None:
+            joined = next((stack for stack in self._stacks if stack.thread.ident == found.thread), None)
+            return FREE if joined is None else Join(self._id(joined.thread, "t")), found.timeout
         if found.lock is not None:
             return self._of_lock(found.lock, level, run), None
         return self._closed_world(level, None, node, run), None
