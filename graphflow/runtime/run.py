@@ -88,14 +88,14 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     def caught(*_: object) -> None:
         nonlocal first
-        now = time.monotonic()
+        now, is_first = time.monotonic(), not first
         first = first or now
         if now - first > SAME_SIGNAL:
             os.write(2, b"ended without cleanup: it was asked twice\n")
             os._exit(1)
         if not loop.is_closed():
             loop.call_soon_threadsafe(stop.set)
-        if not reminder.is_alive() and not reminder.finished.is_set():
+        if is_first and not reminder.finished.is_set():  # another may come while it is being started
             reminder.start()
 
     # Not the loop's own handlers, which would wait for a handler that does not return.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.company import Company
-from graphflow.runtime.run import _stop_signals, make, run, running, serve
+from graphflow.runtime.run import _stop_signals, catch_signals, make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 from tests.cases import slow
@@ -335,3 +336,25 @@ def test_a_hangup_that_is_ignored() -> None:
         assert signal.SIGHUP in list(_stop_signals())
     finally:
         signal.signal(signal.SIGHUP, former)
+
+
+def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As when a process and its group are signalled: the second, while the first is being handled, starts nothing."""
+    started: list[threading.Timer] = []
+
+    def start(reminder: threading.Timer) -> None:
+        started.append(reminder)
+        if len(started) == 1:
+            signal.raise_signal(signal.SIGTERM)
+
+    async def be_asked() -> None:
+        restore = catch_signals(stop := asyncio.Event())
+        try:
+            signal.raise_signal(signal.SIGTERM)
+            await asyncio.wait_for(stop.wait(), 5.0)
+        finally:
+            restore()
+
+    monkeypatch.setattr(threading.Timer, "start", start)
+    asyncio.run(be_asked())
+    assert len(started) == 1
