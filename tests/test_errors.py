@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -51,12 +52,13 @@ def whole_tree(cls: type[BaseException]) -> Iterator[type[BaseException]]:
 
 def import_everything() -> None:
     """Import every module of the package, so that no class is missing."""
-    root = Path(graphflow.__file__).parent
+    root, handler = Path(graphflow.__file__).parent, signal.getsignal(signal.SIGINT)
     for path in set(root.rglob("*.py")) - {root / "__main__.py"}:  # which would run a command
         if (root / "rclpy" / "site") in path.parents:  # what is imported under ROS's names, and raises rclpy's errors
             continue
         words = path.relative_to(root.parent).with_suffix("").parts
         import_module(".".join(words).removesuffix(".__init__"))
+    signal.signal(signal.SIGINT, handler)  # the way in has its own, which ends the process
 
 
 def test_the_drawing_is_the_tree() -> None:
