@@ -59,8 +59,9 @@ def _named(what: str, root: Path) -> type[Node]:
         known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
         workspace = find_workspace(Path.cwd()).packages
         if what in workspace and not workspace[what].executables:
-            compiled = ", ".join(sorted(workspace[what].compiled))
-            why = f"; {compiled} is C++, which only colcon builds" if compiled else ""
+            compiled = sorted(workspace[what].compiled)
+            verb = "is" if len(compiled) == 1 else "are"
+            why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
             raise UsageFault(f"the package {what!r} has no executable that graphflow can run{why}") from None
         known |= {*(package for package, _ in EXECUTABLES), *workspace}
         raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None

@@ -255,7 +255,8 @@ class _Translation:
         spec: dict[str, Item] = {}
         if "default" in item.entries:
             default = item.entries["default"]
-            spec["default"], self._texts[name.value] = typed(default), default._replace(value=str(default.value))
+            text = str(default.value).lower() if isinstance(default.value, bool) else str(default.value)
+            spec["default"], self._texts[name.value] = typed(default), default._replace(value=text)
         if "description" in item.entries and item.entries["description"].value:
             spec["doc"] = item.entries["description"]
         if "choice" in item.entries:

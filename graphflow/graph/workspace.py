@@ -160,7 +160,7 @@ def find_workspace(start: Path) -> Workspace:
     highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
     if highest is not None:  # beside it there may be others, and below the folder that one stands in
         here = Path.cwd()
-        if here in highest.parent.parents:
+        if here in highest.parent.parents and here not in (Path(here.anchor), Path.home()):  # which hold anything
             around = read_workspace(here, here)
             if any(package.folder == highest for package in around.packages.values()):
                 return around

@@ -405,11 +405,13 @@ launch:
 - arg: {name: flag, default: 'True'}
 - arg: {name: id, default: '007'}
 - arg: {name: any, default: '0'}
+- arg: {name: plain, default: true}
 - executable:
     cmd: echo $(var flag) v$(var id) --any=$(var any) '$(var any) $(var id)'
     name: $(eval '"$(var flag)"[:1]')
 - executable: {cmd: 'true', name: same, if: $(equals $(var id) 007)}
 - executable: {cmd: 'true', name: on, if: $(var flag)}
+- executable: {cmd: echo $(var plain), name: word}
 """
 
 
@@ -417,9 +419,10 @@ def test_arguments_are_texts(tmp_path: Path) -> None:
     """As they are written; where a value is wanted, they are read."""
     (tmp_path / "a.launch.yaml").write_text(TEXTS)
     plan = load(tmp_path / "a.launch.yaml", ["any:=auto"])
-    assert [node.name for node in plan.nodes] == ["/T", "/same", "/on"]
+    assert [node.name for node in plan.nodes] == ["/T", "/same", "/on", "/word"]
+    assert plan.nodes[3].command == ("echo", "true")
     assert plan.nodes[0].command == ("echo", "True", "v007", "--any=auto", "auto 007")
-    assert plan.args == {"flag": True, "id": 7, "any": "auto"}
+    assert plan.args == {"flag": True, "id": 7, "any": "auto", "plain": True}
 
 
 def test_what_belongs_to_a_node_that_is_left_out(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from types import FrameType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.source import Unknown
-from graphflow.deadlock.syntax import Syntax, first_line, syntax_of
+from graphflow.deadlock.syntax import Syntax, first_line, syntax_of, walk
 from graphflow.deadlock.user_code import is_users
 
 _LOCKS = (type(threading.Lock()), type(threading.RLock()))
@@ -66,8 +66,6 @@ def is_kept(entering: Entering, frames: Iterable[FrameType]) -> bool:
     One that is released elsewhere, or given to other code, such as a `Condition`, may be free all the same.
     """
     name = entering.text.rpartition(".")[2]
-    if not name.isidentifier():  # a part of a container
-        return False
     try:
         files = [syntax_of(file) for file in {frame.f_code.co_filename for frame in frames} if is_users(file)]
     except (OSError, SyntaxError, ValueError):
@@ -76,18 +74,18 @@ def is_kept(entering: Entering, frames: Iterable[FrameType]) -> bool:
 
 
 def _is_let_go(syntax: Syntax, name: str) -> bool:
+    """Whether something of that name is released without having been acquired there, or is more than used in place."""
     for function in syntax.functions:
         called = [call.func for call in ast.walk(function) if isinstance(call, ast.Call)]
         ways = {way.attr for way in called if isinstance(way, ast.Attribute) and _last(way.value) == name}
-        if "release" in ways and "acquire" not in ways:
+        is_entered = any(_last(expression) == name for _, expression in _entries(function))
+        if "release" in ways and (is_entered or "acquire" not in ways):
             return True
-    given = (
-        argument
-        for call in ast.walk(syntax.module)
-        if isinstance(call, ast.Call)
-        for argument in (*call.args, *(keyword.value for keyword in call.keywords))
-    )
-    return any(_last(argument) == name for argument in given)
+    for node, parents in walk(syntax.module):
+        is_read = isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Load) and _last(node) == name
+        if is_read and not isinstance(parents[-1], (ast.withitem, ast.Attribute)):
+            return True
+    return False
 
 
 def _entries(function: ast.AST) -> Iterator[tuple[ast.With, ast.expr]]:
@@ -112,7 +110,7 @@ def _last(expression: ast.expr) -> str:
 
 
 def _value(expression: ast.expr, frame: FrameType) -> Any:
-    """What an expression is in a frame: a name, an attribute that is stored, or part of a container by a constant."""
+    """What an expression is in a frame: a name, or an attribute that is stored; None for anything else."""
     match expression:
         case ast.Name(id=name):
             return frame.f_locals.get(name, frame.f_globals.get(name))

@@ -408,7 +408,7 @@ class _Look:
         """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
-        tasks = [run for run in self._runs if getattr(run.called, "__self__", None) is node]
+        tasks = [task for task in self._runs if getattr(task.called, "__self__", None) is node]
         subject = Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
         found = setters(level.frames, future, subject)  # type: ignore[arg-type]
         others = [Subject(other) for other in self._nodes if other is not node]

@@ -10,65 +10,7 @@ from typing import Any
 import pytest
 
 from rclpy.impl.locks import Entering, entered_at, is_inside, is_kept
-
-WHOSE = threading.Lock()
-
-
-class Account:
-    def __init__(self) -> None:
-        self.lock = threading.RLock()
-
-
-class Bank:
-    """Each method yields its frame, inside of a lock and outside of it."""
-
-    shared = threading.Lock()
-
-    def __init__(self) -> None:
-        self.account = Account()
-        self.first, self.signal, self.given = threading.Lock(), threading.Lock(), threading.Lock()
-        self.condition = threading.Condition(self.given)
-
-    def enters(self) -> Any:
-        with self.first:
-            yield sys._getframe()
-        yield sys._getframe()
-
-    def enters_part(self) -> Any:
-        account = self.account
-        with account.lock:
-            yield sys._getframe()
-        yield sys._getframe()
-
-    def enters_what_all_have(self) -> Any:
-        with self.shared, WHOSE:
-            yield sys._getframe()
-        yield sys._getframe()
-
-    def acquires(self) -> Any:
-        self.first.acquire()
-        try:
-            yield sys._getframe()
-        finally:
-            self.first.release()
-        yield sys._getframe()
-
-    def takes_signal(self) -> Any:
-        self.signal.acquire()
-        yield sys._getframe()
-
-    def gives_signal(self) -> None:
-        self.signal.release()
-
-    def tries(self) -> Any:
-        if self.first.acquire(timeout=1.0):
-            yield sys._getframe()
-            self.first.release()
-
-    def is_inside_on_one_line(self) -> Any:
-        # fmt: off
-        with self.first: yield sys._getframe()  # noqa: E701 - that is the case
-        # fmt: on
+from tests.rclpy.locking import WHOSE, Bank
 
 
 @pytest.mark.parametrize(
@@ -108,7 +50,15 @@ def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "kept"), [("self.first", True), ("self.account.lock", True), ("self.signal", False), ("self.given", False)]
+    ("text", "kept"),
+    [
+        ("self.first", True),
+        ("self.account.lock", True),
+        ("self.signal", False),
+        ("self.given", False),
+        ("self.loose", False),
+        ("self.shown", False),
+    ],
 )
 def test_locks_that_others_may_release(text: str, kept: bool) -> None:
     """By a method that has not acquired it, or since it is known elsewhere."""

@@ -1,0 +1,77 @@
+"""Code that holds locks, in a file of its own: what is done to them elsewhere would count as well."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from typing import Any
+
+WHOSE = threading.Lock()
+
+
+class Account:
+    def __init__(self) -> None:
+        self.lock = threading.RLock()
+
+
+class Bank:
+    """Each method yields its frame, inside of a lock and outside of it."""
+
+    shared = threading.Lock()
+
+    def __init__(self) -> None:
+        self.account = Account()
+        self.first, self.signal, self.given = threading.Lock(), threading.Lock(), threading.Lock()
+        self.loose, self.shown = threading.Lock(), threading.Lock()
+        self.condition = threading.Condition(self.given)
+
+    def enters(self) -> Any:
+        with self.first:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def enters_part(self) -> Any:
+        account = self.account
+        with account.lock:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def enters_what_all_have(self) -> Any:
+        with self.shared, WHOSE:
+            yield sys._getframe()
+        yield sys._getframe()
+
+    def acquires(self) -> Any:
+        self.first.acquire()
+        try:
+            yield sys._getframe()
+        finally:
+            self.first.release()
+        yield sys._getframe()
+
+    def lets_go_within(self) -> Any:
+        with self.loose:
+            self.loose.release()
+            yield sys._getframe()
+            self.loose.acquire()
+
+    def shows(self) -> Any:
+        known = self.shown
+        return known
+
+    def takes_signal(self) -> Any:
+        self.signal.acquire()
+        yield sys._getframe()
+
+    def gives_signal(self) -> None:
+        self.signal.release()
+
+    def tries(self) -> Any:
+        if self.first.acquire(timeout=1.0):
+            yield sys._getframe()
+            self.first.release()
+
+    def is_inside_on_one_line(self) -> Any:
+        # fmt: off
+        with self.first: yield sys._getframe()  # noqa: E701 - that is the case
+        # fmt: on
