@@ -175,6 +175,9 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     assert said.endswith("own/a.py: 1 deadlock in the source\n")
     [way] = json.loads(machine.look("check", "own", "--json", cwd=tmp_path, code=1))["deadlocks"]
     assert way["line"] == 5
+    (tmp_path / "fine.py").write_text("import rclpy\n")
+    both = machine.look("check", "fine.py", "own/a.py", cwd=tmp_path, code=1)
+    assert both.endswith("2 paths: 1 deadlock in the source\n")
     (tmp_path / "own/a.py").write_text("import rclpy\n")
     assert "no deadlocks to be seen" in machine.look("check", "own", cwd=tmp_path)
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)

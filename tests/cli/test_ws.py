@@ -65,3 +65,21 @@ def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
     """It is said where one would be."""
     assert "go to a folder that has packages in src/" in machine.look("ws", cwd=tmp_path, code=1)
+
+
+def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
+    """It is told which one counts."""
+    (workspace / "src/more/lamp").mkdir(parents=True)
+    (workspace / "src/more/lamp/package.xml").write_text("<package><name>lamp</name></package>")
+    said = machine.look("ws", cwd=workspace, code=1)
+    assert f"src/more/lamp: another package is called 'lamp', too, and is the one that counts: {workspace}" in said
+
+
+def test_a_package_without_executables(machine: Machine, workspace: Path) -> None:
+    """It is there, and has none."""
+    cmake = "add_executable(one a.cpp)\nadd_executable(two b.cpp)"
+    (workspace / "src/lamp_interfaces/CMakeLists.txt").write_text(cmake)
+    said = machine.look("run", "lamp_interfaces", "shine", cwd=workspace, code=2)
+    assert "the package 'lamp_interfaces' has no executable that graphflow can run; one, two are C++" in said
+    said = machine.look("pkg", "executables", "lamp_interfaces", cwd=workspace)
+    assert "has no executable that graphflow can run" in said

@@ -44,7 +44,10 @@ class Robot(View):
                           else ParameterValue() for n in request.names]  # fmt: skip
                 return GetParameters.Response(values=[] if self.refuses(request.names) else values)
             case DescribeParameters.Request():
-                found = [ParameterDescriptor(name=n, type=INTEGER * (n in self.values)) for n in request.names]
+                found = [
+                    ParameterDescriptor(name=n, type=INTEGER * (n in self.values), dynamic_typing=n == "unset")
+                    for n in request.names
+                ]
                 return DescribeParameters.Response(descriptors=[] if self.refuses(request.names) else found)
             case SetParameters.Request():
                 self.values |= {p.name: p.value.integer_value for p in request.parameters}
@@ -88,6 +91,12 @@ def test_describe(remote: RemoteParameters, robot: Robot) -> None:
     robot.calls.clear()
     assert remote.describe([]) == {}
     assert robot.calls == []
+
+
+def test_a_parameter_that_is_declared_without_a_value(remote: RemoteParameters, robot: Robot) -> None:
+    """It is known, and has no type yet."""
+    robot.is_strict = False
+    assert remote.known("unset").type == 0
 
 
 def test_set(remote: RemoteParameters, robot: Robot) -> None:

@@ -79,3 +79,17 @@ def test_installing_twice_is_installing_once() -> None:
     before = len(sys.meta_path)
     finder.install()
     assert len(sys.meta_path) == before
+
+
+def test_a_package_with_code_and_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both are found, though its code lies one folder further down; a kind of which it has none is not there."""
+    folder = interfaces(tmp_path, "mixed")
+    (folder / "mixed").mkdir()
+    (folder / "mixed" / "__init__.py").write_text("KIND = 'both'\n")
+    monkeypatch.setitem(finder.KNOWN, "mixed", str(folder))
+    monkeypatch.syspath_prepend(str(folder))
+    assert importlib.import_module("mixed").KIND == "both"
+    assert importlib.import_module("mixed.msg").Speed().value == 0.0
+    with pytest.raises(ModuleNotFoundError, match=r"mixed\.action"):
+        importlib.import_module("mixed.action")
+    forget("mixed")

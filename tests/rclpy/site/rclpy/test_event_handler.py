@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from std_msgs.msg import Int32, String
 
+import rclpy
 from graphflow.runtime.events import QosEvent
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
@@ -97,3 +99,26 @@ def test_several_events_are_told_as_one() -> None:
     handler.destroy()
     handler.notice(came)
     assert not handler.is_ready(None)
+
+
+def test_warnings_are_of_the_node(node: Node, spin: Spinner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under the name of its logger."""
+    said: list[tuple[str, str]] = []
+
+    class Logger:
+        def __init__(self, name: str = "") -> None:
+            self.name = name
+
+        def get_child(self, name: str) -> Logger:
+            return Logger(name)
+
+        def warn(self, text: str) -> None:
+            said.append((self.name, text))
+
+    monkeypatch.setattr(rclpy.logging, "_root_logger", Logger())
+    node.create_subscription(String, "t", print, QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    node.create_publisher(String, "t", 1)
+    node.create_publisher(Int32, "t", 1)
+    spin(lambda: any("Incompatible type" in text for _, text in said))
+    assert {name for name, _ in said} == {node.get_logger().name}
+    assert any(text.startswith("New publisher discovered on topic 't'") for _, text in said)

@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 from example_interfaces.action import Fibonacci
 
+import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -79,3 +81,25 @@ def test_what_is_no_goal_is_refused(node: Node) -> None:
     client.destroy()
     client.destroy()
     assert node.count_clients("/fib/_action/send_goal") == 0
+
+
+def test_nobody_is_asked_for_servers_after_the_end(node: Node) -> None:
+    """So that a loop of `wait_for_server` ends."""
+    client = ActionClient(node, Fibonacci, "fib")
+    threading.Timer(0.02, rclpy.shutdown).start()
+    with pytest.raises(RCLError, match="Failed to check if action server is available"):
+        client.wait_for_server()
+
+
+def test_an_error_in_what_follows_an_answer_leaves_spin(node: Node, spin: Spinner) -> None:
+    """It is a task of the executor."""
+    ActionServer(node, Fibonacci, "fib", succeed)
+    client = ActionClient(node, Fibonacci, "fib")
+    assert client.wait_for_server(5)
+
+    def follow(future: Any) -> None:
+        raise LookupError("in what follows")
+
+    client.send_goal_async(Fibonacci.Goal()).add_done_callback(follow)
+    with pytest.raises(LookupError, match="in what follows"):
+        spin(lambda: False)
