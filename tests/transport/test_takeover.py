@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import signal
+from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
 
+from graphflow.transport import takeover
 from graphflow.transport.rendezvous import address
+from graphflow.transport.takeover import Takeover
 from tests.cases import slow
 from tests.conftest import Machine, Program
 
@@ -92,3 +97,30 @@ def test_a_stopped_rendezvous_is_named(machine: Machine) -> None:
     finally:
         talker.process.send_signal(signal.SIGCONT)
     machine.until(lambda: nodes(machine) == ["/talker"], "it answers again")
+
+
+class _Alone:
+    """A session that is connected to no rendezvous."""
+
+    def routers(self) -> list[str]:
+        return []
+
+    def watch_transports(self, changed: object) -> Any:
+        return SimpleNamespace(close=lambda: None)
+
+
+async def test_who_holds_the_port_is_named_when_it_lasts(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Once, and not after a first attempt in vain: short commands hold it in turn."""
+    attempts: list[int] = []
+    monkeypatch.setattr(takeover, "host", lambda: attempts.append(1))
+    monkeypatch.setattr(takeover, "occupied", lambda endpoint, why: f"somebody {why}")
+    monkeypatch.setattr(takeover, "_RETRY", 0.001)
+    guard = Takeover(None)
+    guard.guard(_Alone())  # type: ignore[arg-type]
+    for enough, told in ((takeover._PATIENCE - 1, 0), (3 * takeover._PATIENCE, 1)):
+        while len(attempts) < enough:
+            await asyncio.sleep(0)
+        assert [r.getMessage() for r in caplog.records] == ["somebody keeps newcomers from finding this process"] * told
+    await guard.close()
