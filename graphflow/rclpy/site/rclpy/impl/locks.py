@@ -77,9 +77,10 @@ def _is_let_go(syntax: Syntax, name: str) -> bool:
     """Whether something of that name is released without having been acquired there, or is more than used in place."""
     for function in syntax.functions:
         called = [call.func for call in ast.walk(function) if isinstance(call, ast.Call)]
-        ways = {way.attr for way in called if isinstance(way, ast.Attribute) and _last(way.value) == name}
-        is_entered = any(_last(expression) == name for _, expression in _entries(function))
-        if "release" in ways and (is_entered or "acquire" not in ways):
+        ways = [(way.attr, ast.unparse(way.value)) for way in called if isinstance(way, ast.Attribute)]
+        entered = {ast.unparse(expression) for _, expression in _entries(function)}
+        released = {text for attr, text in ways if attr == "release" and text.rpartition(".")[2] == name}
+        if released & entered or released - {text for attr, text in ways if attr == "acquire"}:
             return True
     for node, parents in walk(syntax.module):
         is_read = isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Load) and _last(node) == name
