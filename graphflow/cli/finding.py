@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
-from graphflow.graph.executables import EXECUTABLES, find
+from graphflow.graph.executables import find, with_graphflow
 from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
@@ -36,8 +36,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         elif rest[:1] and (found := find(what, rest[0].removesuffix(".py"), root)) is not None:
             cls = import_class(found.class_path)
             rest = rest[1:]
-        elif any(package == what for package, _ in EXECUTABLES) and rest[:1] and not rest[0].startswith("-"):
-            known = [name for package, name in EXECUTABLES if package == what]
+        elif (known := _executables_of(what)) and rest[:1] and not rest[0].startswith("-"):
             raise UsageFault(f"package {what!r} has no executable {rest[0]!r} here{did_you_mean(rest[0], known)}")
         elif what.rpartition(".")[2][:1].isupper():
             module, _, name = what.rpartition(".")
@@ -49,6 +48,11 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
         output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
     return cls, rest
+
+
+def _executables_of(package: str) -> list[str]:
+    """Those of a package of ROS's that come with graphflow."""
+    return [name for known, name in with_graphflow() if known == package]
 
 
 def _named(what: str, root: Path) -> type[Node]:
@@ -63,7 +67,7 @@ def _named(what: str, root: Path) -> type[Node]:
             verb = "is" if len(compiled) == 1 else "are"
             why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
             raise UsageFault(f"the package {what!r} has no executable that graphflow can run{why}") from None
-        known |= {*(package for package, _ in EXECUTABLES), *workspace}
+        known |= {*(package for package, _ in with_graphflow()), *workspace}
         raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
 
 

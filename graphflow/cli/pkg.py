@@ -28,11 +28,11 @@ def _root() -> Path:
 
 def _known() -> list[str]:
     """Packages of nodes that come with graphflow, of the project, and those that have types."""
-    from graphflow.graph.executables import EXECUTABLES, project_packages
+    from graphflow.graph.executables import project_packages, with_graphflow
     from graphflow.msgs import registry
 
     use_project()
-    return sorted({package for package, _ in EXECUTABLES} | {*project_packages(_root()), *registry.packages()})
+    return sorted({package for package, _ in with_graphflow()} | {*project_packages(_root()), *registry.packages()})
 
 
 @pkg.command("list")

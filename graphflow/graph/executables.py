@@ -8,14 +8,14 @@ import re
 import shutil
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
-from graphflow.graph.workspace import Package, Workspace, find_workspace, uses_rclpy
+from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_rclpy
 from graphflow.names import did_you_mean, nearest
 
 EXECUTABLES = {
@@ -111,18 +111,14 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         NoExecutable: Nobody here has one of that name; the text says which there are.
     """
     own = workspace.packages.get(package)
+    is_sourced = shutil.which("ros2", path=env.get("PATH")) is not None
+    if own is None and is_sourced:
+        return ("ros2", "run", package, name)
     if own is None:
-        with_us = [known for at, known in EXECUTABLES if at == package]
-        if shutil.which("ros2", path=env.get("PATH")):
-            return ("ros2", "run", package, name)
-        if with_us:
-            text = f"graphflow has no executable {name!r} of the package {package!r}{did_you_mean(name, with_us)}"
-            raise NoExecutable(text, is_slip=nearest(name, with_us) is not None)
-        known_packages = [*workspace.packages, *(known for known, _ in EXECUTABLES)]
-        near = did_you_mean(package, (), hidden=known_packages)
-        text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
-        meant = nearest(package, known_packages, cutoff=SLIP)
-        raise NoExecutable(text, is_slip=meant is not None and abs(len(meant) - len(package)) <= 2)
+        own = bundled().packages.get(package)
+        with_us = [name for at, name in with_graphflow() if at == package]
+        if own is None or own.known_as(name) is None:
+            raise _not_with_us(package, name, with_us, workspace)
     known = own.known_as(name)
     if known is None:
         if name in own.compiled:
@@ -136,6 +132,28 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
     if fault is not None:
         raise NoExecutable(fault, is_slip=True)
     return ("graphflow", "run", str(own.folder), known)
+
+
+def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Workspace) -> NoExecutable:
+    """Says that neither the workspace nor graphflow has an executable.
+
+    Args:
+        with_us: Those of its package that come with graphflow.
+    """
+    if with_us:
+        text = f"graphflow has no executable {name!r} of the package {package!r}{did_you_mean(name, with_us)}"
+        return NoExecutable(text, is_slip=nearest(name, with_us) is not None)
+    known = [*workspace.packages, *(package for package, _ in with_graphflow())]
+    near = did_you_mean(package, (), hidden=known)
+    text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
+    meant = nearest(package, known, cutoff=SLIP)
+    return NoExecutable(text, is_slip=meant is not None and abs(len(meant) - len(package)) <= 2)
+
+
+def with_graphflow() -> list[tuple[str, str]]:
+    """The executables that come with graphflow, each with its package."""
+    programs = [(own.name, name.removesuffix(".py")) for own in bundled().packages.values() for name in own.executables]
+    return [*EXECUTABLES, *programs]
 
 
 class Listed(NamedTuple):
@@ -159,7 +177,7 @@ def all_executables(root: Path) -> list[Listed]:
         found = {name: find(package, name, root) for name in names}
         rows += [Listed(package, name, one.class_path) for name, one in found.items() if one is not None]
     known = {row[:2] for row in rows}
-    for own in find_workspace(root).packages.values():
+    for own in [*find_workspace(root).packages.values(), *bundled().packages.values()]:
         for name in own.executables:
             if (own.name, name) not in known:
                 rows.append(Listed(own.name, name, own.path_of(name, root)))
@@ -209,13 +227,13 @@ def package_share(package: str, root: Path, env: Mapping[str, str]) -> Path | No
     own, sourced = package_folder(package, root), _sourced(package, env)
     if own is not None:
         return share_folder(Package(package, own))
-    return sourced / "share" / package if sourced else _python_package(package)
+    return sourced / "share" / package if sourced else _python_package(package) or _bundled_folder(package)
 
 
 def package_prefix(package: str, root: Path, env: Mapping[str, str]) -> Path | None:
     """The folder below which a package is installed. Arguments as for `package_share`."""
     own, sourced = package_folder(package, root), _sourced(package, env)
-    return own or sourced or (Path(sys.prefix) if _python_package(package) else None)
+    return own or sourced or (Path(sys.prefix) if _python_package(package) else _bundled_folder(package))
 
 
 def package_program(program: str, package: str, root: Path, env: Mapping[str, str]) -> Path | None:
@@ -243,6 +261,11 @@ def _python_package(name: str) -> Path | None:
         spec = None
     folders = list(spec.submodule_search_locations or []) if spec else []
     return Path(folders[0]) if folders else None
+
+
+def _bundled_folder(package: str) -> Path | None:
+    own = bundled().packages.get(package)
+    return None if own is None else own.folder
 
 
 def _scripts(package: str, root: Path) -> dict[str, str]:

@@ -27,7 +27,7 @@ from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.tree import Item, located
-from graphflow.graph.workspace import find_workspace
+from graphflow.graph.workspace import bundled, find_workspace
 from graphflow.names import did_you_mean
 
 _ANY = {"if", "unless"}
@@ -332,7 +332,7 @@ class _Translation:
 
     def _program(self, item: Item, package: Item, name: Item) -> dict[str, Item]:
         """A program of the workspace, or one that only ROS has."""
-        own = find_workspace(self._root).packages.get(package.value)
+        own = find_workspace(self._root).packages.get(package.value) or bundled().packages.get(package.value)
         if own is None or own.known_as(name.value) is None:
             text = f"{package.value} {name.value}: no node of that name is here; ros2 runs it, which must be installed"
             self._note(name.place, text)

@@ -12,7 +12,7 @@ import re
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
@@ -36,6 +36,8 @@ _SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
+BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
+"""The packages with programs of ROS 2's that come with graphflow; they lie there as in any workspace."""
 
 
 class EntryPoint(NamedTuple):
@@ -166,6 +168,12 @@ def find_workspace(start: Path) -> Workspace:
                 return around
         return read_workspace(highest.parent, highest.parent)
     return read_workspace(start, start) if start.is_dir() else Workspace(start)
+
+
+@cache
+def bundled() -> Workspace:
+    """The packages that come with graphflow."""
+    return read_workspace(BUNDLED, BUNDLED)
 
 
 def read_workspace(root: Path, source: Path) -> Workspace:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
 from graphflow.graph.executables import SLIP
-from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, find_workspace, uses_rclpy
+from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_rclpy
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder
@@ -55,6 +55,8 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     packages = workspace.packages
     named = next((p for p in packages.values() if p.folder == file.resolve()), None) if is_folder else None
     package = named or packages.get(what)
+    if package is None and what in bundled().packages and enabling.elsewhere() is None:
+        package, workspace = bundled().packages[what], bundled()
     if package is None:
         return None
     if not words:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import UsageFault
+from graphflow.graph.workspace import BUNDLED
 from graphflow.rclpy.programs import find_program
 from graphflow.transport.rendezvous import free_endpoint
 
@@ -131,6 +132,31 @@ def test_it_runs_as_it_stands(workspace: Path, words: tuple[str, ...]) -> None:
     assert lines[0] == "['mine', '--ros-args', '-r', '__ns:=/attic', '-p', 'level:=7']\n"
     assert [line for line in lines if "[attic.lamp]: /attic/lamp shines: 7" in line]
     assert len(lines) == 2
+
+
+def test_programs_that_come_with_graphflow(workspace: Path) -> None:
+    """They are found anywhere, unless the workspace has a package of that name."""
+    found = find_program("tf2_ros", ["tf2_echo", "map", "base"], workspace)
+    assert found is not None
+    assert (found.file, found.words) == (BUNDLED / "tf2_ros/programs/tf2_echo.py", ["map", "base"])
+    found = find_program("robot_state_publisher", ["robot_state_publisher"], workspace)
+    assert found is not None
+    assert found.entry == ("robot_state_publisher.node", "main")
+    with pytest.raises(UsageFault, match="did you mean 'tf2_echo'"):
+        find_program("tf2_ros", ["tf2_eco"], workspace)
+    (workspace / "src/tools/package.xml").write_text("<package><name>tf2_ros</name></package>")
+    found = find_program("tf2_ros", ["say"], workspace)
+    assert found is not None
+    assert found.file == workspace / "src/tools/scripts/say"
+
+
+@pytest.mark.real
+def test_what_comes_with_graphflow_runs(workspace: Path) -> None:
+    """From a folder that knows nothing of it."""
+    process = start(workspace, "robot_state_publisher", "robot_state_publisher")
+    output, _ = process.communicate(timeout=20)
+    told = "error: robot_state_publisher: the parameter robot_description must not be empty\n"
+    assert (output, process.returncode) == (told, 1)
 
 
 @pytest.mark.real

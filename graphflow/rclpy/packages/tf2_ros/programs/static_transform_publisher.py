@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Say on `/tf_static` where one frame is in another, which does not change.
+
+Source: tf2_ros static_transform_publisher, its arguments and parameters.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from uuid import uuid4
+
+from rcl_interfaces.msg import ParameterDescriptor
+from tf2_py.core import message
+from tf2_py.poses import Pose, Quaternion
+from tf2_ros import StaticTransformBroadcaster
+from tf_transformations import quaternion_from_euler
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.logging import get_logger
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+METRES, TURNS, PARTS = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qx", "qy", "qz", "qw")
+"""The options that are numbers: a translation, and a rotation in radians or as a quaternion."""
+
+
+class StaticTransformPublisher(Node):
+    """Publish one transform for as long as it runs; its parameters say which, and cannot be changed."""
+
+    def __init__(self, pose: Pose, parent: str, child: str) -> None:
+        super().__init__(f"static_transform_publisher_{uuid4().hex[:16]}")
+        fixed = ParameterDescriptor(read_only=True)
+
+        def numbers(group: str, names: str, values: Sequence[float]) -> list[float]:
+            pairs = zip(names, values, strict=True)
+            return [float(self.declare_parameter(f"{group}.{n}", v, fixed).value) for n, v in pairs]
+
+        x, y, z = numbers("translation", "xyz", pose.translation)
+        a, b, c, w = numbers("rotation", "xyzw", pose.rotation)
+        parent = self.declare_parameter("frame_id", parent, fixed).value
+        child = self.declare_parameter("child_frame_id", child, fixed).value
+        if parent == child:
+            raise ValueError(f"cannot publish static transform from '{parent}' to '{child}', exiting")
+        pose = Pose((x, y, z), _normalized((a, b, c, w)))
+        self._broadcaster = StaticTransformBroadcaster(self)
+        self._broadcaster.sendTransform(message(pose, parent, child, self.get_clock().now().nanoseconds))
+        moved = ", ".join(f"'{value:.6f}'" for value in pose.translation)
+        turned = ", ".join(f"'{value:.6f}'" for value in pose.rotation)
+        self.get_logger().info(
+            "Spinning until stopped - publishing transform\n"
+            f"translation: ({moved})\nrotation: ({turned})\nfrom '{parent}' to '{child}'"
+        )
+
+
+def _normalized(q: Quaternion) -> Quaternion:
+    length = math.hypot(*q)
+    if not math.isfinite(length) or length == 0.0:
+        raise ValueError(f"the rotation {q} is none: its length is {length}")
+    x, y, z, w = (part / length for part in q)
+    return x, y, z, w
+
+
+def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
+    """The pose, the parent frame and the child frame that a command line means.
+
+    Raises:
+        SystemExit: It means none.
+    """
+    parser = argparse.ArgumentParser(
+        "static_transform_publisher",
+        description="Say where one frame is in another, which does not change.",
+        allow_abbrev=False,
+    )
+    for names, unit in ((METRES, "METRES"), (TURNS, "RADIANS"), (PARTS, "NUMBER")):
+        for name in names:
+            parser.add_argument(f"--{name}", type=float, metavar=unit)
+    parser.add_argument("--frame-id", help="the frame that the other is in; always needed")
+    parser.add_argument("--child-frame-id", help="the other frame; always needed")
+    if len(words) in (8, 9) and not any(word.startswith("--") for word in words):
+        get_logger("static_transform_publisher").warning(
+            "Old-style arguments are deprecated; see --help for new-style arguments"
+        )
+        options = (*METRES, *(reversed(TURNS) if len(words) == 8 else PARTS), "frame-id", "child-frame-id")
+        words = [f"--{option}={word}" for option, word in zip(options, words, strict=True)]
+    found = parser.parse_args(_with_values(words))
+    if not found.frame_id or not found.child_frame_id:
+        parser.error("--frame-id and --child-frame-id are needed")
+    turns, parts = ([getattr(found, name) for name in names] for names in (TURNS, PARTS))
+    if any(turn is not None for turn in turns) and any(part is not None for part in parts):
+        parser.error("give --roll, --pitch and --yaw, or --qx, --qy, --qz and --qw, and not some of both")
+    x, y, z = (getattr(found, name) or 0.0 for name in METRES)
+    if any(part is not None for part in parts):
+        a, b, c, w = (0.0 if part is None else part for part in parts)
+    else:
+        roll, pitch, yaw = (turn or 0.0 for turn in turns)
+        a, b, c, w = map(float, quaternion_from_euler(roll, pitch, yaw))
+    return Pose((x, y, z), (a, b, c, w)), found.frame_id, found.child_frame_id
+
+
+def _with_values(words: Sequence[str]) -> list[str]:
+    """The words with each option and its value as one: argparse takes `-1e-3` for an option."""
+    joined: list[str] = []
+    rest = iter(words)
+    for word in rest:
+        is_number = word.startswith("--") and word[2:] in (*METRES, *TURNS, *PARTS)
+        value = next(rest, None) if is_number else None
+        joined.append(word if value is None else f"{word}={value}")
+    return joined
+
+
+def main() -> None:
+    """Run it."""
+    rclpy.init()
+    pose, parent, child = parsed(remove_ros_args(sys.argv)[1:])
+    try:
+        rclpy.spin(StaticTransformPublisher(pose, parent, child))
+    except ValueError as error:
+        sys.exit(f"error: static_transform_publisher: {error}")
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return
+
+
+if __name__ == "__main__":
+    main()

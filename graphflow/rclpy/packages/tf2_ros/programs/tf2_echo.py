@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Show where one frame is in another, again and again. Source: tf2_ros tf2_echo, its arguments and output."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+
+from geometry_msgs.msg import TransformStamped
+from tf2_ros import Buffer, TransformException, TransformListener
+from tf_transformations import euler_from_quaternion, quaternion_matrix
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.time import Time
+from rclpy.utilities import remove_ros_args
+
+
+class Echo(Node):
+    """Print a transform once in a period, or why there is none.
+
+    Args:
+        target: The frame that coordinates are told in.
+        source: The frame whose pose is told.
+        once: Whether one is enough.
+    """
+
+    def __init__(self, target: str, source: str, period: float, *, once: bool) -> None:
+        super().__init__("tf2_echo")
+        self._target, self._source, self._once = target, source, once
+        self._buffer = Buffer()
+        self._listener = TransformListener(self._buffer, self)
+        self._is_known = False
+        self.create_timer(period, self._look)
+
+    def _look(self) -> None:
+        try:
+            found = self._buffer.lookup_transform(self._target, self._source, Time())
+        except TransformException as error:
+            if not self._is_known:
+                waiting = f"Waiting for transform {self._target} -> {self._source}: {error}"
+                self.get_logger().info(waiting, throttle_duration_sec=0.9)
+            else:
+                _show(f"Failure at {self.get_clock().now().nanoseconds / 1e9}\n{error}\n")
+            return
+        self._is_known = True
+        _show(described(found))
+        if self._once:
+            raise SystemExit
+
+
+def described(found: TransformStamped) -> str:
+    """A transform as lines."""
+    t, r = found.transform.translation, found.transform.rotation
+    turns = euler_from_quaternion((r.x, r.y, r.z, r.w))
+    matrix = quaternion_matrix((r.x, r.y, r.z, r.w))
+    matrix[:3, 3] = t.x, t.y, t.z
+    return "\n".join(
+        [
+            f"At time {found.header.stamp.sec}.{found.header.stamp.nanosec:09}",
+            f"- Translation: {_vector((t.x, t.y, t.z))}",
+            f"- Rotation: in Quaternion (xyzw) {_vector((r.x, r.y, r.z, r.w))}",
+            f"- Rotation: in RPY (radian) {_vector(turns)}",
+            f"- Rotation: in RPY (degree) {_vector(tuple(map(math.degrees, turns)))}",
+            "- Matrix:",
+            *("".join(f" {number:6.3f}" for number in row) for row in matrix.tolist()),
+            "",
+        ]
+    )
+
+
+def _vector(numbers: tuple[float, ...]) -> str:
+    return f"[{', '.join(f'{number:.3f}' for number in numbers)}]"
+
+
+def _show(text: str) -> None:
+    sys.stdout.write(text)
+    sys.stdout.flush()
+
+
+def main() -> None:
+    """Run it."""
+    rclpy.init()
+    parser = argparse.ArgumentParser("tf2_echo", description="Show where one frame is in another.")
+    parser.add_argument("source_frame", help="the frame that the other is told in")
+    parser.add_argument("target_frame", help="the frame whose pose is told")
+    parser.add_argument("rate", nargs="?", type=float, default=1.0, help="times a second (default 1)")
+    parser.add_argument("-1", "--once", action="store_true", help="show it once")
+    found = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    if not found.rate > 0:
+        parser.error(f"rate: expected more than 0, got {found.rate}")
+    try:
+        rclpy.spin(Echo(found.source_frame, found.target_frame, 1.0 / found.rate, once=found.once))
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return
+
+
+if __name__ == "__main__":
+    main()

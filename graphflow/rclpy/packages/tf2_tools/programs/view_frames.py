@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Draw the tree of frames: in the terminal, and into a file of Graphviz's. Source: tf2_tools view_frames."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+from tf2_ros import Buffer, TransformListener
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+
+class Frame(NamedTuple):
+    """A frame, and what has been heard of where it is."""
+
+    name: str
+    parent: str
+    about: str
+
+
+def frames(text: str) -> list[Frame]:
+    """The frames that `Buffer.all_frames_as_yaml` tells."""
+    found = []
+    for name, said in yaml.safe_load(text).items():
+        is_static = said["most_recent_transform"] == said["oldest_transform"] == 0.0 or said["rate"] == 10000.0
+        about = "static" if is_static else f"{said['rate']:.1f} Hz, over {said['buffer_length']:.1f} s"
+        found.append(Frame(str(name), str(said["parent"]), about))
+    return found
+
+
+def drawn(known: list[Frame]) -> str:
+    """The tree, or the trees, as lines."""
+    lines: list[str] = []
+
+    def draw(parent: str, before: str) -> None:
+        below = sorted(frame for frame in known if frame.parent == parent)
+        for i, frame in enumerate(below):
+            is_last = i == len(below) - 1
+            lines.append(f"{before}{'└── ' if is_last else '├── '}{frame.name}   ({frame.about})")
+            draw(frame.name, f"{before}{'    ' if is_last else '│   '}")
+
+    for root in sorted({frame.parent for frame in known} - {frame.name for frame in known}):
+        lines.append(root)
+        draw(root, "")
+    return "\n".join(lines)
+
+
+def graphviz(known: list[Frame]) -> str:
+    """The same for Graphviz."""
+
+    def quoted(text: str) -> str:
+        return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+    arrows = [f"{quoted(f.parent)} -> {quoted(f.name)} [label={quoted(f.about)}];\n" for f in known]
+    return f"digraph G {{\n{''.join(arrows)}}}\n"
+
+
+def main() -> None:
+    """Run it."""
+    rclpy.init()
+    parser = argparse.ArgumentParser("view_frames", description="Draw the tree of frames.")
+    parser.add_argument("--wait-time", "-t", type=float, default=5.0, help="seconds to listen (default 5)")
+    parser.add_argument("--output", "-o", help="the file's name without its ending (default frames_ and the time)")
+    found = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    node = Node("view_frames")
+    buffer = Buffer()
+    TransformListener(buffer, node)
+    node.get_logger().info(f"Listening to tf data for {found.wait_time} seconds...")
+    until = time.monotonic() + found.wait_time
+    try:
+        while (left := until - time.monotonic()) > 0:
+            rclpy.spin_once(node, timeout_sec=left)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return
+    known = frames(buffer.all_frames_as_yaml())
+    if not known:
+        sys.exit("no frames: nobody has published on /tf or /tf_static in that time")
+    sys.stdout.write(f"{drawn(known)}\n")
+    name = found.output or time.strftime("frames_%Y-%m-%d_%H.%M.%S")
+    try:
+        Path(f"{name}.gv").write_text(graphviz(known), encoding="utf-8")
+    except OSError as error:
+        sys.exit(f"error: {error.filename} cannot be written: {error.strerror}")
+    if shutil.which("dot") is None:
+        sys.stdout.write(f"{name}.gv; to have it as PDF, install Graphviz: dot -Tpdf -O {name}.gv\n")
+        return
+    subprocess.run(["dot", "-Tpdf", f"{name}.gv", "-o", f"{name}.pdf"], check=True)
+    sys.stdout.write(f"{name}.gv\n{name}.pdf\n")
+
+
+if __name__ == "__main__":
+    main()
