@@ -179,6 +179,8 @@ class _Stream:
         if what == "step":
             mark = "done" if event["ok"] else "FAILED"
             output.talk(f"step {event['step']} {mark}: {event['text']}")
+        elif what == "said":
+            output.talk(event["text"])
         elif what == "up":
             self._greet(event["seconds"])
             if self._detach:

@@ -195,7 +195,14 @@ class Expansion:
             raise GraphFileError([*self._problems, Problem(place, no_file(path))])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
-        top = read(path, shown(path), self._problems.add, describe=self._outside.describe, values=values)
+        top = read(
+            path,
+            shown(path),
+            self._problems.add,
+            describe=self._outside.describe,
+            values=values,
+            remark=self._problems.remark,
+        )
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None

@@ -40,9 +40,14 @@ class Problems(list[Problem]):
         passes = place.file in self.launch_files
         if not passes:
             self.add(place, message)
-        elif Problem(place, message) not in self.remarks:
-            self.remarks.append(Problem(place, message))
+        else:
+            self.remark(place, message)
         return passes
+
+    def remark(self, place: Place, message: str) -> None:
+        """Add what is let pass."""
+        if Problem(place, message) not in self.remarks:
+            self.remarks.append(Problem(place, message))
 
     def add_unknown(self, place: Place, message: str) -> None:
         """Add a problem that leaves the value unknown: further reports about it would only confuse."""

@@ -247,13 +247,14 @@ class NodeSpec(_Settings):
 
 
 class StepSpec(_Model):
-    """Something done once, after nodes and other steps: a service call, parameters set, a goal, a wait."""
+    """Something done once, after nodes and other steps: a service call, parameters set, a goal, a wait, a message."""
 
     call: StrictStr = ""
     set_: StrictStr = Field("", alias="set")
     goal: StrictStr = ""
     wait: StrictStr = ""
     delay: StrictFloat | StrictInt | None = Field(None, gt=0)
+    log: StrictStr = ""
     type: Annotated[StrictStr, AfterValidator(_interface_type)] | None = None
     request: dict[str, Any] = {}
     params: dict[str, Any] = {}

@@ -24,6 +24,7 @@ def read(
     note: Complain = ignore,
     describe: Describe | None = None,
     values: Mapping[str, Any] | None = None,
+    remark: Complain = ignore,
 ) -> Item:
     """A graph file, or a launch file in YAML, XML or Python.
 
@@ -33,6 +34,7 @@ def read(
         note: Called with what the reader of a converted launch file should know of.
         describe: For those in Python.
         values: The arguments that such a file is about to be started with; None if it is only to be written down.
+        remark: Called with what such a file says that is left out.
 
     Raises:
         GraphFileError: It cannot be read; why, and where.
@@ -44,6 +46,8 @@ def read(
         told = describe(path, name, values)
         for problem in told["problems"]:
             complain(Place(name, problem["line"], 1), problem["message"])
+        for left_out in told["remarks"]:
+            remark(Place(name, left_out["line"], 1), left_out["message"])
         return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note)
     top = xml_source.read_file(path, name) if path.suffix == ".xml" else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):

@@ -55,7 +55,7 @@ def load(
         GraphFileError: Every mistake that could be found.
     """
     problems = Problems()
-    top = read(path, shown(path), problems.add, describe=describe, values=given_values(given))
+    top = read(path, shown(path), problems.add, describe=describe, values=given_values(given), remark=problems.remark)
     return _resolve(top, path, given, env, problems, run=run, describe=describe)
 
 
@@ -355,7 +355,7 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
     return tuple(rules)
 
 
-_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": ""}
+_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": "", "log": ""}
 """What a step does, and the key for what it sends."""
 
 
@@ -363,7 +363,7 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
     steps = []
     for name, spec in model.steps.items():
         at: source.Path = ("steps", name)
-        written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait}
+        written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait, "log": spec.log}
         written["delay"] = "" if spec.delay is None else f"{spec.delay:g} s"
         deeds = [deed for deed, target in written.items() if target]
         if len(deeds) != 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Callable
 
 from graphflow.graph.tree import Item
 
@@ -37,8 +38,11 @@ _MARK = re.compile("\ue000(\\d+)\ue001")
 """What stands for a substitution, in two characters that no text has."""
 
 
-def split(text: str) -> list[str]:
+def split(text: str, words_of: Callable[[str], list[str]] = shlex.split) -> list[str]:
     """The words of a text, as a shell has them; spaces in a substitution, `$(var rate)`, do not part it.
+
+    Args:
+        words_of: Finds words where there are no substitutions.
 
     Raises:
         ValueError: A quote is not closed.
@@ -49,7 +53,7 @@ def split(text: str) -> list[str]:
         kept += f"{rest[:begin]}\ue000{len(spans)}\ue001"
         spans.append(rest[begin:end])
         rest = rest[end:]
-    return [_MARK.sub(lambda found: spans[int(found[1])], word) for word in shlex.split(kept + rest)]
+    return [_MARK.sub(lambda found: spans[int(found[1])], word) for word in words_of(kept + rest)]
 
 
 def _end(text: str, begin: int) -> int:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
+from graphflow.graph.ros_attributes import split
 from graphflow.graph.tree import Item, located, tree
 
 Complain = Callable[[Place, str], None]
@@ -16,13 +17,17 @@ OUR_ROS2 = 'command -v ros2 >/dev/null || ros2() { graphflow "$@"; }; '
 
 def plain_words(line: str) -> list[str]:
     """The words of a line for a shell, if it needs none: no pipes and the like; else no words."""
+    try:
+        return split(line, _plain)
+    except ValueError:
+        return []
+
+
+def _plain(line: str) -> list[str]:
     reader = shlex.shlex(line, posix=True, punctuation_chars=";|&<>")
     reader.whitespace_split = True
     reader.commenters = ""
-    try:
-        words = list(reader)
-    except ValueError:
-        return []
+    words = list(reader)
     return [] if any(word and not word.strip(";|&<>") for word in words) else words
 
 

@@ -121,8 +121,8 @@ class _Translation:
         self._args: dict[str, Item] = {}
         self._texts: dict[str, Item] = {}  # their defaults as they are written
         self._count: dict[str, int] = {}
-        self._numbered: dict[int, str] = {}
-        """The names of actions that others come after."""
+        self._numbered: dict[int, tuple[str, bool]] = {}
+        """The names of actions that others come after, and whether they are steps."""
 
     def file(self, top: Item) -> Item:
         body = self._block(top.entries["launch"].value)
@@ -234,6 +234,10 @@ class _Translation:
                 self._node(component, body)
         elif name == "executable":
             self._executable(item, body)
+        elif name == "log":
+            message = item.entries.get("message", Item("", item.place))
+            if message.value:
+                self._add_step(body, "log", item, {"log": message})
         elif name == "include":
             _add(body, "include", self._include(item))
         elif name == "group":
@@ -282,9 +286,7 @@ class _Translation:
             if inner:
                 _add(body, "group", item._replace(value={**self._conditions(item), **inner}))
             return
-        step = f"timer_{self._next('timer')}"
-        delay = item._replace(value={"delay": typed(period), **self._conditions(item)})
-        _put(body, "steps", step, delay)
+        step = self._add_step(body, "timer", item, {"delay": typed(period)})
         after = Item(step, item.place, item.place)
         for section in ("nodes", "steps"):
             for name, entry in inner.get(section, Item({}, item.place)).entries.items():
@@ -400,21 +402,21 @@ class _Translation:
             self._complain(item.at, "executable: the attribute 'cmd' is missing")
             return
         entries = self._common(item)
-        words = [str(word.value) for word in command.value] if isinstance(command.value, list) else None
+        is_list = isinstance(command.value, list)
+        texts = [str(part.value) for part in command.value] if is_list else [str(command.value)]
+        texts = [text.replace("$(find-exec ros2)", "ros2") for text in texts]
         try:
-            words = words or split(str(command.value))
+            words = texts if is_list else split(texts[0])
         except ValueError as error:
             self._complain(command.place, f"cmd: {error}")
             return
         is_shells = says(item, "shell", "true", "1")
-        line = " ".join(words) if isinstance(command.value, list) else str(command.value)
+        line = " ".join(texts)
         if is_shells and plain_words(line)[:1] == ["ros2"]:
             words, is_shells = plain_words(line), False
         step = step_of(words, command, self._complain)
         if step is not None:
-            name = f"{words[2]}_{self._next('step')}"
-            before = {key: entries[key] for key in ("if", "unless", "after") if key in entries}
-            _put(body, "steps", name, item._replace(value={**step, **before}))
+            self._add_step(body, words[2], item, step)
             return
         if is_shells:
             words = ["sh", "-c", f"{OUR_ROS2}{line}" if "ros2 " in line else line]
@@ -451,7 +453,8 @@ class _Translation:
             entries["on_exit"] = item.entries["on_exit"]
         before = get("after_number")
         if before is not None and before.value in self._numbered:
-            needs = {self._numbered[before.value]: item.entries["after_what"]}
+            name, is_step = self._numbered[before.value]
+            needs = {name: Item("done", before.place) if is_step else item.entries["after_what"]}
             entries["after"] = Item(needs, before.place, before.place)
         elif before is not None:
             self._note(before.place, "what it is to come after is not among the nodes and programs before it")
@@ -462,8 +465,17 @@ class _Translation:
     def _add_node(self, body: dict[str, Item], key: str, item: Item) -> None:
         number, item = item.entries.get("number"), item.without(*_RECORDED)
         if number is not None:
-            self._numbered[number.value] = key
+            self._numbered[number.value] = (key, False)
         _put(body, "nodes", key, item)
+
+    def _add_step(self, body: dict[str, Item], word: str, item: Item, step: dict[str, Item]) -> str:
+        """Add a step that is called by a word and a number; returns its name."""
+        name, common = f"{word}_{self._next(word)}", self._common(item)
+        if "number" in item.entries:
+            self._numbered[item.entries["number"].value] = (name, True)
+        before = {key: common[key] for key in ("if", "unless", "after") if key in common}
+        _put(body, "steps", name, item._replace(value={**step, **before}))
+        return name
 
     def _next(self, word: str) -> int:
         self._count[word] = self._count.get(word, 0) + 1

@@ -86,8 +86,10 @@ def _action(said: Said) -> tuple[str, Any]:
             arguments = dict(get("launch_arguments", default=None) or {})
             pairs = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
             return "include", {"file": text(get("launch_description_source", 0)), "arg": pairs}
-        case "LogInfo" | "UnregisterEventHandler":
+        case "LogInfo" | "Log":
             return "log", {"message": text(get("msg", default=""))}
+        case "UnregisterEventHandler":
+            return "", []
         case "OpaqueFunction":
             return "", actions(_called(said))
         case "RegisterEventHandler":
@@ -127,10 +129,18 @@ def _called(said: Said) -> Any:
 
 _HANDLERS = {
     "OnProcessExit": ("target_action", "on_exit", "exited"),
+    "OnExecutionComplete": ("target_action", "on_completion", "exited"),
     "OnProcessStart": ("target_action", "on_start", "ready"),
     "OnStateTransition": ("target_lifecycle_node", "entities", "ready"),
 }
 """Event handlers with words here: the arguments with whose event and with what follows, and what must have become."""
+
+
+_LEFT_OUT = {
+    "OnProcessIO": "OnProcessIO is left out: what a process prints is in its log, and the function is not called",
+    "OnShutdown": "OnShutdown is left out: nothing is done when the graph stops",
+}
+"""Event handlers that are left out, and what is said of them."""
 
 
 def _change(said: Any) -> tuple[Said, str] | None:
@@ -146,6 +156,9 @@ def _change(said: Any) -> tuple[Said, str] | None:
 def _handled(said: Said) -> list[dict[str, Any]]:
     """Actions that begin when a process has started or ended, or a lifecycle node has come to a state."""
     handler = said.get("event_handler", 0)
+    if isinstance(handler, Said) and handler.name in _LEFT_OUT:
+        RECORDING.remark(said, _LEFT_OUT[handler.name])
+        return []
     if not isinstance(handler, Said) or handler.name not in _HANDLERS:
         RECORDING.problem(said, f"an event handler {getattr(handler, 'name', '')} has no words in a graph file")
         return []
@@ -288,7 +301,7 @@ def number_targets(said: Any) -> None:
         whose, key, _ = _HANDLERS.get(said.name, ("", "", ""))
         if isinstance(target := said.get(whose), Said):
             _numbers.setdefault(id(target), len(_numbers) + 1)
-            then = said.get(key) if key == "on_exit" else None
+            then = said.get(key) if key in ("on_exit", "on_completion") else None
             if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
                 _ending.add(id(target))
         if change := _change(said):

@@ -16,7 +16,7 @@ PYTHON_LIMIT = 20.0
 
 
 def described(file: Path, name: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
-    """What a launch file says: its `actions`, and `problems` with what the stand-ins do not know. It is run.
+    """What a launch file says: its `actions`, and `problems` and `remarks` on what it says in vain. It is run.
 
     Args:
         name: The file as messages show it.

@@ -1,7 +1,7 @@
 """A launch file in Python, run in a process of its own against stand-ins that record what it describes.
 
     python -m graphflow.rclpy -m graphflow.supervisor.launch_recorder FILE [VALUES]
-        ->   {"actions": [...], "problems": [...]}
+        ->   {"actions": [...], "problems": [...], "remarks": [...]}
 
 What they are called with is written down as the actions of ROS's YAML dialect, each with its line. With VALUES, the
 file's arguments as JSON, it is about to be started: folders of packages are what they are, and a function that asks
@@ -30,7 +30,7 @@ class _Environment(dict[str, str]):
 
 
 def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
-    """Run a launch file; returns its actions, and what could not be written down.
+    """Run a launch file; returns its actions, what could not be written down, and what is left out.
 
     Args:
         values: The arguments that it is about to be started with; None if it is only written down.
@@ -63,7 +63,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
             trace = trace.tb_next
         hint = f"; if it is on PyPI: pip install {error.name}" if isinstance(error, ModuleNotFoundError) else ""
         RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
-    return {"actions": found, "problems": RECORDING.problems}
+    return {"actions": found, "problems": RECORDING.problems, "remarks": RECORDING.remarks}
 
 
 def main() -> None:

@@ -42,10 +42,16 @@ class Recording:
         """Those of the arguments that have been declared so far."""
         self.problems: list[dict[str, Any]] = []
         """What has no words in a graph file, each with its `line` and a `message`."""
+        self.remarks: list[dict[str, Any]] = []
+        """What is left out, likewise."""
 
     def problem(self, said: Said, message: str) -> None:
         """Add one."""
         self.problems.append({"line": said.line, "message": message})
+
+    def remark(self, said: Said, message: str) -> None:
+        """Say that something is left out."""
+        self.remarks.append({"line": said.line, "message": message})
 
     def line(self) -> int:
         """The line of the file that is being carried out."""

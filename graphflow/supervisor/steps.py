@@ -44,6 +44,8 @@ class StepRunner:
             ParameterError: The node refused a parameter.
             GoalError: The goal did not succeed.
         """
+        if step.do == "log":
+            return step.target
         node = await self.node()
         deeds = {"call": self._call_service, "set": self._set, "goal": self._send_goal, "wait": self._wait}
         if step.do == "delay":

@@ -288,7 +288,10 @@ class Supervisor:
             self._tell(event="step", step=planned.name, ok=False, text=f"{planned.target}: {error}")
             self._fail(f"step {planned.name} failed")
             return
-        self._tell(event="step", step=planned.name, ok=True, text=f"{planned.target} -> {answer}")
+        if planned.do == "log":
+            self._tell(event="said", text=planned.target)
+        else:
+            self._tell(event="step", step=planned.name, ok=True, text=f"{planned.target} -> {answer}")
         self._meet(f"step {planned.name}", "done")
 
     def _fail(self, reason: str) -> None:

@@ -150,7 +150,7 @@ class Console(Desk):
                 self.hub.logs.follow(_log_files(event["nodes"]))
             case "announced" if self.hub.supervision and event["by"] != self.hub.supervision.name:
                 self.say(f"{event['text']} by {event['by']}")
-            case "note" | "stopping":
+            case "note" | "said" | "stopping":
                 self.say(event.get("text") or f"stopping ({event['reason']})")
             case "step" if not event["ok"]:
                 self.say(f"step {event['step']} FAILED: {event['text']}", bad=True)

@@ -42,7 +42,7 @@ def test_python(machine: Machine, tmp_path: Path) -> None:
         "/leo",
     }
     assert plan.nodes[0].env == {"A": "c"}
-    (spawn, _) = plan.steps
+    spawn = next(step for step in plan.steps if step.do == "call")
     assert (spawn.target, spawn.request, spawn.after) == ("/spawn", {"x": 2, "y": 2, "name": "t2"}, {"/sim": "ready"})
 
 

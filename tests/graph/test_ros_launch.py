@@ -153,8 +153,8 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
                         "type": "turtlesim/srv/Spawn",
                         "request": {"x": 2.0, "name": "leo"},
                     },
-                    "set_2": {"set": "/sim", "params": {"background_r": 150}},
-                    "send_goal_3": {
+                    "set_1": {"set": "/sim", "params": {"background_r": 150}},
+                    "send_goal_1": {
                         "goal": "/turn",
                         "type": "turtlesim/action/RotateAbsolute",
                         "request": {"theta": 1.5},
@@ -173,7 +173,23 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
             "[{include: {file: a.yaml, if: $(var x)}}, {include: {file: b.yaml, arg: [{name: n, value: '1'}]}}]",
             {"include": [{"file": "a.yaml", "if": "$(var x)"}, {"file": "b.yaml", "args": {"n": 1}}]},
         ),
-        ("[{log: {message: hello}}, {group: []}]", {}),
+        ("[{log: {message: hello}}, {log: {message: ''}}, {group: []}]", {"steps": {"log_1": {"log": "hello"}}}),
+        (
+            "[{executable: {cmd: '$(find-exec ros2) service call $(var ns)/reset std_srvs/srv/Empty', shell: true}}]",
+            {"steps": {"call_1": {"call": "$(var ns)/reset", "type": "std_srvs/srv/Empty"}}},
+        ),
+        (
+            "[{executable: {cmd: ls, number: 1}}, {log: {message: a, number: 2, after_number: 1, after_what: exited}}, "
+            "{timer: {period: 1, after_number: 2, after_what: exited, children: [{log: {message: b}}]}}]",
+            {
+                "nodes": {"ls_1": {"command": ["ls"]}},
+                "steps": {
+                    "log_1": {"log": "a", "after": {"ls_1": "exited"}},
+                    "timer_1": {"delay": 1, "after": {"log_1": "done"}},
+                    "log_2": {"log": "b", "after": "timer_1"},
+                },
+            },
+        ),
         (
             "[{append_env: {name: P, value: /a}}, {append_env: {name: Q, value: b, prepend: 'true', separator: ' '}}, "
             "{node: {pkg: turtlesim, exec: turtlesim_node, name: sim}}]",

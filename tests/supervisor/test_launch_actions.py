@@ -44,6 +44,19 @@ def test_what_comes_after_what() -> None:
     assert (log["log"]["after_number"], log["log"]["after_what"]) == (number, "exited")
 
 
+def test_what_follows_the_end_of_a_program() -> None:
+    """OnExecutionComplete is OnProcessExit; what only says something when all ends is left out, and told."""
+    first = said("ExecuteProcess", cmd=["ls"])
+    handler = said("OnExecutionComplete", target_action=first, on_completion=[said("LogInfo", msg=["a", "b"])])
+    ended = said("RegisterEventHandler", said("OnShutdown", on_shutdown=[said("LogInfo", msg="bye")]))
+    whole = [first, said("RegisterEventHandler", handler), ended]
+    number_targets(whole)
+    RECORDING.remarks = []
+    _, log = actions(whole)
+    assert (log["log"]["message"], log["log"]["after_what"]) == ("ab", "exited")
+    assert RECORDING.remarks == [{"line": 7, "message": "OnShutdown is left out: nothing is done when the graph stops"}]
+
+
 def change(node: Any, number: int) -> Said:
     """The event that asks a lifecycle node for a transition."""
     matches = said("matches_action", node)

@@ -75,12 +75,15 @@ def test_what_is_recorded() -> None:
 
 
 def test_what_has_no_words() -> None:
-    """Is told with its line."""
-    problems = {problem["line"]: problem["message"] for problem in record(ROBOT)["problems"]}
-    assert problems[line_of("OnProcessIO(target")].startswith("an event handler OnProcessIO has no words")
+    """Is told with its line, and so is what is left out."""
+    told = record(ROBOT)
+    [left_out] = told["remarks"]
+    assert left_out["line"] == line_of("OnProcessIO(target")
+    assert left_out["message"].startswith("OnProcessIO is left out")
+    problems = {problem["line"]: problem["message"] for problem in told["problems"]}
     assert problems[line_of("OpaqueFunction(function")].startswith("OpaqueFunction: it was called once, with $(var")
     assert problems[line_of("SetParametersFromFile(filename")].startswith("SetParametersFromFile has no words")
-    assert len(problems) == 3
+    assert len(problems) == 2
 
 
 CONTAINER = """

@@ -50,6 +50,19 @@ def test_a_failed_step_stops_the_graph(machine: Machine, project: Path, call: st
     nothing_is_left(machine, [])
 
 
+@pytest.mark.real
+def test_a_message_is_said_when_it_is_due(machine: Machine, project: Path) -> None:
+    """Where the graph was started, in its order, also of what comes after the end of a program."""
+    text = (
+        "nodes:\n  short: {command: [sh, -c, exit 0]}\n  /long: {command: [sleep, '60']}\n"
+        "steps:\n  last: {log: it has ended, after: {short: exited}}\n  first: {log: it begins}\n"
+    )
+    up = machine.start("up", write(project, text), cwd=project)
+    up.wait_for("it has ended")
+    assert up.text.index("it begins") < up.text.index("it has ended")
+    assert up.end() == 0
+
+
 TYPE = "example_interfaces/srv/AddTwoInts"
 
 
