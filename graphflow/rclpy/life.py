@@ -59,6 +59,7 @@ class Life:
         self.domain = domain_id(domain)
         self.is_ok = True
         """Whether it has not been shut down."""
+        self._ends_with_process = False
         self._context: Context | None = None
         self._lock = threading.Lock()
         self._wakes: dict[Wake, None] = {}
@@ -70,7 +71,7 @@ class Life:
         with self._lock:
             if self._context is None:
                 self._context = LOOP.wait(self._open, timeout=OPEN_LIMIT)
-                LOOP.at_exit.append(self.close)
+                LOOP.at_exit.append(self.end_with_process)
             return self._context
 
     async def _open(self) -> Context:
@@ -106,6 +107,16 @@ class Life:
             wake.set()
         return was_ok
 
+    def end_with_process(self) -> None:
+        """Leave the network because the program has ended; its daemon threads are not told."""
+        self._ends_with_process = True
+        self.close()
+
+    def hold_daemon(self) -> None:
+        """Let a daemon thread of a program that has ended stand still until it is gone."""
+        if self._ends_with_process and threading.current_thread().daemon:
+            Wake().wait()
+
     def close(self) -> None:
         """Leave the network; where another thread does so already, wait until it has."""
         self.end()
@@ -118,7 +129,7 @@ class Life:
             except TimeoutError:
                 pass  # a peer holds it; the process that ends takes the session with it
         with suppress(ValueError):  # at last: the process must not end meanwhile
-            LOOP.at_exit.remove(self.close)
+            LOOP.at_exit.remove(self.end_with_process)
 
     @staticmethod
     async def _leave(context: Context) -> None:

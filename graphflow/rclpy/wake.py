@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import queue
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 LONGEST = 3600.0
 """Seconds of one wait of a system call; a longer wait is several."""
@@ -44,3 +46,36 @@ class Wake:
             if (left is not None and left <= 0) or not self.wait(left):
                 return condition()
         return True
+
+
+class SharedWake(Wake):
+    """Wakes all threads that wait; if none does, the next one."""
+
+    __slots__ = ("_is_taken", "_others", "_taking")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._others: dict[Wake, None] = {}
+        self._is_taken = False
+        self._taking = threading.Lock()
+
+    def set(self) -> None:
+        super().set()
+        for other in list(self._others):
+            other.set()
+
+    @contextmanager
+    def for_one(self) -> Iterator[Wake]:
+        """What one thread waits with: this itself, or another where this is in use."""
+        with self._taking:
+            wake = Wake() if self._is_taken else self
+            self._is_taken = True
+            if wake is not self:
+                self._others[wake] = None
+        try:
+            yield wake
+        finally:
+            if wake is self:
+                self._is_taken = False
+            else:
+                del self._others[wake]

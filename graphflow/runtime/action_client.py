@@ -202,6 +202,7 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         status: Any = registry.interface_class("action_msgs/msg/GoalStatusArray")
         at = f"{name}/_action"
         self._feedback = TopicSubscription[Any](host, feedback, f"{at}/feedback", Qos(), self._heard)
+        self._feedback.in_order = True
         self._status = TopicSubscription[Any](host, status, f"{at}/status", ACTION_STATUS, self._told)
 
     def __repr__(self) -> str:

@@ -59,6 +59,8 @@ class TopicSubscription(Endpoint, Generic[M]):
     """
 
     kind = Kind.SUBSCRIPTION
+    in_order = False
+    """Whether answers that are sent after a message must not overtake it."""
 
     def __init__(
         self,
@@ -120,7 +122,8 @@ class TopicSubscription(Endpoint, Generic[M]):
             self._watch_deadline(self._inbox)
         # What nodes of this process publish comes by hand, unless it is wanted not at all.
         ignore_local = self._ignore_local or self.qos.durability is Durability.VOLATILE
-        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))
+        options = {"ignore_local": ignore_local, "in_order": self.in_order}
+        self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, **options))
         if not self._ignore_local:
             context.handover.join(key, self)
 

@@ -108,12 +108,16 @@ class Session(Protocol):
         only_others: Whether to leave out receivers of this session; not for TRANSIENT_LOCAL ones.
         """
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> Closable:
+    def open_receiver(
+        self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False, in_order: bool = False
+    ) -> Closable:
         """Put every publication on `key` into `inbox`; `read` opens what is found there.
 
         Args:
             key: Its last part may be `*`; `key_of` then gives the full key.
             ignore_local: Whether to leave out what this session sends itself.
+            in_order: Whether answers that were sent after a publication must not overtake it; for what is not sent
+                often. Not for TRANSIENT_LOCAL.
         """
 
     def open_server(self, key: str, inbox: Inbox) -> Closable:

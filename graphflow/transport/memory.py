@@ -239,7 +239,9 @@ class MemorySession:
         self._keep(_Declared(sender.close))
         return sender
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> _Declared:
+    def open_receiver(
+        self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False, in_order: bool = False
+    ) -> _Declared:
         if qos.durability is Durability.TRANSIENT_LOCAL:
             for sender in self._network.senders.get(key, ()):
                 for sample in list(sender.history)[-qos.depth :]:

@@ -5,7 +5,7 @@ Zenoh, a log line or user code in a callback can stall every other stream of the
 
 Data comes through Zenoh's default callback thread, one per subscription, which takes many samples each time it holds
 the GIL; requests, replies and tokens come directly (`indirect=False`), since the default would start a
-thread per declaration and per call.
+thread per declaration and per call. So does the feedback of actions, which a result must not overtake.
 
 Zenoh itself sends large messages through shared memory. Buffers from a pool of ours gain nothing at 1 MB and a quarter
 at 6 MB, no latency, and cost a pool in every process and allocations that fail under load.
@@ -280,12 +280,16 @@ class ZenohSession:
         )
         return _KeepingSender(publisher)
 
-    def open_receiver(self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False) -> _Declared:
+    def open_receiver(
+        self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False, in_order: bool = False
+    ) -> _Declared:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
             is_deep = qos.history is History.KEEP_ALL or qos.depth > DEEP
             put = _copying(inbox) if is_deep else inbox.put
-            return _Declared(self.raw.declare_subscriber(key, put, allowed_origin=origin))
+            # Answers come directly, and so would overtake what waits for the subscription's own thread.
+            handler = Callback(put, indirect=False) if in_order else put
+            return _Declared(self.raw.declare_subscriber(key, handler, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
         again = _AskingAgain(self, key, inbox) if reliable else None

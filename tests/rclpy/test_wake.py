@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 
-from graphflow.rclpy.wake import Wake
+from graphflow.rclpy.wake import SharedWake, Wake
 
 
 def test_a_wait_ends_when_somebody_wakes() -> None:
@@ -43,3 +43,28 @@ def test_a_condition_is_looked_at_again_whenever_somebody_wakes() -> None:
 
     assert wake.wait_until(third_time, 5)
     assert not wake.wait_until(lambda: False, 0.01)
+
+
+def test_all_who_wait_are_woken() -> None:
+    """Each with what it was given; what wakes nobody wakes the next."""
+    shared, woken = SharedWake(), list[int]()
+    at_once = threading.Barrier(3)
+
+    def wait(number: int) -> None:
+        with shared.for_one() as wake:
+            at_once.wait(5)
+            if wake.wait(5):
+                woken.append(number)
+
+    threads = [threading.Thread(target=wait, args=(i,)) for i in range(2)]
+    for thread in threads:
+        thread.start()
+    at_once.wait(5)
+    shared.set()
+    for thread in threads:
+        thread.join()
+    assert sorted(woken) == [0, 1]
+    shared.set()
+    with shared.for_one() as wake:
+        assert wake is shared
+        assert wake.wait(0)

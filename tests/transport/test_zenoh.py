@@ -12,6 +12,7 @@ import pytest
 import zenoh
 
 from graphflow.qos import Durability, Qos
+from graphflow.transport.base import Answer, Inbox
 from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
@@ -178,3 +179,41 @@ async def test_publishers_end_while_their_listeners_do(
     mine.raw.close()  # type: ignore[no-untyped-call]
     del listeners
     assert took < 8  # Zenoh itself gives up after ten
+
+
+async def test_an_answer_does_not_overtake_what_was_published_before_it(
+    graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
+) -> None:
+    """Where that is asked for, as for the feedback of actions: 300 answers, each after three publications."""
+    loop = asyncio.get_running_loop()
+    client, server = ZenohSession(loop), ZenohSession(loop)
+    sender = server.open_sender("feedback", Qos())
+
+    def work() -> None:
+        while requests.items:
+            for _ in range(3):
+                sender.put(b"", attachment=b"")
+            requests.items.popleft().reply(b"", b"")
+
+    requests = Inbox(server.bell, None, work)
+    server.open_server("result", requests)
+    heard, counts = Inbox(client.bell, None, lambda: None), list[int]()
+    client.open_receiver("feedback", Qos(), heard, in_order=True)
+    caller = client.open_caller("result", lambda: None)
+    async with asyncio.timeout(LIMIT):
+        while not (caller.has_server and sender.is_wanted):
+            await asyncio.sleep(0.01)
+        for _ in range(300):
+            done = loop.create_future()
+
+            def answered(answer: Answer | None, done: asyncio.Future[None] = done) -> None:
+                if answer is not None:
+                    counts.append(len(heard.items))
+                elif not done.done():
+                    done.set_result(None)
+
+            caller.call(b"", b"", answered)
+            await done
+    client.raw.close()  # type: ignore[no-untyped-call]
+    server.raw.close()  # type: ignore[no-untyped-call]
+    assert counts == [3 * (i + 1) for i in range(300)]

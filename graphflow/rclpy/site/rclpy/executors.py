@@ -306,14 +306,13 @@ class MultiThreadedExecutor(Executor):
         self._executor = _Pool(num_threads, self.wake)
         self._graphflow_failures: deque[BaseException] = deque()
         self._graphflow.has_room = lambda: self._executor.has_room
+        self._graphflow.has_failed = lambda: bool(self._graphflow_failures)
 
     def _graphflow_do_one(
         self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False
     ) -> None:
         try:
-            handler, _, _ = self.wait_for_ready_callbacks(
-                timeout, None, lambda: bool(self._graphflow_failures) or condition()
-            )
+            handler, _, _ = self.wait_for_ready_callbacks(timeout, None, condition)
         except (*_NOTHING_TO_DO, ExternalShutdownException):  # which here only ends the spinning
             pass
         else:

@@ -306,11 +306,27 @@ def test_a_group_of_ones_own(node: Node, single: SingleThreadedExecutor) -> None
     assert (calls, group.ended) == ([1, 1], 2)
 
 
-def test_a_second_thread_may_not_spin_the_same_executor(single: SingleThreadedExecutor) -> None:
-    """It is told so."""
+def test_a_second_thread_may_wait_for_a_future(single: SingleThreadedExecutor, node: Node) -> None:
+    """In the executor that another one spins: either does what there is, and both end."""
+    ticks = list[int]()
+    node.create_timer(0.001, lambda: ticks.append(threading.get_ident()))
     thread = threading.Thread(target=single.spin)
     thread.start()
-    while not single.spinning._looking.locked():
+    future = Future[int]()
+    threading.Timer(0.05, future.set_result, [7]).start()
+    single.spin_until_future_complete(future, timeout_sec=10)
+    assert future.done()
+    single.shutdown()
+    thread.join(5)
+    assert not thread.is_alive()
+    assert ticks
+
+
+def test_a_second_thread_may_not_spin_the_same_executor(single: SingleThreadedExecutor) -> None:
+    """In the same way; it is told so."""
+    thread = threading.Thread(target=single.spin)
+    thread.start()
+    while not single.spinning._asking:
         time.sleep(0.001)
     with pytest.raises(ValueError, match="already executing"):
         single.spin_once()

@@ -108,7 +108,7 @@ class ActionClient(Waitable):
         self._goal_handles: dict[bytes, ClientGoalHandle] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         self._graphflow_changed: dict[Wake, None] = {}
-        self._graphflow_is_destroyed = False
+        self._graphflow_is_open = False  # another thread may be spinning the node
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
         mark = partial(node._graphflow.bell.mark, self)
@@ -124,25 +124,23 @@ class ActionClient(Waitable):
             )
 
         def subscription(carrier: Any, part: str, qos: QoSProfile) -> Any:
-            full = f"{name}/_action/{part}"
-            return held.add(
-                node._graphflow.node,
-                lambda core: ThreadedSubscription(
-                    core,
-                    carrier,
-                    full,
-                    to_graphflow(qos),
-                    node._graphflow.bell,
-                    mark,
-                    lambda event: self._graphflow_look(),
-                ),
-            )
+            full, bell = f"{name}/_action/{part}", node._graphflow.bell
+
+            def make(core: Any) -> ThreadedSubscription:
+                told = ThreadedSubscription(
+                    core, carrier, full, to_graphflow(qos), bell, mark, lambda event: self._graphflow_look()
+                )
+                told.in_order = True
+                return told
+
+            return held.add(node._graphflow.node, make)
 
         self._graphflow_goals = client(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
         self._graphflow_cancels = client(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
         self._graphflow_results = client(carriers.GetResultService, "get_result", result_service_qos_profile)
         self._graphflow_feedback = subscription(carriers.FeedbackMessage, "feedback", feedback_sub_qos_profile)
         self._graphflow_status = subscription(carriers.GoalStatusMessage, "status", status_sub_qos_profile)
+        self._graphflow_is_open = True
         node.add_waitable(self)
 
     def _graphflow_look(self) -> None:
@@ -153,7 +151,7 @@ class ActionClient(Waitable):
     # what executors ask
 
     def is_ready(self, wait_set: Any) -> bool:
-        if self._graphflow_is_destroyed:
+        if not self._graphflow_is_open:
             return False
         clients = (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         return (
@@ -167,9 +165,10 @@ class ActionClient(Waitable):
         status = self._graphflow_status.take()
         if status is not None:
             work.append(partial(self._graphflow_heard_status, status.payload))
-        feedback = self._graphflow_feedback.take()
-        if feedback is not None:
-            work.append(partial(self._graphflow_heard_feedback, feedback.payload))
+        for _ in range(self._graphflow_feedback.waiting):  # all that came before a result
+            feedback = self._graphflow_feedback.take()
+            if feedback is not None:
+                work.append(partial(self._graphflow_heard_feedback, feedback.payload))
         for client in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results):
             answered = client.take()
             if answered is not None:
@@ -341,9 +340,9 @@ class ActionClient(Waitable):
 
     def destroy(self) -> None:
         """Withdraw it. Goals go on."""
-        if self._graphflow_is_destroyed:
+        if not self._graphflow_is_open:
             return
-        self._graphflow_is_destroyed = True
+        self._graphflow_is_open = False
         if self in self._node.waitables:
             self._node.remove_waitable(self)
         if self._node.context.ok():

@@ -199,6 +199,7 @@ class ActionServer(Waitable):
         name = node.resolve_service_name(action_name)
         carriers = action_type.Impl
         mark = partial(node._graphflow.bell.mark, self)
+        self._graphflow_is_open = False  # another thread may be spinning the node
 
         def service(carrier: Any, part: str, qos: QoSProfile) -> Any:
             type_ = registry.interface_class(messages.type_name(carrier))
@@ -220,7 +221,7 @@ class ActionServer(Waitable):
         self._graphflow_cancels = service(carriers.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
         self._graphflow_results = service(carriers.GetResultService, "get_result", result_service_qos_profile)
         self._graphflow_goals = service(carriers.SendGoalService, "send_goal", goal_service_qos_profile)
-        self._graphflow_is_destroyed = False
+        self._graphflow_is_open = True
         node.add_waitable(self)
 
     @property
@@ -230,7 +231,7 @@ class ActionServer(Waitable):
     # what executors ask
 
     def is_ready(self, wait_set: Any) -> bool:
-        return not self._graphflow_is_destroyed and any(
+        return self._graphflow_is_open and any(
             s.inbox.items for s in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results)
         )
 
@@ -381,7 +382,7 @@ class ActionServer(Waitable):
         goal._result._when_done(partial(self._graphflow_answer_result, asked, goal))
 
     def _graphflow_answer_result(self, asked: Asked, goal: ServerGoalHandle) -> None:
-        if not self._graphflow_is_destroyed:
+        if self._graphflow_is_open:
             with sending():
                 self._graphflow_results.answer(asked, messages.encode(goal._result.result()))
 
@@ -401,7 +402,7 @@ class ActionServer(Waitable):
             StatusMessage(goal_info=GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
             for goal in goals
         ]
-        if not self._graphflow_is_destroyed:
+        if self._graphflow_is_open:
             message = self._action_type.Impl.GoalStatusMessage(status_list=rows)
             with sending():
                 self._graphflow_status.put(messages.encode(message))
@@ -411,7 +412,7 @@ class ActionServer(Waitable):
         if not isinstance(feedback, self._action_type.Feedback):
             raise TypeError(f"Expected {self._action_type.Feedback}, got {type(feedback)}")
         message = self._action_type.Impl.FeedbackMessage(goal_id=goal_handle.goal_id, feedback=feedback)
-        if not self._graphflow_is_destroyed:
+        if self._graphflow_is_open:
             with sending():
                 self._graphflow_feedback.put(messages.encode(message))
 
@@ -435,9 +436,9 @@ class ActionServer(Waitable):
 
     def destroy(self) -> None:
         """Withdraw it. Goals that run go on, and their results are lost."""
-        if self._graphflow_is_destroyed:
+        if not self._graphflow_is_open:
             return
-        self._graphflow_is_destroyed = True
+        self._graphflow_is_open = False
         with self._lock:
             self._goal_handles.clear()
         if self in self._node.waitables:

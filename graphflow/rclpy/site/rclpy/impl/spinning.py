@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
-from graphflow.rclpy.wake import Wake
+from graphflow.rclpy.wake import SharedWake
 from rclpy.exceptions import InvalidHandle
 from rclpy.task import Task
 
@@ -129,7 +129,7 @@ class Spinning:
 
     def __init__(self, executor: Spins, context: Context) -> None:
         self.executor, self.context = executor, context
-        self.wake = Wake()
+        self.wake = SharedWake()
         self.nodes: dict[Any, None] = {}
         self.is_shutdown = False
         self.running: dict[Run, None] = {}
@@ -139,8 +139,11 @@ class Spinning:
         self._round: deque[tuple[Any, Any]] = deque()
         """What was found to have something to do, with its node; tasks have none."""
         self._tasks_were_last = False
+        self._asking: list[tuple[Any, Any, Any]] = []
+        """With what each thread that waits has asked for the next thing to do."""
         self._looking = threading.Lock()
         self.has_room: Callable[[], bool] = lambda: True
+        self.has_failed: Callable[[], bool] = lambda: False
 
     # tasks
 
@@ -169,32 +172,42 @@ class Spinning:
 
         Raises:
             ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: As they say.
+            ValueError: Another thread waits with the same arguments: ROS 2 allows it with others only.
         """
+        asked = (timeout, nodes, condition)
+        if asked in self._asking:
+            raise ValueError("generator already executing")
         until = None if timeout is None or timeout < 0 else time.monotonic() + timeout
         life = self.context.life
         if life is not None:
             life.on_end(self.wake)
-        if not self._looking.acquire(blocking=False):
-            raise ValueError("generator already executing")
+        self._asking.append(asked)
         try:
-            while True:
-                if self.is_shutdown:
-                    raise ShutdownException
-                if not self.context.ok():
-                    raise ExternalShutdownException
-                if condition():
-                    raise ConditionReachedException
-                found = self._find(nodes, is_hurried=timeout == 0) if self.has_room() else None
-                if found is not None:
-                    return found
-                left = None if until is None else until - time.monotonic()
-                if left is not None and left <= 0:
-                    raise TimeoutException
-                self.wake.wait(_shorter(left, self._next_timer(nodes) if self.has_room() else None))
+            with self.wake.for_one() as wake:
+                while True:
+                    if self.is_shutdown:
+                        raise ShutdownException
+                    if not self.context.ok():
+                        if life is not None:
+                            life.hold_daemon()
+                        raise ExternalShutdownException
+                    if condition() or self.has_failed():
+                        raise ConditionReachedException
+                    found = self._find(nodes, is_hurried=timeout == 0)
+                    if found is not None:
+                        return found
+                    left = None if until is None else until - time.monotonic()
+                    if left is not None and left <= 0:
+                        raise TimeoutException
+                    wake.wait(_shorter(left, self._next_timer(nodes) if self.has_room() else None))
         finally:
-            self._looking.release()
+            self._asking.remove(asked)
 
     def _find(self, nodes: Any, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
+        with self._looking:
+            return self._found(nodes, is_hurried=is_hurried) if self.has_room() else None
+
+    def _found(self, nodes: Any, *, is_hurried: bool) -> tuple[Run, Any, Any] | None:
         for _ in range(3):  # what the last look has found, then new ones, for tasks and for the rest
             while self._round:
                 what, node = self._round.popleft()

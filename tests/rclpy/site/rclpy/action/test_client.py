@@ -9,6 +9,7 @@ import pytest
 from example_interfaces.action import Fibonacci
 
 import rclpy
+from graphflow.rclpy import held
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer
 from rclpy.action.server import ServerGoalHandle
@@ -41,6 +42,44 @@ def test_another_thread_may_block_on_a_goal(node: Node, spin: Spinner) -> None:
     thread.join()
     assert handle.accepted
     assert "accepted=True" in repr(handle)
+
+
+def test_both_ends_are_made_while_the_node_is_spun(node: Node, spin: Spinner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By another thread, which must not see them half made: here a turn comes after each of their parts."""
+    ActionServer(node, Fibonacci, "fib", succeed)  # whose status is kept for those who come later
+    client = ActionClient(node, Fibonacci, "fib")
+    future = client.send_goal_async(Fibonacci.Goal())
+    spin(future.done)
+    real = held.add
+
+    def add(*args: Any) -> Any:
+        endpoint = real(*args)
+        for _ in range(3):
+            spin.executor.spin_once(timeout_sec=0.01)
+        return endpoint
+
+    monkeypatch.setattr(held, "add", add)
+    for _ in range(3):
+        ActionClient(node, Fibonacci, "fib")
+        ActionServer(node, Fibonacci, "fib", succeed)
+
+
+def test_feedback_comes_before_the_result(node: Node, spin: Spinner) -> None:
+    """All of it, however much there is when the executor has time."""
+
+    def work(goal: ServerGoalHandle) -> Any:
+        for i in range(5):
+            goal.publish_feedback(Fibonacci.Feedback(sequence=[i]))
+        return succeed(goal)
+
+    ActionServer(node, Fibonacci, "fib", work)
+    client, heard = ActionClient(node, Fibonacci, "fib"), list[int]()
+    future = client.send_goal_async(Fibonacci.Goal(), lambda message: heard.append(message.feedback.sequence[0]))
+    spin(future.done)
+    handle: Any = future.result()
+    result = handle.get_result_async()
+    spin(result.done)
+    assert heard == [0, 1, 2, 3, 4]
 
 
 def test_a_server_is_there_when_all_of_it_is(node: Node) -> None:
