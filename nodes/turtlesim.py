@@ -20,7 +20,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import graphflow
-from graphflow import Abort, InvalidName, Node, Param, service, task, timer
+from graphflow import Abort, InvalidName, Node, Param, service, timer
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_srvs.srv import Empty, Trigger
 from graphflow.msgs.turtlesim.action import RotateAbsolute
@@ -68,6 +68,9 @@ class TurtleSim(Node):
         self.hatch_first()
 
     async def on_start(self) -> None:
+        self.log.info("Starting turtlesim with node name %s", self.full_name)
+        for turtle in self.world.turtles.values():
+            self.announce(turtle)
         if self.view:
             await self.enter(self.shown())
 
@@ -102,12 +105,6 @@ class TurtleSim(Node):
     @property
     def background(self) -> Colour:
         return self.background_r, self.background_g, self.background_b
-
-    @task
-    async def greet(self) -> None:
-        self.log.info("Starting turtlesim with node name %s", self.full_name)
-        for turtle in list(self.world.turtles.values())[:1]:  # the others were asked for, and announced
-            self.announce(turtle)
 
     @timer(TICK)
     async def update(self) -> None:

@@ -132,9 +132,9 @@ def _is_launch_file(file: Path) -> bool:
 def _has_rclpy(folder: Path) -> bool:
     """Whether some code below a folder is written for rclpy."""
     from graphflow.graph.rclpy_source import files_in
-    from graphflow.graph.workspace import uses_rclpy
+    from graphflow.graph.workspace import uses_ros
 
-    return any(map(uses_rclpy, files_in(folder)))
+    return any(map(uses_ros, files_in(folder)))
 
 
 def _check_rclpy(paths: Sequence[Path], *, as_json: bool) -> int:

@@ -64,9 +64,10 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
         raise UsageFault(f"Package {first!r} not found; a file is started by: graphflow launch FILE")
-    found = sorted(folder.rglob(rest[0]))
+    files = sorted(Path(at, name) for at, _, names in os.walk(folder, followlinks=True) for name in names)
+    found = [file for file in files if file.match(rest[0])]
     if not found:
-        there = sorted({f.name for f in folder.rglob("*launch*") if f.is_file()})
+        there = sorted({file.name for file in files if "launch" in file.name})
         raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
     return str(found[0]), rest[1:]
 

@@ -73,7 +73,8 @@ class Arguments:
         for name in self._given:
             if name not in self.values:
                 help_ = did_you_mean(name, self.values) or "; the file declares none under args:"
-                self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
+                told = self._problems.remark if self._problems.launch_files else self._problems.add
+                told(COMMAND_LINE, f"there is no argument {name!r}{help_}")
 
     def _text(self, name: str, spec: Item, default: str) -> Written:
         """The value of a launch file's argument; any text will do, if it is among the choices."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
-from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_rclpy
+from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.names import did_you_mean, nearest
 
 EXECUTABLES = {
@@ -68,7 +68,7 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     if module is None and package in (root.name, _project_name(root)):
         module = f"nodes.{executable}"
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
-    classes = _classes(file) if file is not None and file.is_file() and not uses_rclpy(file) else []
+    classes = _classes(file) if file is not None and file.is_file() and not uses_ros(file) else []
     return Executable(f"{module}:{classes[0]}", executable) if len(classes) == 1 else None
 
 
@@ -111,8 +111,7 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         NoExecutable: Nobody here has one of that name; the text says which there are.
     """
     own = workspace.packages.get(package)
-    is_sourced = shutil.which("ros2", path=env.get("PATH")) is not None
-    if own is None and is_sourced:
+    if own is None and shutil.which("ros2", path=env.get("PATH")) is not None:
         return ("ros2", "run", package, name)
     if own is None:
         own = bundled().packages.get(package)

@@ -22,9 +22,9 @@ from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph import executables
 from graphflow.graph.arguments import Arguments
 from graphflow.graph.faults import Problems, example, unknown_key, validated
+from graphflow.graph.inherit import BY_ENTRY, with_groups
 from graphflow.graph.model import (
     BLOCKS,
-    FROM_GROUPS,
     FROM_LAUNCH,
     TOP_KEYS,
     ForBlock,
@@ -35,14 +35,11 @@ from graphflow.graph.model import (
 )
 from graphflow.graph.project import no_file, shown
 from graphflow.graph.reading import read
+from graphflow.graph.ros_launch import ignore
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
 from graphflow.graph.tree import Item, first_of, located, merged, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
-BY_ENTRY = ("params", "remap", "env")
-"""Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
-INHERITED = ("restart", "on_exit", "critical", "log_level", "lifecycle")
-"""Keys of a group that a node has unless it says otherwise."""
 MAX_ROUNDS = 10_000
 """Of all loops of a graph together."""
 MAX_FILES = 200
@@ -92,7 +89,7 @@ class Expansion:
         """By the names that messages have for them."""
         self.arguments = Arguments(given, problems)
         self._outside, self._problems = outside, problems
-        self._rounds = self._made = 0
+        self._rounds = self._made = self._included = 0
         self._relative = 0
         """Names so far that depend on a namespace."""
 
@@ -195,14 +192,9 @@ class Expansion:
             raise GraphFileError([*self._problems, Problem(place, no_file(path))])
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
-        top = read(
-            path,
-            shown(path),
-            self._problems.add,
-            describe=self._outside.describe,
-            values=values,
-            remark=self._problems.remark,
-        )
+        self._included += 1
+        add, remark = self._problems.add, self._problems.remark
+        top = read(path, shown(path), add, ignore, self._outside.describe, values, remark, self._included + 1)
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None
@@ -330,7 +322,7 @@ class Expansion:
             return
         if name in self.nodes and (item.at.file in self._problems.launch_files or "keep_names" in item.entries):
             taken, name = name, next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
-            if "keep_names" not in item.entries:  # else the name is that of the process alone
+            if not item.entries.keys() & {"keep_names", "command"}:  # else the name is that of the process alone
                 self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
         if self._is_taken(name, item, self.nodes, "nodes"):
             return
@@ -339,7 +331,7 @@ class Expansion:
         if own is not None and not isinstance(own.value, str):
             item = item._replace(value={**item.entries, "namespace": own})
         if isinstance(item.value, dict):
-            item = self._with_groups(executables.as_class(item, self._outside.root), scope)
+            item = with_groups(executables.as_class(item, self._outside.root), scope.shared)
         self.nodes[name] = item
         self.written[name] = (key, scope.namespace)
 
@@ -422,24 +414,6 @@ class Expansion:
             if key not in keys_of(NodeSpec) or key == "template":
                 self._problems.add(entry.at, unknown_key(key, keys_of(NodeSpec)))
         return merged(base, item, BY_ENTRY)
-
-    def _with_groups(self, item: Item, scope: _Scope) -> Item:
-        """A node with what the groups around it give it."""
-        entries = dict(item.entries)
-        for key in INHERITED:
-            found = first_of([entries, *scope.shared]).get(key)
-            if found is not None and (key != "lifecycle" or "pkg" not in entries):  # which only some programs have
-                entries[key] = found
-        for key in BY_ENTRY:
-            of_groups = first_of([group[key].entries for group in scope.shared if key in group])
-            if not of_groups:
-                continue
-            if key == "env":
-                own = entries.get("env", Item({}, item.place))
-                entries["env"] = own._replace(value=first_of([own.entries, of_groups]))
-            else:
-                entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
-        return item._replace(value=entries)
 
     # values
 

@@ -229,8 +229,9 @@ class NodeSpec(_Settings):
             wrong = next((key for key in OF_NODES if key in has), None)
             data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
         elif has & {"pkg", "exec"}:
-            if not has >= {"pkg", "exec"}:
-                raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME")
+            is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
+            if "exec" not in has or ("pkg" not in has and not is_file):
+                raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
             if "class" in has:
                 raise ValueError("write class:, or pkg: and exec:, not both")
             wrong = next((key for key in OF_CLASSES if key in has), None)

@@ -25,6 +25,7 @@ def read(
     describe: Describe | None = None,
     values: Mapping[str, Any] | None = None,
     remark: Complain = ignore,
+    number: int = 1,
 ) -> Item:
     """A graph file, or a launch file in YAML, XML or Python.
 
@@ -35,6 +36,7 @@ def read(
         describe: For those in Python.
         values: The arguments that such a file is about to be started with; None if it is only to be written down.
         remark: Called with what such a file says that is left out.
+        number: Which file of the graph it is: steps that a launch file does not name are called by it.
 
     Raises:
         GraphFileError: It cannot be read; why, and where.
@@ -48,8 +50,8 @@ def read(
             complain(Place(name, problem["line"], 1), problem["message"])
         for left_out in told["remarks"]:
             remark(Place(name, left_out["line"], 1), left_out["message"])
-        return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note)
+        return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note, number)
     top = xml_source.read_file(path, name) if path.suffix == ".xml" else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):
-        return ros_launch.native(top, project_root(path), complain, note)
+        return ros_launch.native(top, project_root(path), complain, note, number)
     return top

@@ -92,7 +92,7 @@ def _resolve(
         problems.raise_any()
     assert model is not None
     files = _ParamsFiles(src, expansion.files, problems)
-    programs = _Programs(src, outside, problems)
+    programs = _Programs(src, expansion.files, outside, problems)
     nodes = _nodes(src, model, files, programs, problems)
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
     problems.excuse(map(str, programs.left_out))
@@ -124,10 +124,14 @@ def _resolve(
 
 
 class _Programs:
-    """The programs of a graph; its workspace is read once, if any is of a package."""
+    """The programs of a graph; its workspace is read once, if any is of a package.
 
-    def __init__(self, src: Source, outside: Outside, problems: Problems) -> None:
-        self._src, self._outside, self._problems = src, outside, problems
+    Args:
+        graph_files: The graph files, whose folders relative paths start from, by the names that messages have for them.
+    """
+
+    def __init__(self, src: Source, graph_files: Mapping[str, Path], outside: Outside, problems: Problems) -> None:
+        self._src, self._files, self._outside, self._problems = src, graph_files, outside, problems
         self.left_out: dict[str | int, Problem] = {}
         """Nodes of launch files, by name, whose programs nobody here has."""
 
@@ -137,15 +141,31 @@ class _Programs:
 
     def command(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
         """The words that run a node's program: none for a class, None for one that is left out."""
-        command = self._executable(spec, at) if spec.pkg else tuple(map(str, spec.command))
+        command = self._executable(spec, at) if spec.exec_ else self._foreign(spec, at)
         before = None if command is None else self._prefix(spec, at)
         if command is None or before is None:
             return None
-        return (*before, *command, *map(str, spec.args)) if spec.pkg else command
+        return (*before, *command, *map(str, spec.args)) if spec.exec_ else command
+
+    def _foreign(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
+        """The words of `command:`; None for a program that nobody here has, in a launch file."""
+        words = tuple(map(str, spec.command))
+        place = self._src.place((*at, "command"))
+        if words and place.file in self._problems.launch_files and which(words[0], path=self._path) is None:
+            text = f"{words[0]} is left out: there is no program of that name on the PATH"
+            self.left_out[at[-1]] = Problem(place, text)
+            return None
+        return words
+
+    @property
+    def _path(self) -> str | None:
+        return self._outside.env.get("PATH")
 
     def _executable(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...] | None:
         """The words that run an executable of a package; None for one that is left out, since nobody here has it."""
         place = self._src.place((*at, "exec"))
+        if not spec.pkg:
+            return self._file(spec, place)
         try:
             return command_of(spec.pkg, spec.exec_, self._workspace, self._outside.env)
         except NoExecutable as error:
@@ -156,6 +176,15 @@ class _Programs:
                 self._problems.add(place, str(error))
             return ("ros2", "run", spec.pkg, spec.exec_)
 
+    def _file(self, spec: NodeSpec, place: Place) -> tuple[str, ...]:
+        """The words that run an executable which is a file: a Python script, or anything else that can be run."""
+        file = self._files[place.file].parent / spec.exec_
+        if not file.is_file():
+            self._problems.add(place, f"exec: there is no file {file}")
+        elif file.suffix != ".py" and not os.access(file, os.X_OK):
+            self._problems.add(place, f"exec: {file} is no executable file; to make it one: chmod +x {file}")
+        return ("graphflow", "run", str(file)) if file.suffix == ".py" else (str(file),)
+
     def _prefix(self, spec: NodeSpec, at: source.Path) -> list[str] | None:
         """The words before a program's own; None for one that is left out, since nobody here has what they name."""
         place = self._src.place((*at, "prefix"))
@@ -164,13 +193,13 @@ class _Programs:
         except ValueError as error:
             self._problems.add(place, f"prefix: {error}")
             return []
-        if words and not spec.pkg:
+        if words and not spec.exec_:
             run = f"graphflow run --prefix {shlex.quote(spec.prefix)} {spec.class_}"
             text = f"prefix: goes with pkg: and exec:; to run this class by itself with it: {run}"
             self._problems.add_unless_ros(place, text)
-        elif words and which(words[0], path=self._outside.env.get("PATH")) is None:
+        elif words and which(words[0], path=self._path) is None:
             rules = "".join(f" -r {old}:={new}" for old, new in spec.remap.items())
-            run = f"run it by itself: graphflow run {spec.pkg} {spec.exec_}{rules and f' --ros-args{rules}'}"
+            run = f"run it by itself: graphflow run {executable_of(spec)}{rules and f' --ros-args{rules}'}"
             text = f"there is no program {words[0]!r} on the PATH, which prefix: names; {run}"
             if place.file not in self._problems.launch_files:
                 self._problems.add(place, text)
@@ -254,17 +283,17 @@ def _nodes(
         command = programs.command(spec, base)
         if command is None:
             continue
-        reads = files.checked(spec, (*base, "params_file")) if spec.pkg else ()
-        known = {} if spec.pkg else files.params(spec, (*base, "params_file"), name)
+        reads = files.checked(spec, (*base, "params_file")) if spec.exec_ else ()
+        known = {} if spec.exec_ else files.params(spec, (*base, "params_file"), name)
         nodes[name] = PlannedNode(
             name=name,
             class_path="" if spec.class_ == NO_CLASS else spec.class_,
             command=command,
-            executable=f"{spec.pkg} {spec.exec_}" if spec.pkg else "",
+            executable=executable_of(spec),
             keeps_names=spec.keep_names,
             params_files=reads,
             place=src.key_place(base),
-            class_place=src.place((*base, "command" if spec.command else "pkg" if spec.pkg else "class")),
+            class_place=src.place((*base, _what_it_is(spec))),
             params=known | _params(src, spec, base, problems),
             remaps=_remaps(src, spec, base, name, problems),
             process=spec.process,
@@ -278,9 +307,20 @@ def _nodes(
             lifecycle=spec.lifecycle or "",
             lifecycle_place=src.place((*base, "lifecycle")),
         )
-    if not model.nodes and not problems:
+    if not model.nodes and not problems and not (model.steps and src.file in problems.launch_files):
         problems.add(src.place(("nodes",)), f"there is no node{example('nodes')}")
     return nodes
+
+
+def _what_it_is(spec: NodeSpec) -> str:
+    """The key that says what is run."""
+    given = {"command": spec.command, "pkg": spec.pkg, "exec": spec.exec_}
+    return next((key for key, value in given.items() if value), "class")
+
+
+def executable_of(spec: NodeSpec) -> str:
+    """The package and the executable, or the file, that a node is; empty for others."""
+    return f"{spec.pkg} {spec.exec_}".strip()
 
 
 def _params(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) -> dict[str, Setting]:

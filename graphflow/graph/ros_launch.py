@@ -26,6 +26,7 @@ from graphflow.graph.ros_attributes import children, items, says, split
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
+from graphflow.graph.ros_settings import pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
 from graphflow.graph.workspace import bundled, find_workspace
 from graphflow.names import did_you_mean
@@ -73,8 +74,6 @@ _ELSEWHERE = {
     "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
-_OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
-"""The keys of a graph file for ROS 2's options."""
 _SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
 
 
@@ -103,7 +102,7 @@ def recorded(actions: list[dict[str, Any]], file: str) -> Item:
     return Item({"launch": Item([action(said) for said in actions], top)}, top)
 
 
-def native(top: Item, root: Path, complain: Complain, note: Complain = ignore) -> Item:
+def native(top: Item, root: Path, complain: Complain, note: Complain = ignore, number: int = 1) -> Item:
     """A launch file as a graph file.
 
     Args:
@@ -111,13 +110,15 @@ def native(top: Item, root: Path, complain: Complain, note: Complain = ignore) -
         root: The project's folder.
         complain: Called with what has no words here.
         note: Called with what has, but which the reader should know of.
+        number: Which file of the graph it is.
     """
-    return _Translation(root, complain, note).file(top)
+    return _Translation(root, complain, note, number).file(top)
 
 
 class _Translation:
-    def __init__(self, root: Path, complain: Complain, note: Complain) -> None:
+    def __init__(self, root: Path, complain: Complain, note: Complain, number: int) -> None:
         self._root, self._complain, self._note = root, complain, note
+        self._of = f"_of_{number}" if number > 1 else ""
         self._args: dict[str, Item] = {}
         self._texts: dict[str, Item] = {}  # their defaults as they are written
         self._count: dict[str, int] = {}
@@ -183,44 +184,12 @@ class _Translation:
             values = Item([typed(item.entries.get("value", nothing))], item.place)
             loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
             return item._replace(value={"for": Item(loop, item.place)})
-        key, value = self._setting(name, item)
+        key, value = setting(name, item, self._complain)
         rest = self._block(after)
         inner = rest.get("group")
         only = inner is not None and len(rest) == 1 and isinstance(inner.value, dict) and key not in inner.value
         body = inner.value if inner is not None and only else rest
         return item._replace(value={key: value, **body})
-
-    def _setting(self, name: str, item: Item) -> tuple[str, Item]:
-        """What an action sets for all after it: the key of a group, and its value."""
-        match name:
-            case "push_ros_namespace":
-                return "namespace", item.entries.get("namespace", Item("", item.place))
-            case "set_parameter":
-                return "params", self._pair(item, "name", "value", is_typed=True)
-            case "set_use_sim_time":
-                value = typed(item.entries.get("value", Item("", item.place)))
-                return "params", Item({"use_sim_time": value}, item.place)
-            case "set_remap":
-                return "remap", self._pair(item, "from", "to")
-            case "append_env":
-                pair, get = self._pair(item, "name", "value"), item.entries.get
-                separator = str(get("separator", Item(":", item.place)).value)
-                is_first = says(item, "prepend", "true", "1")
-                found = {}
-                for name, value in pair.entries.items():
-                    parts = [f"$(optenv {name})", str(value.value)]
-                    found[name] = value._replace(value=separator.join(parts[::-1] if is_first else parts))
-                return "env", pair._replace(value=found)
-            case _:
-                return "env", self._pair(item, "name", "value")
-
-    def _pair(self, item: Item, key: str, value: str, *, is_typed: bool = False) -> Item:
-        name = item.entries.get(key)
-        if name is None or not isinstance(name.value, str):
-            self._complain(item.at, f"the attribute {key!r} is missing")
-            return Item({}, item.place)
-        found = item.entries.get(value, Item("", item.place))
-        return Item({name.value: (typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
 
     # actions
 
@@ -272,7 +241,7 @@ class _Translation:
         entries: dict[str, Item] = {k: item.entries[k] for k in ("file", "if", "unless") if k in item.entries}
         args = [arg for key in ("arg", "let") for arg in items(item.entries.get(key))]
         if args:
-            pairs = [self._pair(arg, "name", "value", is_typed=True) for arg in args]
+            pairs = [pair(arg, "name", "value", self._complain, is_typed=True) for arg in args]
             entries["args"] = Item({key: value for pair in pairs for key, value in pair.entries.items()}, item.place)
         return item._replace(value=entries)
 
@@ -301,23 +270,24 @@ class _Translation:
 
     def _node(self, item: Item, body: dict[str, Item]) -> None:
         package, name = item.entries.get("pkg"), item.entries.get("exec")
-        if package is None or name is None or not isinstance(package.value, str) or not isinstance(name.value, str):
+        is_file = package is None and name is not None and "/" in str(name.value)
+        if name is None or not isinstance(name.value, str) or not (is_file or _is_text(package)):
             self._complain(item.at, "node: the attributes 'pkg' and 'exec' are needed")
             return
-        found = executables.find(package.value, name.value, self._root)
+        found = executables.find(package.value, name.value, self._root) if package is not None else None
         own = item.entries.get("name")
         entries: dict[str, Item] = {}
         if "namespace" in item.entries:
             entries["namespace"] = item.entries["namespace"]
         if "remap" in item.entries:
-            pairs = [self._pair(remap, "from", "to") for remap in items(item.entries["remap"])]
+            pairs = [pair(remap, "from", "to", self._complain) for remap in items(item.entries["remap"])]
             rules = {key: value for pair in pairs for key, value in pair.entries.items()}
             entries["remap"] = Item(rules, item.entries["remap"].place, item.entries["remap"].key)
-        self._params(item, entries)
+        params(item, entries, self._complain)
         if found is None:
             entries = {**self._program(item, package, name), **entries}
         else:
-            self._words(item, entries)
+            ros_words(item, entries, self._note)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
         if "brought_to" in item.entries:
             entries["lifecycle"] = item.entries["brought_to"]
@@ -328,17 +298,19 @@ class _Translation:
         if "launch-prefix" in item.entries:
             entries["prefix"] = item.entries["launch-prefix"]
         entries |= self._common(item)
-        usual = re.sub(r"\W", "_", name.value.removesuffix(".py")) if found is None else found.node_name
+        usual = re.sub(r"\W", "_", Path(name.value).name.removesuffix(".py")) if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
         self._add_node(body, key, item._replace(value=entries, key=own.place if own is not None else item.key))
 
-    def _program(self, item: Item, package: Item, name: Item) -> dict[str, Item]:
-        """A program of the workspace, or one that only ROS has."""
-        own = find_workspace(self._root).packages.get(package.value) or bundled().packages.get(package.value)
-        if own is None or own.known_as(name.value) is None:
-            text = f"{package.value} {name.value}: no node of that name is here; ros2 runs it, which must be installed"
-            self._note(name.place, text)
-        entries = {"pkg": package, "exec": name}
+    def _program(self, item: Item, package: Item | None, name: Item) -> dict[str, Item]:
+        """A program of the workspace, one that only ROS has, or a file."""
+        entries = {"exec": name}
+        if package is not None:
+            entries = {"pkg": package, "exec": name}
+            own = find_workspace(self._root).packages.get(package.value) or bundled().packages.get(package.value)
+            if own is None or own.known_as(name.value) is None:
+                text = f"{package.value} {name.value}: no node of that name is here; ros2 runs it"
+                self._note(name.place, f"{text}, which must be installed")
         words, for_ros = (words_of(item.entries.get(key)) for key in ("args", "ros_args"))
         if for_ros:
             words += ["--ros-args", *(word for word in for_ros if word != "--ros-args"), "--"]
@@ -348,53 +320,6 @@ class _Translation:
         if "name" not in item.entries:
             entries["keep_names"] = Item(True, name.place, name.key)
         return entries
-
-    def _params(self, item: Item, entries: dict[str, Item]) -> None:
-        files: list[Item] = []
-        values: dict[str, Item] = {}
-
-        def take(params: list[Item], into: dict[str, Item]) -> None:
-            for param in params:
-                if "from" in param.entries:
-                    files.append(param.entries["from"])
-                elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
-                    inner: dict[str, Item] = {}
-                    take(items(param.entries["param"]), inner)
-                    into[str(name.value)] = Item(inner, param.place, name.place)
-                else:
-                    pair = self._pair(param, "name", "value")
-                    kind = param.entries.get("type")
-                    is_text = kind is not None and kind.value == "str"
-                    into.update({key: value if is_text else typed(value) for key, value in pair.entries.items()})
-
-        take(items(item.entries.get("param")), values)
-        if files:
-            entries["params_file"] = Item(files, files[0].place, files[0].place)
-        if values:
-            place = item.entries["param"].place
-            entries["params"] = Item(values, place, place)
-
-    def _words(self, item: Item, entries: dict[str, Item]) -> None:
-        """What `args` and `ros_args` say in ROS 2's words: remaps, parameters, and the level of the log."""
-        for key in ("args", "ros_args"):
-            given = item.entries.get(key)
-            if given is None:
-                continue
-            words = [word for word in words_of(given) if word not in ("--ros-args", "--")]
-            for option, value in zip(words[::2], [*words[1::2], ""][: len(words[::2])], strict=True):
-                self._option(option, value, Item(value, given.place, given.key), key, entries)
-
-    def _option(self, option: str, value: str, at: Item, key: str, entries: dict[str, Item]) -> None:
-        name, arrow, said = value.partition(":=")
-        section = _OPTIONS.get(option)
-        if option == "--log-level" and value and not arrow:
-            entries["log_level"] = at._replace(value=value.lower())
-        elif section is not None and name and arrow and not name.startswith("__"):
-            before = entries.get(section, Item({}, at.place, at.key))
-            made = typed(at._replace(value=said)) if section == "params" else at._replace(value=said)
-            entries[section] = before._replace(value={**before.entries, name: made})
-        else:
-            self._note(at.key or at.place, f"{key}: the node here does not know {option}; it is left out")
 
     def _executable(self, item: Item, body: dict[str, Item]) -> None:
         command = item.entries.get("cmd")
@@ -427,7 +352,7 @@ class _Translation:
             words[0] = "graphflow"
         entries = {"command": Item([Item(word, command.place) for word in words], command.place, item.at), **entries}
         own = item.entries.get("name")
-        base = Path(words[0]).name.replace("-", "_").replace(".", "_")
+        base = re.sub(r"\W", "_", Path(words[0].removeprefix("$(find-exec ").rstrip(")")).name)
         key = f"{base}_{self._next(base)}"
         if own is not None:  # a label, which several may have
             count = self._next(f"label {own.value}")
@@ -439,7 +364,7 @@ class _Translation:
         entries = self._conditions(item)
         get = item.entries.get
         if "env" in item.entries:
-            pairs = [self._pair(variable, "name", "value") for variable in items(item.entries["env"])]
+            pairs = [pair(variable, "name", "value", self._complain) for variable in items(item.entries["env"])]
             entries["env"] = Item({k: v for pair in pairs for k, v in pair.entries.items()}, item.entries["env"].place)
         respawn = get("respawn")
         if respawn is not None and says(item, "respawn", "true", "1"):
@@ -470,7 +395,7 @@ class _Translation:
 
     def _add_step(self, body: dict[str, Item], word: str, item: Item, step: dict[str, Item]) -> str:
         """Add a step that is called by a word and a number; returns its name."""
-        name, common = f"{word}_{self._next(word)}", self._common(item)
+        name, common = f"{word}_{self._next(word)}{self._of}", self._common(item)
         if "number" in item.entries:
             self._numbered[item.entries["number"].value] = (name, True)
         before = {key: common[key] for key in ("if", "unless", "after") if key in common}
@@ -480,6 +405,10 @@ class _Translation:
     def _next(self, word: str) -> int:
         self._count[word] = self._count.get(word, 0) + 1
         return self._count[word]
+
+
+def _is_text(item: Item | None) -> bool:
+    return item is not None and isinstance(item.value, str)
 
 
 def _extend(body: dict[str, Item], key: str, more: Item) -> None:

@@ -36,9 +36,9 @@ class Written(str):
 
     @property
     def value(self) -> Any:
-        """What it reads as."""
+        """What it reads as; nothing is an empty text."""
         try:
-            return scalar(self)
+            return scalar(self) if self else ""
         except ValueError:  # a number with too many digits
             return str(self)
 

@@ -36,6 +36,8 @@ _SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^()]+?)\s*\)", re.IGNORECASE)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _MODULES = re.compile(r"ament_python_install_package\s*\(\s*([\w${}-]+)(?:\s+PACKAGE_DIR\s+([^\s)]+))?", re.IGNORECASE)
 KINDS = ("msg", "srv", "action")
+_ROS = ("rclpy", "launch", "launch_ros")
+"""Packages of ROS's that a program of ROS's imports one of."""
 BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
 """The packages with programs of ROS 2's that come with graphflow; they lie there as in any workspace."""
 
@@ -73,7 +75,7 @@ class Package:
     @property
     def has_interfaces(self) -> bool:
         """Whether messages, services or actions are defined in it."""
-        return any(next((self.folder / kind).glob(f"*.{kind}"), None) is not None for kind in KINDS)
+        return any(next((self.folder / kind).rglob(f"*.{kind}"), None) is not None for kind in KINDS)
 
     @cached_property
     def entry_points(self) -> Mapping[str, EntryPoint]:
@@ -99,7 +101,13 @@ class Package:
     @property
     def faults(self) -> list[str]:
         """What is wrong with its executables."""
-        return [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+        found = [fault for name in self.entry_points if (fault := self.fault_of(name)) is not None]
+        setup = self.folder / "setup.py"
+        if _computes_scripts(setup):
+            found.append(
+                f"{setup}: it computes some executables, and is only read; run their files: graphflow run FILE"
+            )
+        return found
 
     def fault_of(self, executable: str) -> str | None:
         """What is wrong with one: the module of its function is not there."""
@@ -276,12 +284,28 @@ def _of_setup_py(file: Path) -> dict[str, EntryPoint]:
     return found
 
 
-def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
-    """What stands under `console_scripts`: in a literal list, or else anywhere in a file that has such a group."""
+def _computes_scripts(file: Path) -> bool:
+    """Whether `console_scripts` of a `setup.py` are not all plain to see."""
+    try:
+        tree = ast.parse(_text(file))
+    except (SyntaxError, ValueError):
+        return False
+    known = constants(tree)
+    return any(
+        not isinstance(value, (ast.List, ast.Tuple)) or any(constant_text(one, known) is None for one in value.elts)
+        for value in _under_console_scripts(tree)
+    )
+
+
+def _under_console_scripts(tree: ast.Module) -> list[ast.expr]:
     dicts = (node for node in ast.walk(tree) if isinstance(node, ast.Dict))
     pairs = (pair for one in dicts for pair in zip(one.keys, one.values, strict=True))
-    lists = [value for key, value in pairs if isinstance(key, ast.Constant) and key.value == "console_scripts"]
-    literal = [value for value in lists if isinstance(value, (ast.List, ast.Tuple))]
+    return [value for key, value in pairs if isinstance(key, ast.Constant) and key.value == "console_scripts"]
+
+
+def _of_console_scripts(tree: ast.Module) -> Iterator[ast.AST]:
+    """What stands under `console_scripts`: in a literal list, or else anywhere in a file that has such a group."""
+    literal = [value for value in _under_console_scripts(tree) if isinstance(value, (ast.List, ast.Tuple))]
     texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str))
     tops: list[ast.AST] = [*literal] if literal else [tree] if any("console_scripts" in text for text in texts) else []
     return (node for top in tops for node in ast.walk(top))
@@ -338,16 +362,16 @@ def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
                 yield renamed or file.name, file
 
 
-def uses_rclpy(file: Path) -> bool:
-    """Whether a Python file imports rclpy, itself or in a function of it."""
+def uses_ros(file: Path) -> bool:
+    """Whether a Python file imports rclpy or launch, itself or in a function of it."""
     try:
         tree = ast.parse(_text(file))
     except (SyntaxError, ValueError):
         return False
     for node in ast.walk(tree):
         match node:
-            case ast.Import(names=names) if any(alias.name.partition(".")[0] == "rclpy" for alias in names):
+            case ast.Import(names=names) if any(alias.name.partition(".")[0] in _ROS for alias in names):
                 return True
-            case ast.ImportFrom(module=str(module), level=0) if module.partition(".")[0] == "rclpy":
+            case ast.ImportFrom(module=str(module), level=0) if module.partition(".")[0] in _ROS:
                 return True
     return False

@@ -140,7 +140,7 @@ def packages() -> list[str]:
 
 def names_in(package: str, kind: str) -> list[str]:
     """The names of a package's interfaces of one kind."""
-    return sorted({f.stem for folder in package_folders(package) for f in (folder / kind).glob(f"*.{kind}")})
+    return sorted({f.stem for folder in package_folders(package) for f in (folder / kind).rglob(f"*.{kind}")})
 
 
 def full_name(text: str) -> str:
@@ -207,6 +207,9 @@ def definition_file(name: str) -> Path:
             path = folder / kind / f"{base}.{kind}"
             if path.is_file():
                 return path
+            deeper = next((folder / kind).rglob(path.name), None)  # folders below are no part of the name
+            if deeper is not None:
+                return deeper
     raise UnknownInterface(_unknown(package, base, names_in(package, kind)))
 
 

@@ -27,7 +27,7 @@ _ARRAYS_FOR = {"bool": "np.bool_", "int": "np.integer", "float": "np.floating | 
 def stub(package: str, kind: str, header: str = _BUNDLED_HEADER) -> str:
     """The stub of `graphflow.msgs.<package>.<kind>`; for a bundled package, of its bundled definitions only."""
     folder = registry.package_folders(package)[0] / kind
-    names = sorted(file.stem for file in folder.glob(f"*.{kind}"))
+    names = sorted(file.stem for file in folder.rglob(f"*.{kind}"))
     body = "\n\n".join(text for name in names for text in _classes(f"{package}/{kind}/{name}"))
     return f"{header}\n{_imports(body)}\n\n{body}\n"
 

@@ -104,7 +104,7 @@ def _folder(package: str) -> str | None:
     for entry in getattr(sys.modules.get(package), "__path__", ()):
         for kind in KINDS:
             folder = os.path.join(entry, kind)
-            if os.path.isdir(folder) and any(name.endswith(f".{kind}") for name in os.listdir(folder)):
+            if any(name.endswith(f".{kind}") for _, _, names in os.walk(folder) for name in names):
                 return str(entry)
     return None
 

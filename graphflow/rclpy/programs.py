@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import runpy
+import shutil
 import signal
 import sys
 from collections.abc import Sequence
@@ -16,11 +17,14 @@ from typing import NamedTuple
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
 from graphflow.graph.executables import SLIP
-from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_rclpy
+from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder
 from graphflow.wire.profile import wire_profile
+
+BIN = str(Path(__file__).parent / "bin")
+"""The folder with a program `ros2`, which is graphflow."""
 
 
 class Program(NamedTuple):
@@ -49,7 +53,7 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     """
     file = here / what
     if what.endswith(".py") and file.is_file():
-        return Program(file, None, find_workspace(file), list(words)) if uses_rclpy(file) else None
+        return Program(file, None, find_workspace(file), list(words)) if uses_ros(file) else None
     is_folder = (file / "package.xml").is_file()
     workspace = find_workspace(file if is_folder else here)
     packages = workspace.packages
@@ -70,7 +74,7 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         near = did_you_mean(words[0], package.executables)
         raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}")
     file, entry = found
-    is_ours = entry is not None and not uses_rclpy(file) and "graphflow" in file.read_text("utf-8", "replace")
+    is_ours = entry is not None and not uses_ros(file) and "graphflow" in file.read_text("utf-8", "replace")
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
 
 
@@ -91,6 +95,9 @@ def make_importable(workspace: Workspace) -> bool:
     is_ours = enabling.here()
     if is_ours:
         finder.KNOWN.update({name: str(folder) for name, folder in workspace.interfaces.items()})
+    if shutil.which("ros2") is None:  # for what this process starts
+        os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), BIN])
+        os.environ["GRAPHFLOW_PYTHON"] = sys.executable
     sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
     return is_ours
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import yaml
+
+from graphflow.graph.source import scalar
 from graphflow.names import did_you_mean
 from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, condition, plain, text
 
@@ -48,14 +51,16 @@ def actions(said: Any) -> list[dict[str, Any]]:
         attributes["on_exit"] = "shutdown"
     if id(said) in _lives:
         attributes["brought_to"] = _lives[id(said)]
-    return [{name: attributes}]
+    return [{name: attributes}, *_after_exit(said)]
 
 
 def _action(said: Said) -> tuple[str, Any]:
     get = said.get
     match said.name:
-        case "LaunchDescription" | "ReplaceEnvironmentVariables":
-            return "", actions(get("initial_entities", 0, []))
+        case "LaunchDescription":
+            return "", actions(said.entities)
+        case "ReplaceEnvironmentVariables":
+            return "", []
         case "DeclareLaunchArgument":
             found: dict[str, Any] = {"name": text(get("name", 0)), "description": text(get("description", default=""))}
             if get("default_value") is not None:
@@ -124,6 +129,7 @@ def _called(said: Said) -> Any:
         RECORDING.problem(said, text)
     found = function(Context(), *(said.get("args", default=None) or []), **(said.get("kwargs", default=None) or {}))
     number_targets(found)
+    number_targets(RECORDING.descriptions)  # to which it may have added
     return found
 
 
@@ -164,8 +170,14 @@ def _handled(said: Said) -> list[dict[str, Any]]:
         return []
     whose, key, what = _HANDLERS[handler.name]
     target, then = handler.get(whose), handler.get(key)
-    if not isinstance(target, Said) or (callable(then) and not isinstance(then, Said)):
-        RECORDING.problem(said, f"{handler.name}: only for one process, with a list of actions")
+    if callable(target) and not isinstance(target, Said):
+        RECORDING.problem(said, f"{handler.name}: only for one process, and not for those that a function chooses")
+        return []
+    then, functions = _without_functions(then)
+    if functions or not isinstance(target, Said):
+        whose = "a function" if functions else "what it does for every process"
+        RECORDING.remark(said, f"{handler.name}: {whose} is left out: nothing is called while the graph runs")
+    if not isinstance(target, Said):
         return []
     goal = handler.get("goal_state")
     if goal is not None and goal not in (_lives.get(id(target)), "inactive" if id(target) in _lives else None):
@@ -174,13 +186,37 @@ def _handled(said: Said) -> list[dict[str, Any]]:
         )
         RECORDING.problem(said, text)
         return []
-    then = [one for one in (then if isinstance(then, list) else [then]) if not _is_shutdown(one)]
+    then = [one for one in then if not _is_shutdown(one)]
+    return _after(target, then, what)
+
+
+def _after(target: Said, then: list[Any], what: str) -> list[dict[str, Any]]:
+    """Actions that come after another."""
     number = _numbers.setdefault(id(target), len(_numbers) + 1)
     found = actions(then)
     for action in found:
         for attributes in action.values():
             attributes["after_number"], attributes["after_what"] = number, what
     return found
+
+
+def _after_exit(said: Said) -> list[dict[str, Any]]:
+    """What is to be done when a process has ended, as it says itself."""
+    then, functions = _without_functions(said.get("on_exit") if said.name in _PROCESSES else None)
+    if functions:
+        RECORDING.remark(said, "on_exit: a function is left out: nothing is called while the graph runs")
+    then = [one for one in then if not _is_shutdown(one)]
+    return _after(said, then, "exited") if then else []
+
+
+_PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess", "ExecuteLocal")
+
+
+def _without_functions(then: Any) -> tuple[list[Any], int]:
+    """What follows an event, and how many functions in it would be called then."""
+    whole = list(then) if isinstance(then, (list, tuple)) else [] if then is None else [then]
+    kept = [one for one in whole if isinstance(one, Said) and one.name != "OpaqueFunction"]
+    return kept, len(whole) - len(kept)
 
 
 def _common(said: Said) -> dict[str, Any]:
@@ -193,12 +229,8 @@ def _common(said: Said) -> dict[str, Any]:
     variables = {**(said.get("env") or {}), **(said.get("additional_env") or {})}
     if variables:
         found["env"] = [{"name": text(key), "value": text(value)} for key, value in variables.items()]
-    on_exit = said.get("on_exit")
-    if on_exit is not None:
-        if _is_shutdown(on_exit):
-            found["on_exit"] = "shutdown"
-        else:
-            RECORDING.problem(said, "on_exit: only Shutdown() has words in a graph file")
+    if any(map(_is_shutdown, _without_functions(said.get("on_exit"))[0])):
+        found["on_exit"] = "shutdown"
     return found
 
 
@@ -275,8 +307,13 @@ def _components(said: Said) -> list[dict[str, Any]]:
 def _parameter(name: Any, value: Any) -> dict[str, Any]:
     if isinstance(value, dict):
         return {"name": text(name), "param": [_parameter(key, inner) for key, inner in value.items()]}
-    is_text = isinstance(value, str) and "$(" not in value
+    is_text = isinstance(value, str) and "$(" not in value and not _is_number_to_ros(value)
     return {"name": text(name), "value": plain(value), **({"type": "str"} if is_text else {})}
+
+
+def _is_number_to_ros(value: str) -> bool:
+    """Whether ROS writes a text without quotes, and reads it back as a number: PyYAML takes 1e-3 for a text."""
+    return isinstance(scalar(value), float) and isinstance(yaml.safe_load(value), str)
 
 
 def _is_early(said: Any) -> bool:
@@ -294,17 +331,26 @@ def _is_shutdown(said: Any) -> bool:
 
 def number_targets(said: Any) -> None:
     """Number the actions that event handlers wait for, and note what events bring about, before all is written down."""
-    if isinstance(said, (list, tuple)):
-        for one in said:
-            number_targets(one)
-    elif isinstance(said, Said):
-        whose, key, _ = _HANDLERS.get(said.name, ("", "", ""))
-        if isinstance(target := said.get(whose), Said):
-            _numbers.setdefault(id(target), len(_numbers) + 1)
-            then = said.get(key) if key in ("on_exit", "on_completion") else None
-            if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
-                _ending.add(id(target))
-        if change := _change(said):
-            node, state = change
-            _lives[id(node)] = "active" if "active" in (state, _lives.get(id(node))) else state
-        number_targets([*said.args, *said.kwargs.values()])
+    todo, known = [said], set[int]()
+    while todo:
+        one = todo.pop()
+        if isinstance(one, (list, tuple)):
+            todo += reversed(one)
+        elif isinstance(one, Said) and id(one) not in known:  # a description may hold itself
+            known.add(id(one))
+            _number(one)
+            todo += reversed([*one.args, *one.kwargs.values(), *one.__dict__.get("entities", ())])
+
+
+def _number(said: Said) -> None:
+    if said.name in _PROCESSES and said.get("on_exit") is not None:
+        _numbers.setdefault(id(said), len(_numbers) + 1)
+    whose, key, _ = _HANDLERS.get(said.name, ("", "", ""))
+    if isinstance(target := said.get(whose), Said):
+        _numbers.setdefault(id(target), len(_numbers) + 1)
+        then = said.get(key) if key in ("on_exit", "on_completion") else None
+        if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
+            _ending.add(id(target))
+    if change := _change(said):
+        node, state = change
+        _lives[id(node)] = "active" if "active" in (state, _lives.get(id(node))) else state

@@ -13,17 +13,19 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import runpy
 import sys
 from collections.abc import Mapping
 from typing import Any
 
 from graphflow.supervisor.launch_actions import actions, number_targets
+from graphflow.supervisor.launch_service import Described
 from graphflow.supervisor.launch_stand_ins import RECORDING, Said, StandIns, as_text
 from graphflow.wire.profile import wire_profile
 
 
 class _Environment(dict[str, str]):
-    """The environment; a variable that is not set is a substitution, so that a path made of it is one, too."""
+    """What a file that is only written down sees: what is not set is a substitution, and so is a path made of it."""
 
     def __missing__(self, name: str) -> str:
         return f"$(env {name})"
@@ -39,22 +41,18 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
     if values is not None:
         RECORDING.values = {name: as_text(value) for name, value in values.items()}
     sys.meta_path.insert(0, StandIns())
+    sys.argv = ["ros2", "launch", path, *(f"{name}:={value}" for name, value in (RECORDING.values or {}).items())]
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
-    os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
+    before = dict(os.environ)
+    if values is None:
+        os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 - Python alone is to see it
     found: list[dict[str, Any]] = []
     try:
-        with open(path, encoding="utf-8") as file:
-            code = compile(file.read(), path, "exec")
-        space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}
-        exec(code, space)  # noqa: S102 - the user's own file, in a process of its own
-        if "generate_launch_description" not in space:
-            raise NameError("it has no function generate_launch_description()")
-        described = space["generate_launch_description"]()
-        if not isinstance(described, Said):
-            raise TypeError(f"generate_launch_description() returned {described!r}, and not a LaunchDescription")
-        whole = [described, *described.__dict__.get("added", [])]
+        whole = _described(path)
         number_targets(whole)
         found = actions(whole)
+        changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
+        found = [*({"set_env": {"name": n, "value": v, "line": 1}} for n, v in changed.items()), *found]
     except Exception as error:  # whatever a user's file does
         trace, line = error.__traceback__, getattr(error, "lineno", None) or 1
         while trace is not None:
@@ -64,6 +62,24 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         hint = f"; if it is on PyPI: pip install {error.name}" if isinstance(error, ModuleNotFoundError) else ""
         RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
     return {"actions": found, "problems": RECORDING.problems, "remarks": RECORDING.remarks}
+
+
+def _described(path: str) -> list[Any]:
+    """What a file describes: by its function, or where it would start it itself."""
+    with open(path, encoding="utf-8") as file:
+        code = compile(file.read(), path, "exec")
+    space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}
+    exec(code, space)  # noqa: S102 - the user's own file, in a process of its own
+    if "generate_launch_description" not in space:
+        try:
+            runpy.run_path(path, run_name="__main__")
+        except Described as told:
+            return told.description
+        raise NameError("it has no function generate_launch_description()")
+    described = space["generate_launch_description"]()
+    if not isinstance(described, Said):
+        raise TypeError(f"generate_launch_description() returned {described!r}, and not a LaunchDescription")
+    return [described]
 
 
 def main() -> None:

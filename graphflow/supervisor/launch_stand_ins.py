@@ -8,6 +8,7 @@ about to be started.
 from __future__ import annotations
 
 import json
+import logging
 import os
 import shlex
 import sys
@@ -24,6 +25,7 @@ from graphflow.folders import newest_logs
 from graphflow.graph.executables import package_prefix, package_share
 from graphflow.graph.project import project_root
 from graphflow.graph.substitutions import Outside, Substitutions, truth
+from graphflow.supervisor.launch_names import NAMES
 from graphflow.supervisor.printed import printed
 
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
@@ -40,6 +42,8 @@ class Recording:
         """The arguments that it is to be started with; None if it is only written down."""
         self.defaults: dict[str, str] = {}
         """Those of the arguments that have been declared so far."""
+        self.descriptions: list[Said] = []
+        """All that were made, to which a function may add while it is called."""
         self.problems: list[dict[str, Any]] = []
         """What has no words in a graph file, each with its `line` and a `message`."""
         self.remarks: list[dict[str, Any]] = []
@@ -120,6 +124,9 @@ class Said:
         default = self.get("default_value")
         if self.name == "DeclareLaunchArgument" and default is not None:
             RECORDING.defaults[text(self.get("name", 0))] = text(default)
+        if self.name == "LaunchDescription":
+            self.entities = list(self.get("initial_entities", 0) or ())
+            RECORDING.descriptions.append(self)
 
     def get(self, key: str, place: int = -1, default: Any = None) -> Any:
         """An argument by its name, or by its place among those without."""
@@ -130,11 +137,13 @@ class Said:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        return lambda *_, **__: None
+        return self.__dict__.get("kwargs", {}).get(name, lambda *_, **__: None)
 
     def add_action(self, action: Any) -> None:
-        """As a LaunchDescription has it."""
-        self.__dict__.setdefault("added", []).append(action)
+        """As a LaunchDescription has it, also while it is carried out."""
+        self.entities.append(action)
+
+    add_entity = add_action
 
     def find(self, package: Any = None) -> str:
         """As a FindPackageShare has it."""
@@ -160,18 +169,6 @@ class Said:
 
     def __fspath__(self) -> str:
         return text(self)
-
-
-class LaunchService(Said):
-    """What starts a description from a program; here that is a command's to do."""
-
-    name = "LaunchService"
-
-    def run(self, *_: Any, **__: Any) -> int:
-        """Start it. Raises NotImplementedError."""
-        raise NotImplementedError("LaunchService: start a file by `graphflow launch FILE.launch.py`")
-
-    run_async = run
 
 
 def text(value: Any) -> str:
@@ -226,6 +223,8 @@ def text(value: Any) -> str:
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
+    if type(value).perform is not Said.perform and RECORDING.values is not None:  # a class of the file's own
+        return text(value.perform(Context()))
     RECORDING.problem(value, f"{value.name} has no words in a graph file")
     return ""
 
@@ -256,14 +255,18 @@ def plain(value: Any) -> Any:
     return text(value)
 
 
+OWN: dict[str, type[Said]] = {}
+"""Classes that do more than remember, by name; who defines one puts it here."""
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
-_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle"}
+_SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle", "logging", "utilities"}
 
 
 class _StandIn(ModuleType):
     """A module that has whatever is asked for."""
 
     def __getattr__(self, name: str) -> Any:
+        if name == "__all__" and self.__name__ in NAMES:
+            return NAMES[self.__name__].split()
         if name.startswith("__"):
             raise AttributeError(name)
         made = _made(self.__name__, name)
@@ -275,8 +278,8 @@ def _made(module: str, name: str) -> Any:
     """What a module of ROS's launch packages has under a name."""
     if name in _SUBMODULES:  # also for those who have only imported `launch`
         return import_module(f"{module}.{name}")
-    if name == "LaunchService":
-        return LaunchService
+    if name in OWN:
+        return OWN[name]
     return _class(name) if name[:1].isupper() or name.startswith("matches_") else _function(name)
 
 
@@ -304,6 +307,10 @@ def _function(name: str) -> Any:
         return lambda package, *_: RECORDING.folder(what, package)
     if name in ("get_package_share_path", "get_package_prefix_path"):
         return lambda package, *_: Path(RECORDING.folder(what, package))
+    if name == "get_logger":
+        return logging.getLogger
+    if name == "perform_substitutions":
+        return lambda _, parts: RECORDING.known(text(parts))
     return lambda *_, **__: None
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from graphflow.graph.plan import PlannedNode
+from graphflow.graph.workspace import uses_ros
 from graphflow.introspect.echo import flow
 from graphflow.names import split
 
@@ -17,6 +19,8 @@ def words_of(node: PlannedNode) -> list[str]:
             command = [sys.executable, "-P", "-m", "graphflow.rclpy", *words]
         case "graphflow", *words:  # this one, whether or not it is on the PATH
             command = [sys.executable, "-P", "-m", "graphflow", *words]
+        case (("python" | "python3"), script, *words) if script.endswith(".py") and uses_ros(Path(script)):
+            command = [sys.executable, "-P", "-m", "graphflow.rclpy", script, *words]  # that Python may have no rclpy
         case words:
             command = list(words)
     return [*command, *(_ros_args(node) if node.executable else ())]

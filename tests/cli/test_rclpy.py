@@ -38,7 +38,7 @@ def test_a_sourced_ros_2_is_told(machine: Machine, monkeypatch: pytest.MonkeyPat
     assert "/opt/ros/rclpy/__init__.py" in machine.look("rclpy", "status")
 
 
-def test_a_file_that_uses_rclpy_is_run_as_it_stands(machine: Machine, tmp_path: Path) -> None:
+def test_a_file_that_uses_ros_is_run_as_it_stands(machine: Machine, tmp_path: Path) -> None:
     """With its own words, and its own end."""
     file = tmp_path / "hello.py"
     file.write_text(

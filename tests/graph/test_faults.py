@@ -72,7 +72,7 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
         ("{pkg: p, exec: e, output: screen}", ["unknown key 'output'; what any node prints is logged and shown"]),
         ("{pkg: p, exec: e, name: n}", ["unknown key 'name'; a node is called as its key"]),
         ("{class: x:Y, respawn: true}", ["unknown key 'respawn'; write restart: always"]),
-        ("{pkg: p}", ["an executable has both: pkg: PACKAGE and exec: NAME"]),
+        ("{pkg: p}", ["an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file"]),
         ("{pkg: p, exec: e, class: x:Y}", ["write class:, or pkg: and exec:, not both"]),
         (
             "{pkg: p, exec: e, command: [ls]}",

@@ -708,3 +708,44 @@ def test_what_nobody_here_has_is_left_out_of_launch_files(lamps: Path, monkeypat
         (lamps / "f.launch.yaml").write_text(f"launch: [{{node: {node}}}]\n")
         with pytest.raises(GraphFileError):
             load(lamps / "f.launch.yaml")
+
+
+def test_an_executable_may_be_a_file(lamps: Path) -> None:
+    """By its path from the graph file: a script in Python, or whatever can be run; it gets what others get."""
+    (lamps / "shine.py").touch()
+    (lamps / "bin").mkdir()
+    (lamps / "bin/run").touch(mode=0o755)
+    (lamps / "bin/not").touch(mode=0o644)
+    found = planned(lamps, "nodes: {a: {exec: shine.py, args: [x], params: {rate: 2}}, b: {exec: bin/run}}")
+    assert [node.command for node in found.nodes] == [
+        ("graphflow", "run", str(lamps / "shine.py"), "x"),
+        (str(lamps / "bin/run"),),
+    ]
+    assert [node.executable for node in found.nodes] == ["shine.py", "bin/run"]
+    for node, said in (
+        ("{exec: gone.py}", "exec: there is no file"),
+        ("{exec: bin/not}", "to make it one: chmod \\+x"),
+        ("{exec: shine}", "or exec: is a file"),
+    ):
+        with pytest.raises(GraphFileError, match=said):
+            planned(lamps, f"nodes: {{a: {node}}}")
+    (lamps / "f.launch.yaml").write_text(f"launch: [{{node: {{exec: {lamps}/shine.py}}}}]")
+    assert [node.name for node in load(lamps / "f.launch.yaml").nodes] == ["/shine"]
+
+
+def test_programs_that_nobody_here_has_are_left_out_of_launch_files(lamps: Path) -> None:
+    """Of several of a name only nodes are remarked: a program's name is only that of its process."""
+    absent = "{executable: {cmd: no_such_simulator}}"
+    text = f"launch: [{absent}, {absent}, {{executable: {{cmd: ls}}}}, {{executable: {{cmd: ls}}}}]\n"
+    (lamps / "f.launch.yaml").write_text(text)
+    found = load(lamps / "f.launch.yaml")
+    assert [node.name for node in found.nodes] == ["/ls_1", "/ls_2"]
+    said = "no_such_simulator is left out: there is no program of that name on the PATH"
+    assert {remark.partition(": ")[2] for remark in found.remarks} == {said}
+
+
+def test_arguments_that_no_launch_file_declares_are_let_pass(lamps: Path) -> None:
+    """As ROS lets them, with a remark."""
+    (lamps / "f.launch.yaml").write_text("launch: [{executable: {cmd: ls}}]\n")
+    [remark] = load(lamps / "f.launch.yaml", ["N:=2"]).remarks
+    assert "there is no argument 'N'; the file declares none" in remark

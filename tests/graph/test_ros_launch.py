@@ -455,3 +455,27 @@ def test_what_belongs_to_a_node_that_is_left_out(tmp_path: Path) -> None:
     file.write_text(f"launch: [{{node: {node.replace('robot_loc', 'mi_loc')}}}, {{{TURTLE}}}]\n")
     with pytest.raises(GraphFileError, match="did you mean 'my_localization'"):
         load(file, [], {})
+
+
+def test_a_file_may_be_included_twice(tmp_path: Path) -> None:
+    """The steps that it does not name are told apart, and each comes after those of its own inclusion."""
+    call = "{executable: {cmd: ros2 service call /clear std_srvs/srv/Empty, number: 1}}"
+    inner = f"launch: [{call}, {{log: {{message: cleared, after_number: 1, after_what: exited}}}}]\n"
+    (tmp_path / "inner.launch.yaml").write_text(inner)
+    include = "{include: {file: $(dirname)/inner.launch.yaml}}"
+    (tmp_path / "a.launch.yaml").write_text(f"launch: [{include}, {include}, {call}, {{{TURTLE}}}]\n")
+    plan = load(tmp_path / "a.launch.yaml", [], {})
+    assert {step.name: step.after for step in plan.steps} == {
+        "call_1": {},
+        "call_1_of_2": {},
+        "log_1_of_2": {"call_1_of_2": "done"},
+        "call_1_of_3": {},
+        "log_1_of_3": {"call_1_of_3": "done"},
+    }
+
+
+def test_an_empty_argument_is_an_empty_text(tmp_path: Path) -> None:
+    """Also as the value of a parameter."""
+    node = "{pkg: turtlesim, exec: turtlesim_node, param: [{name: a, value: $(var uri)}]}"
+    (tmp_path / "a.launch.yaml").write_text(f"launch: [{{arg: {{name: uri, default: ''}}}}, {{node: {node}}}]\n")
+    assert load(tmp_path / "a.launch.yaml", [], {}).nodes[0].params["a"].value == ""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.graph.workspace import EntryPoint, find_workspace, uses_rclpy
+from graphflow.graph.workspace import EntryPoint, find_workspace, uses_ros
 
 
 def package(folder: Path, name: str, **files: str) -> Path:
@@ -145,7 +145,7 @@ def test_packages_side_by_side_are_a_workspace_too(tmp_path: Path) -> None:
 def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, verdict: bool) -> None:
     """By their imports."""
     (tmp_path / "a.py").write_text(text)
-    assert uses_rclpy(tmp_path / "a.py") is verdict
+    assert uses_ros(tmp_path / "a.py") is verdict
 
 
 def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:
@@ -216,3 +216,19 @@ def test_packages_beside_the_ones_around_a_file(tmp_path: Path, monkeypatch: pyt
     assert set(find_workspace(deep).packages) == {"demo"}
     monkeypatch.chdir(tmp_path / "repo")
     assert set(find_workspace(deep).packages) == {"demo", "interfaces"}
+
+
+def test_names_that_setup_py_computes(tmp_path: Path) -> None:
+    """Are not known, since it is only read; that is told, and what stands there plainly is known."""
+    made = "entry_points={'console_scripts': [f'{n} = a.{n}:main' for n in names] + ['plain = a.plain:main']}"
+    folder = package(tmp_path / "a", "a", setup_dot_py=f"names = ['x']\nsetup({made})\n", a__plain_dot_py="")
+    [found] = find_workspace(tmp_path).packages.values()
+    assert found.executables == ["plain"]
+    [fault] = found.faults
+    assert fault.startswith(f"{folder / 'setup.py'}: it computes some executables")
+
+
+def test_definitions_in_folders_of_their_own(tmp_path: Path) -> None:
+    """A package that sorts its messages into folders has interfaces all the same."""
+    package(tmp_path / "a", "a", msg__inner__Ball_dot_msg="int32 x\n")
+    assert list(find_workspace(tmp_path).interfaces) == ["a"]

@@ -40,10 +40,10 @@ def test_the_network_is_joined_when_it_is_needed_and_left_at_the_end() -> None:
     network = life.network()
     assert life.network() is network
     assert network.domain == 7
-    assert life.close in lives.LOOP.at_exit
+    assert life.end_with_process in lives.LOOP.at_exit
     life.close()
     life.close()
-    assert life.close not in lives.LOOP.at_exit
+    assert life.end_with_process not in lives.LOOP.at_exit
 
 
 def test_leaving_is_waited_for_by_all_who_ask(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,12 +65,12 @@ def test_leaving_is_waited_for_by_all_who_ask(monkeypatch: pytest.MonkeyPatch) -
     closers[1].start()
     closers[1].join(0.05)
     assert closers[1].is_alive()
-    assert life.close in lives.LOOP.at_exit
+    assert life.end_with_process in lives.LOOP.at_exit
     may_end.set()
     for closer in closers:
         closer.join(10)
         assert not closer.is_alive()
-    assert life.close not in lives.LOOP.at_exit
+    assert life.end_with_process not in lives.LOOP.at_exit
 
 
 def test_joining_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -117,7 +117,20 @@ def test_an_end_and_another_event(problems: list[dict[str, Any]]) -> None:
     ends = said("Node", package="p", executable="e", on_exit=said("EmitEvent", event=said("Shutdown", reason="over")))
     goes_on = said("Node", package="p", executable="e", on_exit=change(ends, 1))
     assert [made["node"].get("on_exit") for made in actions([ends, goes_on])] == ["shutdown", None]
-    assert problems == [{"line": 7, "message": "on_exit: only Shutdown() has words in a graph file"}]
+    assert problems == []
+
+
+def test_what_a_process_says_is_done_at_its_end() -> None:
+    """Comes after it, as what an event handler says does; functions are left out."""
+    node = said("Node", package="p", executable="e", on_exit=[said("LogInfo", msg="over"), print])
+    whole = [node]
+    number_targets(whole)
+    RECORDING.remarks = []
+    first, log = actions(whole)
+    assert (log["log"]["message"], log["log"]["after_number"]) == ("over", first["node"]["number"])
+    assert [one["message"] for one in RECORDING.remarks] == [
+        "on_exit: a function is left out: nothing is called while the graph runs"
+    ]
 
 
 def test_what_is_no_action(problems: list[dict[str, Any]]) -> None:

@@ -269,3 +269,88 @@ def test_constants_of_messages(tmp_path: Path) -> None:
     told = record(file)
     assert told["problems"] == []
     assert [action["node"]["brought_to"] for action in told["actions"]] == ["inactive"]
+
+
+LATE = """
+import launch.logging
+from launch import LaunchDescription, Substitution
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo, OpaqueFunction, RegisterEventHandler
+from launch.event_handlers import OnProcessExit
+from launch_ros.actions import Node
+
+argument = DeclareLaunchArgument("word", default_value="none")
+launch.logging.get_logger("mine").info("made")
+
+
+class Shouted(Substitution):
+    def __init__(self, word):
+        super().__init__()
+        self.word = word
+
+    def perform(self, context):
+        return f"{self.word}!"
+
+
+def never(*_):
+    raise RuntimeError
+
+
+def generate_launch_description():
+    whole = LaunchDescription([argument])
+
+    def add(context):
+        sleeping = ExecuteProcess(cmd=["sleep", "1"])
+        then = [OpaqueFunction(function=never), LogInfo(msg=["slept ", Shouted(argument.default_value)])]
+        whole.add_action(RegisterEventHandler(OnProcessExit(target_action=sleeping, on_exit=then)))
+        whole.add_action(RegisterEventHandler(OnProcessExit(target_action=sleeping, on_exit=never)))
+        whole.add_action(RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg="any")])))
+        return [sleeping]
+
+    whole.add_action(OpaqueFunction(function=add))
+    whole.add_action(Node(package="p", executable="e", parameters=[{"small": "1e-3", "text": "1.0", "word": "x"}]))
+    return whole
+"""
+
+
+def test_what_is_added_while_a_file_is_carried_out(tmp_path: Path) -> None:
+    """Counts; functions that would be called later are left out, and the file's own substitutions are made."""
+    (tmp_path / "a.launch.py").write_text(LATE)
+    told = record(tmp_path / "a.launch.py", word="given")
+    assert told["problems"] == []
+    actions = [next(iter(action.items())) for action in told["actions"]]
+    assert [name for name, _ in actions] == ["arg", "executable", "node", "log"]
+    assert actions[3][1]["message"] == "slept none!"
+    assert (actions[3][1]["after_number"], actions[3][1]["after_what"]) == (actions[1][1]["number"], "exited")
+    left_out = ["a function", "a function", "what it does for every process"]
+    said = [f"OnProcessExit: {what} is left out: nothing is called while the graph runs" for what in left_out]
+    assert [remark["message"] for remark in told["remarks"]] == said
+    # ROS writes parameters to a file, unquoted where YAML 1.1 needs no quotes, and reads them by rules of its own.
+    assert [param.get("type") for param in actions[2][1]["param"]] == [None, "str", "str"]
+
+
+ENVIRONMENT = """
+import os
+import subprocess
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+
+def generate_launch_description():
+    os.environ["MADE"] = "here"
+    try:
+        found = os.environ["NO_SUCH_VARIABLE"]
+    except KeyError:
+        found = "none"
+    said = subprocess.run(["sh", "-c", "echo $MADE; command -v ros2"], capture_output=True, text=True).stdout.split()
+    return LaunchDescription([ExecuteProcess(cmd=["echo", found, said[0], os.path.basename(said[1])])])
+"""
+
+
+def test_the_environment_of_a_file_that_is_started(tmp_path: Path) -> None:
+    """Is the real one: what it sets is had by its processes, and it may start programs, `ros2` among them."""
+    (tmp_path / "a.launch.py").write_text(ENVIRONMENT)
+    told = record(tmp_path / "a.launch.py", x="1")
+    assert told["problems"] == []
+    first, second = told["actions"]
+    assert (first["set_env"]["name"], first["set_env"]["value"]) == ("MADE", "here")
+    assert second["executable"]["cmd"] == ["echo", "none", "here", "ros2"]

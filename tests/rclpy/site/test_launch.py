@@ -20,14 +20,6 @@ def test_they_remember_what_they_are_called_with() -> None:
     assert launch.substitutions.LaunchConfiguration is LaunchConfiguration
 
 
-def test_a_program_starts_nothing_by_itself() -> None:
-    """It is told which command does."""
-    service = launch.LaunchService()
-    service.include_launch_description(launch.LaunchDescription([]))
-    with pytest.raises(NotImplementedError, match=r"graphflow launch FILE\.launch\.py"):
-        service.run()
-
-
 def test_there_is_only_what_launch_has() -> None:
     """Other packages are not made up."""
     with pytest.raises(ModuleNotFoundError):

@@ -17,8 +17,9 @@ from rclpy.waitable import Waitable
 
 PRIVATE = {
     Waitable: "_futures",
-    Node: "_parameters _on_set_parameters_callbacks _post_set_parameters_callbacks _pre_set_parameters_callbacks",
-    LifecycleNode: "_parameters _callbacks _managed_entities _state_machine _service_change_state "
+    Node: "_clock _default_callback_group _logger _parameters _on_set_parameters_callbacks "
+    "_post_set_parameters_callbacks _pre_set_parameters_callbacks",
+    LifecycleNode: "_callbacks _managed_entities _state_machine _service_change_state "
     "_service_get_available_states _service_get_available_transitions _service_get_state "
     "_service_get_transition_graph",
     ActionClient: "_action_name _action_type _feedback_callbacks _goal_handles _node",

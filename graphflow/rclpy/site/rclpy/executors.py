@@ -87,6 +87,10 @@ class Executor(AbstractContextManager["Executor"]):
     def _is_shutdown(self) -> bool:
         return self._graphflow.is_shutdown
 
+    @_is_shutdown.setter
+    def _is_shutdown(self, value: bool) -> None:
+        self._graphflow.is_shutdown = value
+
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
         """Run a function, a coroutine function or a coroutine as a task; returns it."""
         run = Run(self, callback, args, kwargs)
@@ -152,7 +156,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, at most `timeout_sec` seconds."""
-        future._when_done(self.wake)
+        _when_done(future, self.wake)
         if timeout_sec is None or timeout_sec < 0:
             while self._graphflow_may_go_on(future):
                 self.spin_once_until_future_complete(future, timeout_sec)
@@ -243,8 +247,16 @@ class SingleThreadedExecutor(Executor):
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        future._when_done(self.wake)
+        _when_done(future, self.wake)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
+
+
+def _when_done(future: Any, wake: Callable[[], None]) -> None:
+    """Wake when a future is done, be it one of asyncio's."""
+    if isinstance(future, Future):
+        future._when_done(wake)
+    else:
+        future.add_done_callback(lambda _: wake())
 
 
 class _Pool:
@@ -336,7 +348,7 @@ class MultiThreadedExecutor(Executor):
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        future._when_done(self.wake)
+        _when_done(future, self.wake)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 
 

@@ -29,7 +29,7 @@ from rclpy.guard_condition import GuardCondition
 from rclpy.handle import Handle
 from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
-from rclpy.impl.inner import Holdings, Inner, none
+from rclpy.impl.inner import Holdings, Inner, Known, none
 from rclpy.impl.parameter_methods import ParameterMethods
 from rclpy.impl.parameters import NodeParameters
 from rclpy.impl.passing import passed_on
@@ -157,6 +157,17 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
     def default_callback_group(self) -> CallbackGroup:
         """The group of whatever names none: its callbacks exclude each other."""
         return self._graphflow.group
+
+    @property
+    def _default_callback_group(self) -> CallbackGroup:
+        return self._graphflow.group
+
+    @_default_callback_group.setter
+    def _default_callback_group(self, group: CallbackGroup) -> None:
+        self._graphflow.group = group
+
+    _clock = Known(lambda node: node._graphflow.clock)
+    _logger = Known(lambda node: node._graphflow.logger)
 
     @property
     def handle(self) -> Handle:

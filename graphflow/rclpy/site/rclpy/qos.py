@@ -100,6 +100,22 @@ class LivelinessPolicy(QoSPolicyEnum):
     BEST_AVAILABLE = 5
 
 
+class _FormerName:
+    """A value by the name that it had in ROS 2's first versions; it is warned of."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, value: object, policy: type[QoSPolicyEnum]) -> QoSPolicyEnum:
+        warnings.warn(f"a deprecated name; it is {policy.__name__}.{self._name} now", stacklevel=2)
+        return policy[self._name]
+
+
+for _policy in (HistoryPolicy, ReliabilityPolicy, DurabilityPolicy, LivelinessPolicy):
+    for _name in _policy.__members__:
+        _word = _policy.__name__.removesuffix("Policy").upper()
+        setattr(_policy, f"RMW_QOS_POLICY_{_word}_{_name}", _FormerName(_name))
+
 QoSHistoryPolicy = HistoryPolicy
 QoSReliabilityPolicy = ReliabilityPolicy
 QoSDurabilityPolicy = DurabilityPolicy

@@ -342,3 +342,15 @@ def test_functions_are_called_and_coroutine_functions_awaited() -> None:
 
     assert asyncio.run(await_or_execute(later, 1)) == 1
     assert asyncio.run(await_or_execute(max, 1, 2)) == 2
+
+
+def test_a_future_of_asyncio_may_be_waited_for(single: SingleThreadedExecutor, node: Node) -> None:
+    """As for one of rclpy's."""
+    loop = asyncio.new_event_loop()
+    future: Any = asyncio.Future(loop=loop)
+    node.create_timer(0.001, lambda: future.done() or future.set_result(1))
+    single.spin_until_future_complete(future, timeout_sec=10)
+    loop.close()
+    assert future.done()
+    single._is_shutdown = True
+    assert single.spinning.is_shutdown

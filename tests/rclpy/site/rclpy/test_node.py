@@ -11,6 +11,7 @@ from example_interfaces.srv import AddTwoInts
 from std_msgs.msg import String
 
 import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.exceptions import (
     InvalidHandle,
     InvalidNamespaceException,
@@ -148,3 +149,20 @@ def test_a_node_is_waited_for(node: Node) -> None:
     """By its full name, or one without the slash."""
     assert node.wait_for_node("node", 1.0)
     assert not node.wait_for_node("/nobody", 0.01)
+
+
+def test_what_code_knows_from_within(node: Node) -> None:
+    """Can be read, and a class may have its own; the default group can be replaced."""
+
+    class Own(Node):
+        def __init__(self) -> None:
+            super().__init__("own")
+            self._logger: Any = "mine"
+
+    assert node._logger is node.get_logger()
+    assert node._clock is node.get_clock()
+    assert Own()._logger == "mine"
+    group = ReentrantCallbackGroup()
+    node._default_callback_group = group
+    assert node.default_callback_group is group
+    assert node.create_timer(1.0, lambda: None).callback_group is group

@@ -95,3 +95,19 @@ def test_a_number_is_a_depth() -> None:
         qos.validated(-1)
     with pytest.raises(TypeError, match="Expected QoSProfile or int"):
         qos.validated("deep")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("policy", "former", "name"),
+    [
+        (qos.QoSReliabilityPolicy, "RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT", "BEST_EFFORT"),
+        (qos.HistoryPolicy, "RMW_QOS_POLICY_HISTORY_KEEP_LAST", "KEEP_LAST"),
+        (qos.DurabilityPolicy, "RMW_QOS_POLICY_DURABILITY_VOLATILE", "VOLATILE"),
+        (qos.LivelinessPolicy, "RMW_QOS_POLICY_LIVELINESS_AUTOMATIC", "AUTOMATIC"),
+    ],
+)
+def test_former_names_of_values(policy: type[qos.QoSPolicyEnum], former: str, name: str) -> None:
+    """Are known, and warned of."""
+    with pytest.warns(UserWarning, match=f"it is {policy.__name__}.{name} now"):
+        assert getattr(policy, former) is policy[name]
+    assert not hasattr(policy, f"{former}_NOT")

@@ -41,13 +41,23 @@ class Inner:
         self.executor: Callable[[], Any] = none
         self.times_added = 0
         """How often it was added to an executor."""
-        self.group = MutuallyExclusiveCallbackGroup()
+        self.group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.rate_group: CallbackGroup | None = None
         self.logger = get_logger(node.full_name[1:].replace("/", "."))
         self.clock = ROSClock()
         self.time_source: TimeSource | None = None
         self.parameters: NodeParameters
         self.events: Publisher | None = None
+
+
+class Known:
+    """An attribute of a node that code reads which knows rclpy from within; a node may have its own of that name."""
+
+    def __init__(self, get: Callable[[Any], Any]) -> None:
+        self._get = get
+
+    def __get__(self, node: Any, owner: type) -> Any:
+        return self if node is None else self._get(node)
 
 
 def none() -> None:

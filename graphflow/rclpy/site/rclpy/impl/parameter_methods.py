@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.rclpy import held
 from graphflow.rclpy.life import LOOP
 from graphflow.rclpy.parameter_answers import ParameterAnswers
-from rclpy.impl.inner import Inner
+from rclpy.impl.inner import Inner, Known
 from rclpy.impl.parameters import RELATIVE_TOLERANCE
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameter_events, qos_profile_parameters
@@ -18,21 +18,11 @@ if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue, SetParametersResult
 
 
-class _Declared:
-    """The parameters of a node by name, as code reads them that knows rclpy from within; a node may have its own."""
-
-    def __get__(self, node: Any, owner: type) -> dict[str, Parameter[Any]]:
-        if node is None:
-            raise AttributeError("_parameters")
-        found: dict[str, Parameter[Any]] = node._graphflow.parameters.with_prefix("")
-        return found
-
-
 class ParameterMethods:
     """A node's methods for its parameters; for `Node` to derive from."""
 
     PARAM_REL_TOL = RELATIVE_TOLERANCE
-    _parameters = _Declared()
+    _parameters = Known(lambda node: node._graphflow.parameters.with_prefix(""))
     _graphflow: Inner
 
     @property

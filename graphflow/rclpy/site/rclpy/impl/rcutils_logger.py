@@ -30,6 +30,30 @@ _FILTERS: dict[str, dict[str, Any]] = {
 """What may be said of a call, and what else then: None for what must be. They are asked in this order."""
 
 
+class LoggingFilter:
+    """What decides, by what a call says of itself, whether its line is logged."""
+
+    params: dict[str, Any] = {}  # noqa: RUF012 - as rclpy has it
+
+
+class Once(LoggingFilter):
+    """The first line only."""
+
+    params = _FILTERS["once"]
+
+
+class Throttle(LoggingFilter):
+    """One line in so many seconds."""
+
+    params = _FILTERS["throttle"]
+
+
+class SkipFirst(LoggingFilter):
+    """All lines but the first."""
+
+    params = _FILTERS["skip_first"]
+
+
 class _Site:
     """One call in the code."""
 

@@ -1,0 +1,36 @@
+"""What groups give to the nodes within them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from graphflow.graph.model import FROM_GROUPS
+from graphflow.graph.tree import Item, first_of
+
+BY_ENTRY = ("params", "remap", "env")
+"""Keys of a node that templates, groups and overrides change entry by entry; any other they replace as a whole."""
+INHERITED = ("restart", "on_exit", "critical", "log_level", "lifecycle")
+"""Keys of a group that a node has unless it says otherwise."""
+
+
+def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
+    """A node with what the groups around it give it.
+
+    Args:
+        groups: Their settings, the innermost first.
+    """
+    entries = dict(item.entries)
+    for key in INHERITED:
+        found = first_of([entries, *groups]).get(key)
+        if found is not None and (key != "lifecycle" or "exec" not in entries):  # which only some programs have
+            entries[key] = found
+    for key in BY_ENTRY:
+        of_groups = first_of([group[key].entries for group in groups if key in group])
+        if not of_groups:
+            continue
+        if key == "env":
+            own = entries.get("env", Item({}, item.place))
+            entries["env"] = own._replace(value=first_of([own.entries, of_groups]))
+        else:
+            entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
+    return item._replace(value=entries)

@@ -1,0 +1,101 @@
+"""What is set in launch files of ROS's, as the settings of a graph file: of single nodes, or of all that follow."""
+
+from __future__ import annotations
+
+from graphflow.graph.ros_attributes import items, says
+from graphflow.graph.ros_attributes import words as words_of
+from graphflow.graph.ros_commands import Complain, typed
+from graphflow.graph.tree import Item
+
+_OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
+"""The keys of a graph file for ROS 2's options."""
+
+
+def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
+    """What an action sets for all after it: the key of a group, and its value."""
+    match name:
+        case "push_ros_namespace":
+            return "namespace", item.entries.get("namespace", Item("", item.place))
+        case "set_parameter":
+            return "params", pair(item, "name", "value", complain, is_typed=True)
+        case "set_use_sim_time":
+            value = typed(item.entries.get("value", Item("", item.place)))
+            return "params", Item({"use_sim_time": value}, item.place)
+        case "set_remap":
+            return "remap", pair(item, "from", "to", complain)
+        case "append_env":
+            named, get = pair(item, "name", "value", complain), item.entries.get
+            separator = str(get("separator", Item(":", item.place)).value)
+            is_first = says(item, "prepend", "true", "1")
+            found = {}
+            for name, value in named.entries.items():
+                parts = [f"$(optenv {name})", str(value.value)]
+                found[name] = value._replace(value=separator.join(parts[::-1] if is_first else parts))
+            return "env", named._replace(value=found)
+        case _:
+            return "env", pair(item, "name", "value", complain)
+
+
+def pair(item: Item, key: str, value: str, complain: Complain, *, is_typed: bool = False) -> Item:
+    """A mapping of what one attribute of an action names to what another says.
+
+    Args:
+        is_typed: Whether that is what it reads as in YAML; else it is a text.
+    """
+    name = item.entries.get(key)
+    if name is None or not isinstance(name.value, str):
+        complain(item.at, f"the attribute {key!r} is missing")
+        return Item({}, item.place)
+    found = item.entries.get(value, Item("", item.place))
+    return Item({name.value: (typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
+
+
+def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
+    """What `param` says: of values, and of files of them."""
+    files: list[Item] = []
+    values: dict[str, Item] = {}
+
+    def take(params: list[Item], into: dict[str, Item]) -> None:
+        for param in params:
+            if "from" in param.entries:
+                files.append(param.entries["from"])
+            elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
+                inner: dict[str, Item] = {}
+                take(items(param.entries["param"]), inner)
+                into[str(name.value)] = Item(inner, param.place, name.place)
+            else:
+                named = pair(param, "name", "value", complain)
+                kind = param.entries.get("type")
+                is_text = kind is not None and kind.value == "str"
+                into.update({key: value if is_text else typed(value) for key, value in named.entries.items()})
+
+    take(items(item.entries.get("param")), values)
+    if files:
+        entries["params_file"] = Item(files, files[0].place, files[0].place)
+    if values:
+        place = item.entries["param"].place
+        entries["params"] = Item(values, place, place)
+
+
+def ros_words(item: Item, entries: dict[str, Item], note: Complain) -> None:
+    """What `args` and `ros_args` say in ROS 2's words: remaps, parameters, and the level of the log."""
+    for key in ("args", "ros_args"):
+        given = item.entries.get(key)
+        if given is None:
+            continue
+        words = [word for word in words_of(given) if word not in ("--ros-args", "--")]
+        for option, value in zip(words[::2], [*words[1::2], ""][: len(words[::2])], strict=True):
+            _option(option, value, Item(value, given.place, given.key), key, entries, note)
+
+
+def _option(option: str, value: str, at: Item, key: str, entries: dict[str, Item], note: Complain) -> None:
+    name, arrow, said = value.partition(":=")
+    section = _OPTIONS.get(option)
+    if option == "--log-level" and value and not arrow:
+        entries["log_level"] = at._replace(value=value.lower())
+    elif section is not None and name and arrow and not name.startswith("__"):
+        before = entries.get(section, Item({}, at.place, at.key))
+        made = typed(at._replace(value=said)) if section == "params" else at._replace(value=said)
+        entries[section] = before._replace(value={**before.entries, name: made})
+    else:
+        note(at.key or at.place, f"{key}: the node here does not know {option}; it is left out")
