@@ -86,7 +86,8 @@ class Package:
     def programs(self) -> Mapping[str, Path]:
         """Its executables that are files, by name: those that CMake installs, and those in `scripts/`."""
         files = (file for file in sorted((self.folder / "scripts").glob("*")) if file.is_file())
-        return {file.name: file for file in files if file.name != "__init__.py"} | dict(_of_cmake(self))
+        known = {file.name: file for file in files if file.name != "__init__.py" and not file.name.startswith(".")}
+        return known | dict(_of_cmake(self))
 
     @property
     def executables(self) -> list[str]:
@@ -157,11 +158,17 @@ class Workspace:
 
 
 def find_workspace(start: Path) -> Workspace:
-    """The workspace that a folder belongs to: the nearest above it with packages in its `src`, or that is in one.
+    """The workspace that a folder or file belongs to, or else what is below the folder.
 
     Returns:
         One without packages where there is none.
     """
+    start = start.resolve()
+    return workspace_around(start) or (read_workspace(start, start) if start.is_dir() else Workspace(start))
+
+
+def workspace_around(start: Path) -> Workspace | None:
+    """The workspace that a folder or file lies in: the nearest above with packages in its `src`, or beside its own."""
     start = start.resolve()
     folders = [start, *start.parents] if start.is_dir() else list(start.parents)
     for folder in folders:
@@ -175,7 +182,7 @@ def find_workspace(start: Path) -> Workspace:
             if any(package.folder == highest for package in around.packages.values()):
                 return around
         return read_workspace(highest.parent, highest.parent)
-    return read_workspace(start, start) if start.is_dir() else Workspace(start)
+    return None
 
 
 @cache

@@ -17,7 +17,7 @@ TYPINGS = "graphflow-rclpy"
 """The folder beside it with what editors read of messages."""
 LINES = f"""{SITE}
 {TYPINGS}
-import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.enabling").rclpy.enabling.here()
+import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.rclpy.anywhere")
 """
 
 

@@ -46,7 +46,7 @@ class MessagePackages:
     def exec_module(self, module: ModuleType) -> None:
         from pathlib import Path
 
-        from graphflow.errors import UnknownInterface
+        from graphflow.errors import InterfaceError, UnknownInterface
         from graphflow.msgs import registry
         from graphflow.rclpy import messages
 
@@ -65,7 +65,9 @@ class MessagePackages:
                 raise AttributeError(name)
             try:
                 cls = messages.interface_class(f"{package}/{kind}/{name}")
-            except UnknownInterface as error:
+            except (UnknownInterface, InterfaceError) as error:
+                if name in names:  # it is defined, and something in it is wrong, or not there
+                    raise ImportError(f"{package}/{kind}/{name}: {error}", name=module.__name__) from None
                 raise AttributeError(str(error)) from None
             setattr(module, name, cls)
             return cls
@@ -79,6 +81,56 @@ class MessagePackages:
         module.__dict__["__all__"] = names
         module.__getattr__ = make  # type: ignore[method-assign]
         module.__dir__ = lambda: names  # type: ignore[method-assign]
+
+
+_NEVER = ("sitecustomize", "usercustomize", "org")
+"""Modules that Python itself looks for at each start, or in `pickle`, and that are hardly ever there."""
+
+
+class WorkspacePackages:
+    """Finds what nobody else has found, in the workspace that the program, or else the shell, is in.
+
+    It is for Python that was started by itself, such as `python -m pytest`; it looks once.
+    """
+
+    def __init__(self) -> None:
+        self._roots: list[str] | None = None
+        self._is_looking = False
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        if self._is_looking or fullname.partition(".")[0] in _NEVER:
+            return None
+        if self._roots is None:
+            self._is_looking = True
+            try:
+                self._roots = _of_workspace()
+            except ImportError:  # what this needs is itself being imported right now
+                return None
+            finally:
+                self._is_looking = False
+            if is_package(fullname):
+                return MessagePackages().find_spec(fullname, path, target)
+        *above, _ = fullname.split(".")
+        return importlib.machinery.PathFinder.find_spec(fullname, [os.path.join(root, *above) for root in self._roots])
+
+
+def _of_workspace() -> list[str]:
+    """Make the messages of the workspace around known; returns the folders that Python is to import from."""
+    from pathlib import Path
+
+    from graphflow.graph.workspace import workspace_around
+    from graphflow.msgs import registry
+
+    program = Path(sys.argv[0]) if sys.argv and sys.argv[0].endswith(".py") else Path.cwd()
+    found = workspace_around(program) or workspace_around(Path.cwd())
+    if found is None:
+        return []
+    for name, folder in found.interfaces.items():
+        KNOWN[name] = str(folder)
+        registry.add_package(name, folder)
+    return [str(root) for root in found.import_roots]
 
 
 def is_package(name: str) -> bool:
@@ -113,3 +165,9 @@ def install() -> None:
     """Let `import` see them, from now on."""
     if not any(isinstance(finder, MessagePackages) for finder in sys.meta_path):
         sys.meta_path.insert(0, MessagePackages())
+
+
+def look_around() -> None:
+    """Let `import` see what is in the workspace around, too."""
+    if not any(isinstance(finder, WorkspacePackages) for finder in sys.meta_path):
+        sys.meta_path.append(WorkspacePackages())

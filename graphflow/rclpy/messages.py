@@ -3,12 +3,13 @@
 They differ from graphflow's own, which widen: here an integer is no float, sequences of numbers are `array.array`, a
 byte is a `bytes` of length one. Code that runs here runs on ROS 2.
 
-Source: rosidl_generator_py of Jazzy, whose checks are always on here: where they are off, ROS 2 ends the process when
-such a message is published.
+Source: rosidl_generator_py of Jazzy. Its checks are on here unless ROS_PYTHON_CHECK_FIELDS is 0: where they are off,
+ROS 2 ends the process when such a message is published. Here publishing fails then.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from array import array
 from collections.abc import Callable
@@ -18,11 +19,14 @@ from typing import Any, ClassVar, NoReturn
 from graphflow.errors import EncodeError
 from graphflow.msgs import registry
 from graphflow.rclpy.once import made_once
-from graphflow.rclpy.values import SEQUENCE_CODES, Check, checker, rosidl_type
+from graphflow.rclpy.values import SEQUENCE_CODES, Check, checker, lenient, rosidl_type
 from graphflow.wire.cdr import Codec
 from graphflow.wire.codegen import Types
 from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import INTEGER_RANGES, Action, Constant, Field, FieldType, Message, Service
+
+CHECKS = os.environ.get("ROS_PYTHON_CHECK_FIELDS") != "0"
+"""Whether fields refuse what is not of their type when it is assigned, and not only when it is sent."""
 
 
 class _Generated(type):
@@ -98,6 +102,7 @@ def message_class(name: str) -> type[StrictMessage]:
     lines.append("    if OTHERS: REFUSE(OTHERS)")
     for i, field in enumerate(schema.fields):
         check = checker(field.name, field.type, _class_of(field.type))
+        check = check if CHECKS else lenient(check)
         names[f"K{i}"], names[f"M{i}"] = check, default(field)
         lines.append(f"    SELF._{field.name} = M{i}() if {field.name} is ABSENT else K{i}({field.name})")
         body[field.name] = _property(field.name, check)

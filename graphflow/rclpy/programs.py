@@ -94,7 +94,9 @@ def make_importable(workspace: Workspace) -> bool:
     """Let this process import rclpy and all that the packages of a workspace have; whether rclpy is graphflow's."""
     is_ours = enabling.here()
     if is_ours:
-        finder.KNOWN.update({name: str(folder) for name, folder in workspace.interfaces.items()})
+        for name, folder in workspace.interfaces.items():
+            finder.KNOWN[name] = str(folder)
+            registry.add_package(name, folder)
     if shutil.which("ros2") is None:  # for what this process starts
         os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), BIN])
         os.environ["GRAPHFLOW_PYTHON"] = sys.executable
@@ -149,6 +151,9 @@ def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException,
     sys.__excepthook__(kind, error.with_traceback(begun), begun)
     if isinstance(error, ModuleNotFoundError) and error.name is not None:
         sys.stderr.write(f"note: {_where_to_have(error.name, workspace)}\n")
+    if isinstance(error, AssertionError) and " field must be " in str(error):
+        later = "ROS 2 Jazzy looks at this only when the message is sent, and then ends the process"
+        sys.stderr.write(f"note: {later}; to have it looked at then here, too: ROS_PYTHON_CHECK_FIELDS=0\n")
 
 
 def _where_to_have(module: str, workspace: Workspace) -> str:

@@ -1,5 +1,8 @@
 """What a field of a strict message takes, and what it says of all else.
 
+A sequence of numbers takes whatever Python makes such numbers of, as in ROS 2: integers are floats there. One number
+does not: ROS 2 ends the process when a message with such a one is published.
+
 Source: the setters that rosidl_generator_py writes, whose words these are.
 """
 
@@ -58,6 +61,18 @@ def checker(name: str, type_: FieldType, cls: type | None) -> Check:
         cls: The class of its messages, if it holds messages.
     """
     return _sequence(name, type_, cls) if type_.array else _single(name, type_, cls)
+
+
+def lenient(check: Check) -> Check:
+    """What keeps a value that does not fit."""
+
+    def keep(value: Any) -> Any:
+        try:
+            return check(value)
+        except AssertionError:
+            return value
+
+    return keep
 
 
 def _single(name: str, type_: FieldType, cls: type | None) -> Check:
@@ -159,52 +174,37 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
         return lambda value: (plain(value), value)[1] if isinstance(value, list) else plain(value)
     code = SEQUENCE_CODES[type_.base]
     if type_.array == "fixed":
-        return lambda value: _fixed(name, type_, value, plain)
+        return lambda value: _fixed(type_, value, plain)
 
     def numbers(value: Any) -> array[Any]:
-        if isinstance(value, array):
-            if value.typecode != code:
-                raise AssertionError(f"The '{name}' array.array() must have the type code of '{code}'")
-            if not fits(len(value)):
-                raise AssertionError(f"The '{name}' array.array() must have a size <= {size}")
+        if isinstance(value, array) and value.typecode == code and fits(len(value)):
             return value
-        return array(code, value if fits(_length(value)) and _are_all(type_.base, value) else plain(value))
+        if isinstance(value, (str, *(() if code in "bB" else (bytes, bytearray)))):
+            plain(value)  # of which `array` would take each character, or the memory
+        try:
+            made = array(code, value)
+        except (TypeError, ValueError, OverflowError):
+            made = array(code, plain(value))  # which says what does not fit
+        if not fits(len(made)) or (code == "f" and any(map(math.isinf, made))):
+            plain(value)
+        return made
 
     return numbers
 
 
-def _length(value: Any) -> int:
-    return len(value) if hasattr(value, "__len__") else -1
-
-
-def _are_all(base: str, value: Any) -> bool:
-    """Whether all of a sequence is seen at one look to be of a type; where it is not, each number is looked at."""
-    if isinstance(value, (bytes, bytearray)):
-        return base in ("uint8", "char")
-    if not isinstance(value, (list, tuple)):
-        return base == "float64" and getattr(value, "dtype", None) == "float64" and value.ndim == 1
-    kinds = set(map(type, value))
-    if base == "float64":
-        return kinds <= {float}
-    if base == "float32" or not kinds <= {int}:
-        return False
-    low, high = INTEGER_RANGES[base]
-    return not value or (low <= min(value) and max(value) <= high)
-
-
-def _fixed(name: str, type_: FieldType, value: Any, plain: Check) -> Any:
+def _fixed(type_: FieldType, value: Any, plain: Check) -> Any:
     """An array of fixed length, as numpy's."""
     import numpy as np
 
     from graphflow.wire.arrays import DTYPES, ndarray
 
     dtype = DTYPES[type_.base]
-    if isinstance(value, ndarray):
-        if value.dtype != dtype:
-            raise AssertionError(f"The '{name}' numpy.ndarray() must have the dtype of 'numpy.{dtype.name}'")
-        if value.size != type_.size:
-            raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {type_.size}")
-        return value
+    given = np.asarray(value) if not isinstance(value, ndarray) and isinstance(value, (list, tuple, array)) else value
+    if isinstance(given, ndarray) and given.size == type_.size:
+        if given.dtype == dtype:
+            return given
+        if dtype.kind == "f" and given.dtype.kind in "iuf":
+            return given.astype(dtype)
     return np.array(plain(value), dtype)
 
 

@@ -160,6 +160,40 @@ def test_what_comes_with_graphflow_runs(workspace: Path) -> None:
 
 
 @pytest.mark.real
+def test_messages_of_messages(workspace: Path) -> None:
+    """Those of another package of the workspace, which nobody has imported; one that is not there is named."""
+    folder = workspace / "src/room_interfaces"
+    (folder / "msg/parts").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>room_interfaces</name></package>")
+    (folder / "msg/Room.msg").write_text("lamp_interfaces/Light lamp\nWall wall\n")
+    (folder / "msg/parts/Wall.msg").write_text("int8 x\n")
+    (folder / "msg/Bad.msg").write_text("no_interfaces/Light lamp\n")
+    for name, said in (("Room", "lamp=lamp_interfaces.msg.Light(level=0), wall="), ("Bad", "'no_interfaces'")):
+        use = f"import rclpy\nfrom room_interfaces.msg import {name}\nprint({name}())\n"
+        (workspace / "src/tools/scripts/say").write_text(f"#!/usr/bin/env python3\n{use}")
+        output, _ = start(workspace, "tools", "say").communicate(timeout=20)
+        assert said in output
+
+
+@pytest.mark.real
+def test_a_field_that_does_not_fit_is_told_with_what_ros_does(workspace: Path) -> None:
+    """Which looks later."""
+    use = "import rclpy\nfrom lamp_interfaces.msg import Light\nLight(level='a')\n"
+    (workspace / "src/tools/scripts/say").write_text(f"#!/usr/bin/env python3\n{use}")
+    output, _ = start(workspace, "tools", "say").communicate(timeout=20)
+    assert output.strip().rpartition("\n")[2].endswith("ROS_PYTHON_CHECK_FIELDS=0")
+
+
+@pytest.mark.real
+def test_modules_of_rclpy_are_there_with_it(workspace: Path) -> None:
+    """Programs use them that import rclpy alone; what is none is none."""
+    use = "import rclpy\nprint(rclpy.exceptions.InvalidHandle.__name__, hasattr(rclpy, 'nodes'), rclpy.node.Node)\n"
+    (workspace / "src/tools/scripts/say").write_text(f"#!/usr/bin/env python3\n{use}")
+    output, _ = start(workspace, "tools", "say").communicate(timeout=20)
+    assert output == "InvalidHandle False <class 'rclpy.node.Node'>\n"
+
+
+@pytest.mark.real
 def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
     """And a sentence."""
     for words, code, text in (

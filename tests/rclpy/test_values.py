@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graphflow.rclpy.values import checker, rosidl_type
+from graphflow.rclpy.values import checker, lenient, rosidl_type
 from graphflow.wire.schema import FieldType
 
 
@@ -51,10 +51,41 @@ def test_a_sequence_of_numbers_becomes_an_array(given: Any) -> None:
 
 
 @pytest.mark.parametrize(
+    ("type_", "given", "kept"),
+    [
+        (FieldType("float64", array="unbounded"), [1, True, np.float32(0.5)], array("d", [1.0, 1.0, 0.5])),
+        (FieldType("float64", array="unbounded"), array("f", [1.0]), array("d", [1.0])),
+        (FieldType("float64", array="unbounded"), np.array([1, 2], np.int8), array("d", [1.0, 2.0])),
+        (FieldType("float32", array="bounded", size=2), (1, 2.5), array("f", [1.0, 2.5])),
+        (FieldType("int8", array="unbounded"), np.array([1, -2]), array("b", [1, -2])),
+        (FieldType("uint8", array="unbounded"), np.zeros(2, np.uint8), array("B", [0, 0])),
+        (FieldType("float64", array="fixed", size=2), [0, 1], np.array([0.0, 1.0])),
+        (FieldType("float64", array="fixed", size=2), np.ones(2, np.float32), np.array([1.0, 1.0])),
+        (FieldType("float32", array="fixed", size=2), np.arange(2), np.array([0.0, 1.0], np.float32)),
+    ],
+)
+def test_a_sequence_takes_what_numbers_can_be_made_of(type_: FieldType, given: Any, kept: Any) -> None:
+    """As ROS 2 does, where an integer among floats is a float."""
+    made = checker("x", type_, None)(given)
+    assert type(made) is type(kept)
+    assert made.tolist() == kept.tolist()
+    assert getattr(made, "dtype", None) == getattr(kept, "dtype", None)
+
+
+def test_checks_may_be_left_to_sending() -> None:
+    """Then what does not fit is kept, and what fits is converted as ever."""
+    keep = lenient(checker("x", FieldType("float64", array="unbounded"), None))
+    assert keep([1]) == array("d", [1.0])
+    assert keep("12") == "12"
+
+
+@pytest.mark.parametrize(
     ("type_", "given"),
     [
-        (FieldType("float64", array="unbounded"), [1.0, 2]),
-        (FieldType("float64", array="unbounded"), array("f", [1.0])),
+        (FieldType("float64", array="unbounded"), [1.0, "2"]),
+        (FieldType("float64", array="unbounded"), b"12345678"),
+        (FieldType("float32", array="unbounded"), [1e39]),
+        (FieldType("float64", array="unbounded"), np.zeros((2, 2))),
         (FieldType("float64", array="unbounded"), "12"),
         (FieldType("int8", array="unbounded"), [1, 200]),
         (FieldType("int8", array="unbounded"), [1, True, 2.0]),
@@ -62,7 +93,8 @@ def test_a_sequence_of_numbers_becomes_an_array(given: Any) -> None:
         (FieldType("string", array="unbounded"), ["a", 1]),
         (FieldType("bool", array="fixed", size=2), [True]),
         (FieldType("float64", array="fixed", size=2), np.zeros(3)),
-        (FieldType("float64", array="fixed", size=2), np.zeros(2, np.float32)),
+        (FieldType("int32", array="fixed", size=2), np.zeros(2)),
+        (FieldType("uint8", array="fixed", size=2), [1, 300]),
     ],
 )
 def test_a_sequence_that_does_not_fit_is_refused(type_: FieldType, given: Any) -> None:

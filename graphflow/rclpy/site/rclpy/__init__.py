@@ -9,6 +9,8 @@ rclpy.shutdown()
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -47,6 +49,13 @@ __all__ = [
 ]
 
 _global_executor: Executor | None = None
+
+
+def __getattr__(name: str) -> Any:
+    """A module of rclpy's, which programs use that import rclpy alone."""
+    if not name.startswith("_") and find_spec(f"rclpy.{name}") is not None:
+        return import_module(f"rclpy.{name}")
+    raise AttributeError(f"module 'rclpy' has no attribute {name!r}")
 
 
 class InitContextManager:

@@ -315,10 +315,10 @@ class MultiThreadedExecutor(Executor):
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
-        self._executor = _Pool(num_threads, self.wake)
-        self._graphflow_failures: deque[BaseException] = deque()
-        self._graphflow.has_room = lambda: self._executor.has_room
-        self._graphflow.has_failed = lambda: bool(self._graphflow_failures)
+        self._executor = pool = _Pool(num_threads, self._graphflow.wake.set)
+        self._graphflow_failures = failures = deque[BaseException]()
+        self._graphflow.has_room = lambda: pool.has_room
+        self._graphflow.has_failed = lambda: bool(failures)
 
     def _graphflow_do_one(
         self, timeout: float | TimeoutObject | None, condition: Callable[[], bool] = lambda: False

@@ -58,7 +58,7 @@ def read_points(
         field_names: Those that are wanted; None for all.
         skip_nans: Whether points with a number that is none are left out.
         uvs: The indices, or the columns and rows, of the points that are wanted; None for all.
-        reshape_organized_cloud: Whether an organized cloud has the shape (height, width).
+        reshape_organized_cloud: Whether an organized cloud has the shape (width, height).
 
     Raises:
         ValueError: The cloud has no such field, or fewer bytes than it says.
@@ -81,7 +81,7 @@ def read_points(
         wanted = np.asarray(list(uvs))
         points = points[wanted if wanted.ndim == 1 else wanted[:, 1] * cloud.width + wanted[:, 0]]
     if reshape_organized_cloud and cloud.height > 1:
-        points = points.reshape(cloud.height, cloud.width)
+        points = points.reshape(cloud.width, cloud.height)  # as ROS 2 has it
     return points
 
 
@@ -134,7 +134,7 @@ def create_cloud(
 
     Args:
         points: A structured array; or rows of numbers, in the order of the fields. Of two dimensions (of three, for
-            rows) it is an organized cloud.
+            rows) it is an organized cloud; the first is its width, as ROS 2 has it.
         step: Bytes from one point to the next; None for as many as the fields need. `point_step` means the same.
 
     Raises:
@@ -151,7 +151,7 @@ def create_cloud(
         array = unstructured_to_structured(array, dtype)
     elif array.dtype != dtype:
         array = array.astype(dtype)
-    height, width = array.shape if array.ndim == 2 else (1, len(array))
+    width, height = array.shape if array.ndim == 2 else (len(array), 1)
     return PointCloud2(
         header=header,
         height=height,

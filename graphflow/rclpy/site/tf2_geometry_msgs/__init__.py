@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from tf2_geometry_msgs.tf2_geometry_msgs import (
     PointStamped,
+    PolygonStamped,
     PoseStamped,
     PoseWithCovarianceStamped,
     Vector3Stamped,
     WrenchStamped,
     do_transform_point,
+    do_transform_polygon_stamped,
     do_transform_pose,
     do_transform_pose_stamped,
     do_transform_pose_with_covariance_stamped,
@@ -21,11 +23,13 @@ from tf2_geometry_msgs.tf2_geometry_msgs import (
 
 __all__ = [
     "PointStamped",
+    "PolygonStamped",
     "PoseStamped",
     "PoseWithCovarianceStamped",
     "Vector3Stamped",
     "WrenchStamped",
     "do_transform_point",
+    "do_transform_polygon_stamped",
     "do_transform_pose",
     "do_transform_pose_stamped",
     "do_transform_pose_with_covariance_stamped",

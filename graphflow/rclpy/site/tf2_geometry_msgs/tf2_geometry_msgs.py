@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import (
+    Point32,
     PointStamped,
+    PolygonStamped,
     Pose,
     PoseStamped,
     PoseWithCovarianceStamped,
@@ -21,11 +24,13 @@ from tf2_ros.buffer_interface import ConvertRegistration, TransformRegistration
 
 __all__ = [
     "PointStamped",
+    "PolygonStamped",
     "PoseStamped",
     "PoseWithCovarianceStamped",
     "Vector3Stamped",
     "WrenchStamped",
     "do_transform_point",
+    "do_transform_polygon_stamped",
     "do_transform_pose",
     "do_transform_pose_stamped",
     "do_transform_pose_with_covariance_stamped",
@@ -47,6 +52,18 @@ def from_msg_msg(msg: Any) -> Any:
     return msg
 
 
+def _pose(transform: TransformStamped) -> poses.Pose:
+    """The pose that a transform is, with a rotation that is one."""
+    found = pose_of(transform.transform)
+    return found._replace(rotation=_unit(found.rotation))
+
+
+def _unit(q: poses.Quaternion) -> poses.Quaternion:
+    """A quaternion of length 1, and of those that mean the same the one with w >= 0; that of no rotation for none."""
+    length = math.copysign(math.hypot(*q), q[3])
+    return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else poses.IDENTITY.rotation
+
+
 def _xyz(vector: Any) -> poses.Vector:
     return vector.x, vector.y, vector.z
 
@@ -58,7 +75,16 @@ def _set(vector: Any, values: poses.Vector) -> None:
 def do_transform_point(point: PointStamped, transform: TransformStamped) -> PointStamped:
     """A point with its coordinates in the frame of the transform's header."""
     out = PointStamped(header=transform.header)
-    _set(out.point, pose_of(transform.transform).point(_xyz(point.point)))
+    _set(out.point, _pose(transform).point(_xyz(point.point)))
+    return out
+
+
+def do_transform_polygon_stamped(polygon: PolygonStamped, transform: TransformStamped) -> PolygonStamped:
+    """A polygon with the coordinates of its points in the frame of the transform's header."""
+    out, pose = PolygonStamped(header=transform.header), _pose(transform)
+    for point in polygon.polygon.points:
+        x, y, z = pose.point(_xyz(point))
+        out.polygon.points.append(Point32(x=x, y=y, z=z))
     return out
 
 
@@ -70,17 +96,17 @@ def do_transform_vector3(vector3: Vector3Stamped, transform: TransformStamped) -
 
 
 def _rotated(vector: Vector3, transform: TransformStamped) -> poses.Vector:
-    return poses.rotate(pose_of(transform.transform).rotation, _xyz(vector))
+    return poses.rotate(_pose(transform).rotation, _xyz(vector))
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
     """A pose without a header."""
     q = pose.orientation
-    moved = pose_of(transform.transform).of(poses.Pose(_xyz(pose.position), (q.x, q.y, q.z, q.w)))
+    moved = _pose(transform).of(poses.Pose(_xyz(pose.position), _unit((q.x, q.y, q.z, q.w))))
     out = Pose()
     _set(out.position, moved.translation)
     r = out.orientation
-    r.x, r.y, r.z, r.w = moved.rotation
+    r.x, r.y, r.z, r.w = _unit(moved.rotation)
     return out
 
 
@@ -91,7 +117,7 @@ def do_transform_pose_stamped(pose: PoseStamped, transform: TransformStamped) ->
 
 def transform_covariance(cov_in: Any, transform: TransformStamped) -> Any:
     """A covariance of a pose, 6 by 6 in 36 numbers, with its axes rotated; translation does not change it."""
-    rotation = pose_of(transform.transform).rotation
+    rotation = _pose(transform).rotation
     turn = np.array([poses.rotate(rotation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
     both = np.kron(np.eye(2), turn)
     return (both @ np.reshape(cov_in, (6, 6)) @ both.T).ravel()
@@ -119,6 +145,7 @@ def _register() -> None:
     transforms, conversions = TransformRegistration(), ConvertRegistration()
     known = {
         PointStamped: do_transform_point,
+        PolygonStamped: do_transform_polygon_stamped,
         Vector3Stamped: do_transform_vector3,
         PoseStamped: do_transform_pose_stamped,
         PoseWithCovarianceStamped: do_transform_pose_with_covariance_stamped,

@@ -38,10 +38,12 @@ def test_x_y_and_z() -> None:
     cloud = point_cloud2.create_cloud_xyz32(Header(), rows)
     assert (cloud.row_step, len(cloud.data)) == (48, 48)
     assert point_cloud2.read_points_numpy(cloud).tolist() == rows.tolist()
-    organized = point_cloud2.create_cloud_xyz32(Header(), rows.reshape(2, 2, 3))
-    assert (organized.height, organized.width) == (2, 2)
-    assert point_cloud2.read_points(organized, reshape_organized_cloud=True).shape == (2, 2)
-    assert point_cloud2.read_points(organized, ["x"], uvs=[(0, 1)])["x"].tolist() == [6]
+    more = np.arange(18, dtype=np.float32).reshape(2, 3, 3)
+    organized = point_cloud2.create_cloud_xyz32(Header(), more)
+    assert (organized.width, organized.height, organized.row_step) == (2, 3, 24)
+    read = point_cloud2.read_points(organized, reshape_organized_cloud=True)
+    assert read["x"].tolist() == more[:, :, 0].tolist()
+    assert point_cloud2.read_points(organized, ["x"], uvs=[(1, 2)])["x"].tolist() == [15]
     assert point_cloud2.read_points(point_cloud2.create_cloud_xyz32(Header(), [])).tolist() == []
 
 

@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import PoseStamped, TransformStamped
+from geometry_msgs.msg import Point32, PoseStamped, TransformStamped
 from tf2_geometry_msgs import (
     PointStamped,
+    PolygonStamped,
     PoseWithCovarianceStamped,
     Vector3Stamped,
     WrenchStamped,
+    do_transform_point,
+    do_transform_polygon_stamped,
     do_transform_pose,
     transform_covariance,
 )
@@ -68,3 +71,28 @@ def test_poses_with_and_without_a_header(buffer: Buffer, transform: TransformSta
     turned = np.reshape(buffer.transform(sure, "base").pose.covariance, (6, 6))
     assert (turned[0, 0], turned[1, 1], turned[5, 5]) == pytest.approx((0.0, 4.0, 0.5))
     assert transform_covariance(np.eye(6).ravel(), transform) == pytest.approx(np.eye(6).ravel())
+
+
+def test_rotations_are_made_such() -> None:
+    """A quaternion of another length turns as one of length 1, none as that of no rotation; results have w >= 0."""
+    twice = message(Pose((1.0, 2.0, 3.0), (0.0, 0.0, 2.0, 2.0)), "base", "laser", S)
+    point = PointStamped()
+    point.point.x, point.point.y, point.point.z = 1.0, 2.0, 3.0
+    moved = do_transform_point(point, twice).point
+    assert (moved.x, moved.y, moved.z) == pytest.approx((-1.0, 3.0, 6.0))
+    given = PoseStamped().pose
+    given.orientation.w = -1.0
+    turned = do_transform_pose(given, twice).orientation
+    assert (turned.x, turned.y, turned.z, turned.w) == pytest.approx(LEFT)
+    given.orientation.w = 0.0
+    none = message(Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)), "base", "laser", S)
+    assert do_transform_pose(given, none).orientation.w == 1.0
+
+
+def test_the_points_of_a_polygon_are_moved(transform: TransformStamped) -> None:
+    """All of them, into the frame of the transform's header."""
+    polygon = PolygonStamped()
+    polygon.polygon.points = [Point32(x=2.0), Point32(y=1.0)]
+    moved = do_transform_polygon_stamped(polygon, transform)
+    assert moved.header.frame_id == "base"
+    assert [(round(p.x, 6), round(p.y, 6)) for p in moved.polygon.points] == [(1.0, 2.0), (0.0, 0.0)]

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, SetParametersResult
 
 Kind = Parameter.Type
+TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": False}
+"""Words that ROS 2 takes for truth values in parameter files, and YAML 1.2 does not."""
 RELATIVE_TOLERANCE = 1e-6
 """How far a value may be from a step, in relation to it."""
 
@@ -67,6 +69,8 @@ class NodeParameters:
             validate_parameter_name(full)
             if not ignore_override and full in self.overrides:
                 value = self.overrides[full].value
+                if descriptor.type == Kind.BOOL.value and isinstance(value, str):
+                    value = TRUTHS.get(value.lower(), value)
             if not isinstance(value, Parameter):
                 kind = Kind(descriptor.type) if _is_empty(value) and descriptor.type else None
                 value = Parameter(full, kind, value) if kind is not None else Parameter(full, value=value)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import weakref
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
@@ -128,7 +129,7 @@ class Spinning:
     """What an executor has to do, and what it does: the part of it that no subclass sees."""
 
     def __init__(self, executor: Spins, context: Context) -> None:
-        self.executor, self.context = executor, context
+        self._executor, self.context = weakref.ref(executor), context
         self.wake = SharedWake()
         self.nodes: dict[Any, None] = {}
         self.is_shutdown = False
@@ -144,6 +145,13 @@ class Spinning:
         self._looking = threading.Lock()
         self.has_room: Callable[[], bool] = lambda: True
         self.has_failed: Callable[[], bool] = lambda: False
+
+    @property
+    def executor(self) -> Spins:
+        """Whose workings these are; it must not be kept by them, since programs ask whether it is still there."""
+        executor = self._executor()
+        assert executor is not None
+        return executor
 
     # tasks
 

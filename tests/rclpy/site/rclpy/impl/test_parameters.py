@@ -176,3 +176,12 @@ def test_names_are_listed_by_prefix_and_depth() -> None:
             parameters.listed(*wrong)
     with pytest.raises(ValueError, match="negative"):
         parameters.listed([], -1)
+
+
+def test_words_for_truth_values() -> None:
+    """Are such where one is declared, as in ROS 2's parameter files; elsewhere they are texts."""
+    parameters = some({"a": "yes", "b": "Off", "c": "on", "d": "maybe"})
+    declared = parameters.declare("", [("a", False), ("b", True), ("c", "text")])
+    assert [parameter.value for parameter in declared] == [True, False, "on"]
+    with pytest.raises(InvalidParameterTypeException, match="expecting type 'BOOL'"):
+        parameters.declare("", [("d", True)])
