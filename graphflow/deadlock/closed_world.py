@@ -36,16 +36,10 @@ from graphflow.deadlock.conditions import (
 from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new, messages
 from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
-from graphflow.deadlock.source import (
-    LAMBDA,
-    Function,
-    Unknown,
-    Use,
-    is_own,
-    source_of,
-)
+from graphflow.deadlock.source import LAMBDA, Function, Unknown, source_of
 from graphflow.deadlock.syntax import FunctionNode, is_nested, walk
 from graphflow.deadlock.user_code import Pause
+from graphflow.deadlock.uses import Use, is_own
 from graphflow.executor.ledger import PendingGoal
 from graphflow.executor.runner import Runner
 
@@ -79,7 +73,7 @@ class Setters(NamedTuple):
     gives_up: bool = False
     """Whether a deadline ends the wait for good, and not only this attempt."""
     module: str = ""
-    """The module that holds what is set, if it is not the node that does."""
+    """The module that holds what is set, or whose class does, if it is not the node that does."""
     pause: Pause | None = None
     """Where the loop pauses, if one polls."""
 
@@ -200,7 +194,9 @@ class Question:
             if len(by_name) + len(in_container) > 1:
                 raise Unknown
             if by_name:
-                return self._ended(by_name.pop(), thing, methods)
+                name = by_name.pop()
+                found = self._ended(name, thing, methods)
+                return found and found._replace(module=self._class_with(name))
             if in_container:
                 return self._ended_in_container(in_container.pop(), methods)
         if waits:
@@ -213,6 +209,12 @@ class Question:
         everything += vars(self._instance).items()
         is_it = {name for name, value in everything if is_inside(value, thing)}
         return is_it, {name for name, value in vars(self._instance).items() if _holds(value, thing)}
+
+    def _class_with(self, name: str) -> str:
+        """The module of the class that has an attribute which its objects share; empty for one of an object's own."""
+        if name in vars(self._instance):
+            return ""
+        return next((cls.__module__ for cls in type(self._instance).__mro__ if name in vars(cls)), "")
 
     def _ended(self, name: str, thing: Any, methods: tuple[str, ...]) -> Setters | None:
         uses = list(self._uses(name))

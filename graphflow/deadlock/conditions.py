@@ -22,9 +22,10 @@ from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import FUTURE
 from graphflow.deadlock.fresh import messages
-from graphflow.deadlock.source import ClassSource, Unknown, looks
+from graphflow.deadlock.source import ClassSource, Unknown
 from graphflow.deadlock.syntax import FunctionNode, walk
 from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.uses import looks
 from graphflow.executor.ledger import PendingGoal
 
 Loop = ast.While | ast.For | ast.AsyncFor

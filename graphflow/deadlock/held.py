@@ -13,8 +13,9 @@ from typing import Any
 from graphflow.deadlock.asyncio_frames import is_inside, object_wait
 from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library
 from graphflow.deadlock.protocols import Subject
-from graphflow.deadlock.source import ClassSource, Unknown, Use, source_of
+from graphflow.deadlock.source import ClassSource, Unknown, source_of
 from graphflow.deadlock.user_code import is_users, is_users_object
+from graphflow.deadlock.uses import Use
 
 _MADE_BY = {"__init__", "__post_init__"}
 """Methods that make an object."""

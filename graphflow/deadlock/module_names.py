@@ -13,9 +13,10 @@ from types import ModuleType
 
 from graphflow.deadlock.conditions import LOOKING, VIEWLESS, arrays
 from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new
-from graphflow.deadlock.source import ClassSource, Unknown, Use, use_of
+from graphflow.deadlock.source import ClassSource, Unknown
 from graphflow.deadlock.syntax import FunctionNode, is_nested, syntax_of, walk
 from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.uses import Use, use_of
 
 
 def changes(name: str, module_name: str, source: ClassSource) -> Iterator[Use]:

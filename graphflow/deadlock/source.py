@@ -15,38 +15,34 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from types import CodeType
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from graphflow.deadlock.fresh import messages_of
-from graphflow.deadlock.syntax import FunctionNode, Syntax, first_line, is_nested, syntax_of, walk
+from graphflow.deadlock.syntax import FunctionNode, Syntax, first_line, syntax_of, walk
 from graphflow.deadlock.user_code import is_users_module
-
-Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
-_LOOKS = (
-    *(ast.Compare, ast.BoolOp, ast.UnaryOp, ast.BinOp, ast.If, ast.While, ast.Assert, ast.Await, ast.FormattedValue),
-    *(ast.For, ast.AsyncFor, ast.comprehension, ast.Match, ast.Expr),
+from graphflow.deadlock.uses import (
+    Use,
+    called_back,
+    is_awaited,
+    is_own,
+    is_part_of,
+    is_super,
+    knows,
+    reaches_by_name,
+    registers,
+    use_of,
+    word,
 )
-_LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozenset", "hash", "id", "int", "isinstance"}
-_LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
-_LOOKING |= {"super", "tuple", "type", "zip"}
-_AWAITING = {"as_completed", "create_task", "ensure_future", "gather", "isfuture", "shield", "sleep", "timeout"}
-_AWAITING |= {"timeout_at", "wait", "wait_for", "wrap_future"}
-"""Functions of asyncio that do to what they are given nothing but await it."""
-_SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "squeeze", "transpose", "swapaxes"}
-_SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
-_SAME |= {"diagonal", "copyto"}
-"""Functions of numpy that may return another view of the same array, or write to it."""
+
 _INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
 """Methods by which attributes change in ways that their names do not show."""
-_RCLPYS = {"ActionServer", "ActionClient", "TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"}
-"""Classes that are given the node, and do nothing to attributes that it has of its own."""
-_ASKING = {"call_async", "send_goal_async", "get_result_async", "cancel_goal_async"}
-"""rclpy's methods whose futures are done when an answer has been taken."""
-_BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals"}
+_BY_NAME = {"setattr", "delattr", "vars", "exec", "eval", "locals", "methodcaller"}
 
 
 LAMBDA = "<lambda>"
 """What Python calls all of them."""
+ANSWERED = "__answered__"
+"""What is called here a function inside a method that is called when an answer has come."""
 
 
 class Unknown(Exception):
@@ -59,35 +55,6 @@ class Function(NamedTuple):
     syntax: FunctionNode
     method: str
     """The method that it is, or that contains it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Use:
-    """One mention of an attribute, or of a name of the module.
-
-    Attributes:
-        kind: What is done: it is *assigned*; a part of it is *changed* (`self.x.y = 1`, `self.x[0].pop()`); a method
-            of it is *called*; a *part* is looked at; it is *entered* by `with`; *read* where that cannot change it;
-            *invoked*, `self.x()`; or *given* to other code or another name.
-        name: The method that is called, or the part.
-        value: What is assigned, if that is an expression of its own.
-        is_nested: In a function or lambda inside the method, which may run at any time.
-        is_started: A call of an `async def` that is not awaited on the spot and runs on its own.
-        is_registered: Given to one of the node's `create_...`, as a handler is.
-        is_answered: Given to the future of an answer, which calls it.
-        part: The whole of what is looked at, where it is passed on: `self.x.y[2:]`.
-    """
-
-    method: str
-    syntax: ast.Attribute | ast.Name
-    kind: Kind
-    name: str = ""
-    value: ast.expr | None = None
-    is_nested: bool = False
-    is_started: bool = False
-    is_registered: bool = False
-    is_answered: bool = False
-    part: ast.expr | None = None
 
 
 @dataclass
@@ -131,7 +98,7 @@ class ClassSource:
     def foreign(self, attribute: str, owner: str = "") -> list[Use]:
         """What is done to an attribute of that name on anything other than `self`, and other than `self.owner`."""
         found = self._foreign.get(attribute, [])
-        return [use for use in found if not (owner and _is_part_of(use.syntax, owner))]
+        return [use for use in found if not (owner and is_part_of(use.syntax, owner))]
 
     def above(self, methods: set[str], handlers: set[str], owner: str = "") -> set[str]:
         """Those methods and all that call them, directly or through each other.
@@ -220,14 +187,15 @@ class ClassSource:
             for functions in self.methods.values()
             for function in functions
             for node, parents in walk(function)
-            if isinstance(node, ast.Attribute) and is_own(node) and _registers(parents[-1])
+            if isinstance(node, ast.Attribute) and is_own(node) and registers(parents[-1])
         }
         defined = {name for syntax in self._files for name in syntax.defined}
         for name, functions in self.methods.items():
             for function in functions:
-                lambdas = {
-                    n: above for n, above in walk(function) if isinstance(n, ast.Lambda) and _registers(above[-1])
+                begun: dict[ast.AST, str] = {
+                    n: LAMBDA for n, above in walk(function) if isinstance(n, ast.Lambda) and registers(above[-1])
                 }
+                begun |= dict.fromkeys(called_back(function), ANSWERED)
                 decorators = {ast.unparse(decorator) for decorator in function.decorator_list}
                 if decorators & {"property", "cached_property", "functools.cached_property"}:
                     self._properties.add(name)
@@ -237,22 +205,24 @@ class ClassSource:
                     self._is_known = False
                 for node, parents in walk(function):
                     inside.add(node)
-                    handler = next((n for n in parents if n in lambdas), None)
+                    handler = next((n for n in parents if n in begun), None)
                     if isinstance(node, ast.Attribute) and handler is not None:
-                        self._note(LAMBDA, node, parents[parents.index(handler) :])
+                        self._note(begun[handler], node, parents[parents.index(handler) :])
                     elif isinstance(node, ast.Attribute):
                         self._note(name, node, parents)
                     elif isinstance(node, ast.Name):
                         self._is_known &= node.id not in _BY_NAME
                         if node.id == "self" and isinstance(parents[-1], (ast.Call, ast.keyword)):
-                            self._is_known &= _knows(parents, defined)
+                            self._is_known &= knows(parents, defined)
         for syntax in self._files:
             for node, parents in syntax.parts:
                 if isinstance(node, ast.Global):
                     self.rebound.update(node.names)
-                if isinstance(node, ast.Call) and _word(node.func) in ("setattr", "delattr") and node not in inside:
+                if isinstance(node, ast.Call) and reaches_by_name(node):
+                    self._is_known = False
+                if isinstance(node, ast.Call) and word(node.func) in ("setattr", "delattr") and node not in inside:
                     self._set_by_name(node)
-                if not isinstance(node, ast.Attribute) or node in inside or _is_super(node.value):
+                if not isinstance(node, ast.Attribute) or node in inside or is_super(node.value):
                     continue
                 if is_own(node) and any(isinstance(parent, ast.ClassDef) for parent in parents):
                     continue  # of another class; in a function of the module, `self` may be the node
@@ -291,7 +261,7 @@ class ClassSource:
         self._foreign.setdefault(node.attr, []).append(use_of(method, node, parents))
 
     def _note(self, method: str, node: ast.Attribute, parents: Sequence[ast.AST]) -> None:
-        if not (is_own(node) or _is_super(node.value)):
+        if not (is_own(node) or is_super(node.value)):
             syntax = next((s for s in self._files if parents[0] in s.nodes), None)
             self._note_foreign(method, node, parents, syntax)
             return
@@ -300,7 +270,7 @@ class ClassSource:
             self._is_known = False
         if node.attr in self.methods:
             is_async = any(isinstance(f, ast.AsyncFunctionDef) for f in self.methods[node.attr])
-            if is_async and use.kind == "invoked" and not _is_awaited(parents):
+            if is_async and use.kind == "invoked" and not is_awaited(parents):
                 use = Use(method, node, use.kind, is_nested=use.is_nested, is_started=True)
             if node.attr != method:
                 self._callers.setdefault(node.attr, set()).add(method)
@@ -336,135 +306,8 @@ def _source_of(cls: Any) -> ClassSource:
     return source
 
 
-def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AST]) -> Use:
-    """What a method does to what an expression stands for, by what encloses it there, the outermost first."""
-    above = parents[-1]
-    nested = is_nested(parents)
-    if isinstance(node.ctx, (ast.Store, ast.Del)):
-        value = above.value if isinstance(above, (ast.Assign, ast.AnnAssign)) else None
-        targets = above.targets if isinstance(above, ast.Assign) else []
-        names = {t.id for t in targets if isinstance(t, ast.Name) and t is not node}
-        is_shared = any(isinstance(t, ast.Attribute) and t is not node for t in targets)
-        if is_shared or not all(_only_looked_at(name, parents[0]) for name in names):
-            return Use(method, node, "given", is_nested=nested)
-        return Use(method, node, "assigned", value=value, is_nested=nested)
-    if isinstance(above, ast.Call) and above.func is node:
-        return Use(method, node, "invoked", is_nested=nested)
-    # `self.x.y[0].z`: up to the whole of it.
-    whole: ast.AST = node
-    around = list(parents)
-    while isinstance(around[-1], (ast.Attribute, ast.Subscript)) and around[-1].value is whole:
-        whole = around.pop()
-    if whole is not node:
-        name = above.attr if isinstance(above, ast.Attribute) else ""
-        if isinstance(whole.ctx, (ast.Store, ast.Del)):  # type: ignore[attr-defined]
-            kind: Kind = "changed"
-        elif isinstance(around[-1], ast.Call) and around[-1].func is whole:
-            kind = "called" if whole is above else "changed"
-        else:
-            kind = "part"
-        handed = whole if isinstance(whole, ast.expr) and kind == "part" and not looks(whole, around) else None
-        return Use(method, node, kind, name, is_nested=nested, part=handed)
-    if isinstance(above, ast.withitem) and above.context_expr is node:
-        return Use(method, node, "entered", is_nested=nested)
-    kind = "read" if looks(node, around) else "given"
-    is_answered = _is_for_answer(above, parents[0])
-    return Use(method, node, kind, is_nested=nested, is_registered=_registers(above), is_answered=is_answered)
-
-
-def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:
-    """Whether a mention cannot make what is mentioned known to other code."""
-    above = parents[-1]
-    if isinstance(above, ast.Starred):
-        return looks(above, parents[:-1])
-    if isinstance(above, ast.IfExp):
-        return above.test is node
-    if isinstance(above, (ast.List, ast.Tuple, ast.Set)):  # asyncio.wait([self.x])
-        call = parents[-2] if len(parents) > 1 else None
-        return isinstance(call, ast.Call) and _awaits(ast.unparse(call.func))
-    if isinstance(above, ast.Call):
-        function = ast.unparse(above.func)
-        if function.startswith("np."):
-            return function.removeprefix("np.") not in _SAME
-        return function in _LOOKING or function.startswith(("self.log.", "math.")) or _awaits(function)
-    return isinstance(above, _LOOKS)
-
-
-def _awaits(function: str) -> bool:
-    return function.startswith("asyncio.") and function.removeprefix("asyncio.") in _AWAITING
-
-
-def _only_looked_at(name: str, function: ast.AST) -> bool:
-    """Whether a second name of something is only used to look at it."""
-    return not any(
-        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Load) and not looks(node, parents)
-        for node, parents in walk(function)
-    )
-
-
-def _word(function: ast.expr) -> str:
-    return function.id if isinstance(function, ast.Name) else ""
-
-
-def _registers(above: ast.AST) -> bool:
-    if not isinstance(above, ast.Call):
-        return False
-    function = ast.unparse(above.func)
-    return function.startswith("self.create_") or function.rpartition(".")[2] == "ActionServer"
-
-
-def _is_for_answer(above: ast.AST, function: ast.AST) -> bool:
-    """Whether a call is `add_done_callback` of a future that `call_async` and the like have made in the function."""
-    match above:
-        case ast.Call(func=ast.Attribute(value=ast.Call() as made, attr="add_done_callback")):
-            return _asks(made)
-        case ast.Call(func=ast.Attribute(value=(ast.Name() | ast.Attribute()) as future, attr="add_done_callback")):
-            name = ast.unparse(future)
-            bound = [
-                n.value for n in ast.walk(function) if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == name
-            ]
-            return bool(bound) and all(map(_asks, bound))
-    return False
-
-
-def _asks(value: ast.expr) -> bool:
-    return isinstance(value, ast.Call) and ast.unparse(value.func).rpartition(".")[2] in _ASKING
-
-
-def _is_awaited(parents: Sequence[ast.AST]) -> bool:
-    """Whether a call of a coroutine, whose function has these parents, runs on the spot and nowhere else."""
-    call, above = parents[-1], parents[-2]
-    if isinstance(above, (ast.AsyncFor, ast.comprehension)):
-        return above.iter is call
-    if isinstance(above, ast.Call) and ast.unparse(above.func) == "asyncio.wait_for":
-        above = parents[-3]
-    return isinstance(above, (ast.Await, ast.withitem, ast.Return))
-
-
-def _knows(parents: Sequence[ast.AST], defined: set[str]) -> bool:
-    """Whether a call that receives the node leads to code that is read here too, or that only looks at it."""
-    call = parents[-1] if isinstance(parents[-1], ast.Call) else parents[-2]
-    return (
-        isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in _LOOKING | _RCLPYS | defined
-    )
-
-
-def _is_part_of(node: ast.expr, owner: str) -> bool:
-    part = node.value if isinstance(node, ast.Attribute) else None
-    return isinstance(part, ast.Attribute) and part.attr == owner and is_own(part)
-
-
-def is_own(node: ast.AST) -> bool:
-    """Whether an expression is `self.something`."""
-    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
-
-
-def _is_super(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super"
-
-
 def _is_of_super(node: ast.AST) -> bool:
-    return isinstance(node, ast.Attribute) and _is_super(node.value)
+    return isinstance(node, ast.Attribute) and is_super(node.value)
 
 
 def _is_of(cls: type, item: FunctionNode) -> bool:

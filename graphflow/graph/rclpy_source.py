@@ -7,6 +7,7 @@ callback group is known where it is made or named in the same class. What is not
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,10 +23,14 @@ _BASES = {"Node", "LifecycleNode"}
 _CALLBACK_AT = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
 """Where the callback is among the arguments of what registers it."""
 _GROUP_AT = {"create_timer": 2}
+_SERVERS = ("create_service", "ActionServer")
+_OF_ONE_THREAD = {"SingleThreadedExecutor", "EventsExecutor", "ThreadPoolExecutor", "ProcessPoolExecutor"}
+"""Executors of rclpy's with one thread, and what is none of rclpy's."""
 _KINDS = {"create_timer": "timer", "create_subscription": "subscription", "create_service": "service"}
 _BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.ExceptHandler)
 _NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 _SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
+_LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "print")
 _LATER = "use call_async(request) and add_done_callback(...)"
 _OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
 _POOL = "spin with MultiThreadedExecutor()"
@@ -86,6 +91,8 @@ class _Class:
     file: str
     is_single: bool
     """Whether one thread spins it."""
+    doubled: frozenset[str] = frozenset()
+    """The names of services that several servers in the file have."""
     methods: dict[str, ast.FunctionDef | ast.AsyncFunctionDef] = field(default_factory=dict)
     groups: dict[str, _Group] = field(default_factory=dict)
     clients: dict[str, _Group | None] = field(default_factory=dict)
@@ -115,6 +122,7 @@ class _Class:
         """Why a wait never ends; empty if it may."""
         who, group = f"{callback} waits in {wait.what}", callback.group
         asked = self.asked.get(wait.client) if wait.client else None
+        asked = None if asked in self.doubled else asked  # another server may answer
         shut_out = [server.what for server in self.servers if asked and server[1:] == (asked, group)]
         if wait.client and self.clients.get(wait.client) == group:
             shut_out.append("the client")
@@ -202,8 +210,13 @@ def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
     """The node classes of a file, each with what it registers."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    is_single = "MultiThreadedExecutor" not in names and bool({"spin", "SingleThreadedExecutor"} & names)
-    known: dict[str, _Class] = {base: _Class(file, is_single) for base in _BASES}
+    imported = [alias for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names]
+    names |= {alias.name for alias in imported if alias.asname in names}
+    others = {name for name in names if name.endswith("Executor")} - _OF_ONE_THREAD
+    is_single = not others and bool({"spin", "SingleThreadedExecutor"} & names)
+    servers = Counter(_name_of(n) for n in ast.walk(tree) if isinstance(n, ast.Call) and _last(n.func) in _SERVERS)
+    doubled = frozenset(name for name, count in servers.items() if count > 1)
+    known: dict[str, _Class] = {base: _Class(file, is_single, doubled) for base in _BASES}
     for definition in tree.body:
         if isinstance(definition, ast.ClassDef):
             parent = next((known[name] for name in map(_last, definition.bases) if name in known), None)
@@ -216,7 +229,7 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
     """A class, with what it has from a parent in the same file."""
     own = dict(parent.methods), dict(parent.groups), dict(parent.clients), dict(parent.asked), list(parent.servers)
     rates = {name for name in _rates(definition) if name.startswith("self.")}
-    found = _Class(parent.file, parent.is_single, *own, list(parent.callbacks), parent.rates | rates)
+    found = _Class(parent.file, parent.is_single, parent.doubled, *own, list(parent.callbacks), parent.rates | rates)
     for item in definition.body:
         if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
             found.methods[item.name] = item
@@ -239,8 +252,8 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
         if method in found.methods:
             group = None if maker == "ActionServer" else _group_of(call, found.groups)  # bodies of goals are in none
             found.callbacks.append(_Callback(method, _KINDS.get(maker, "action"), group))
-        if maker in ("create_service", "ActionServer"):
-            what = "the action server" if maker == "ActionServer" else method
+        if maker in _SERVERS:
+            what = "the action server" if maker == "ActionServer" else method or "of that name"
             found.servers.append(_Server(what, _name_of(call), _group_of(call, found.groups)))
     return found
 
@@ -282,8 +295,25 @@ def _futures(function: ast.AST, clients: dict[str, _Group | None]) -> dict[str, 
                 targets=[target],
                 value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
             ) if name in clients and verb in ("call_async", "send_goal_async"):
-                found[_word(target)] = name
+                if not (isinstance(target, ast.Name) and _is_known_elsewhere(target.id, function)):
+                    found[_word(target)] = name
     return found
+
+
+def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
+    """Whether a function gives a future to others, who may end it, or ends it itself."""
+    for node, parents in _walk(function):
+        if not (isinstance(node, ast.Name) and node.id == future and isinstance(node.ctx, ast.Load)):
+            continue
+        match parents[-1]:
+            case ast.Attribute(attr=attr) if attr not in ("cancel", "set_result", "set_exception"):
+                continue
+            case ast.Await() | ast.Expr():
+                continue
+            case ast.Call(func=called) if ast.unparse(called) in _SPINS or _last(called) in _LOOKS:
+                continue
+        return True
+    return False
 
 
 def _rates(tree: ast.AST) -> set[str]:

@@ -247,6 +247,8 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
 
 
 def _needs(group: GroupView, holders: Sequence[ActivityView], verb: str) -> list[str]:
+    if group.sort == "spinner":
+        return [f"{verb} {_slot(group)},", "and there is none"]
     return [f"{verb} {_slot(group)},", f"which {' and '.join(title(a) for a in holders)} holds"]
 
 

@@ -87,7 +87,8 @@ def _joined(ways: Sequence[Sequence[str]]) -> Iterator[str]:
 def _spun(way: Way, graph: WaitGraph) -> Iterator[str]:
     """Have somebody spin while a thread waits."""
     holder, place = graph.activities[way.edge.to], graph.activities[way.edge.to].line
-    waiting = [_queue_of(way.edge, graph), _reply_queue(holder, way.wait, graph)]
+    reply = _reply_queue(holder, way.wait, graph)
+    waiting = [_queue_of(way.edge, graph), reply]
     unspun = [queue for queue in waiting if queue is not None and _is_unspun(queue, graph)]
     nodes = list(dict.fromkeys(queue.node for queue in unspun)) or [graph.groups[way.edge.group].node or "the node"]
     has_executor = any(graph.groups[name].sort == "executor" for name in _needs(way.edge, graph))
@@ -96,7 +97,10 @@ def _spun(way: Way, graph: WaitGraph) -> Iterator[str]:
         both = " and ".join(nodes)
         yield _text(f"let another thread spin {both} before {place}:", f"executor.add_node(...) for each, then {start}")
         return
-    if isinstance(way.wait.via, Call) and not way.wait.via.id.startswith("tick:"):
+    if reply is not None and reply not in unspun:
+        both = "executor.add_node(...) for both nodes, executor.spin_until_future_complete(future)"
+        yield _text(f"spin {nodes[0]} as well while waiting, in {place}:", both)
+    elif isinstance(way.wait.via, Call) and not way.wait.via.id.startswith("tick:"):
         spin = "rclpy.spin_until_future_complete(node, future)"
         yield _text(f"spin while waiting, in {place}:", f"future = {_asynchronous(way.wait.via)},", spin)
     spin = "executor.spin" if has_executor else "rclpy.spin, args=(node,)"
@@ -112,6 +116,8 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
     """The same work by a callback that does not keep what others need; empty if there is no such way."""
     place, handler = holder.line, holder.handler
     answers = holder.label.partition(" ")[0] in ("service", "action")
+    if holder.is_inner:
+        return []  # it is rclpy's, and calls a method of the user's that has to return
     match edge.via:
         case Call(id=call) if call.startswith("tick:"):
             return [f"do not sleep in {place}:", "create_timer(period, callback) calls back at a rate"]
@@ -125,7 +131,7 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
             later = "then future.add_done_callback(...)"
             return [f"do not block in {place}:", f"future = {_asynchronous(call)},", later]
         case Join():
-            return [f"return from {handler} instead of waiting for a thread in {place}:", "let that go on by itself"]
+            return [f"return from {handler} instead of waiting in {place}:", "the thread ends by itself then"]
         case SetBy(what=what, is_held=False, queues=queues):
             others = " or ".join(_handlers([name for name in queues if name != _own(holder, graph)], graph))
             if answers:
@@ -182,6 +188,7 @@ def _is_spun_inside(holder: ActivityView, reply: QueueView, graph: WaitGraph) ->
 def _apart(ways: Sequence[Way], graph: WaitGraph) -> list[str]:
     """Let the holders wait beside what they keep out: in groups of their own, and with more threads."""
     moved: list[tuple[ActivityView, bool]] = []
+    clients: list[str] = []
     executors: dict[str, int] = {}
     for edge, wait in ways:
         holder = graph.activities[edge.to]
@@ -190,11 +197,19 @@ def _apart(ways: Sequence[Way], graph: WaitGraph) -> list[str]:
             return [f"use more threads: MultiThreadedExecutor(num_threads={_held(graph, edge.group) + 1})"]
         full = [group for one in (queue, reply) if one is not None for group in _full(one, graph)]
         if any(group.sort == "callback" and group.id in holder.holds for group in full):
-            if holder.is_inner:
+            is_itself = queue is not None and queue.label == holder.label
+            if is_itself and isinstance(wait.via, Join):
+                return []  # a further run would wait for the same
+            if not holder.is_inner:
+                moved.append((holder, is_itself))
+            elif reply is not None and isinstance(wait.via, Call):
+                clients.append(f"the client of {wait.via.name} in {holder.node}")
+            else:
                 return []
-            moved.append((holder, queue is not None and queue.label == holder.label))
         executors |= {group.id: _held(graph, group.id) + 1 for group in full if group.sort == "executor"}
-    clauses = []
+    if any(_runs_twice(name, graph) for name in executors):
+        return []  # more threads would wait as these do
+    clauses = [f"make {' and '.join(clients)}", f"with {_EXCLUSIVE}"] if clients else []
     if moved:
         who = " and ".join(f"{_named(holder)} of {holder.node}" for holder, _ in moved)
         kind = _REENTRANT if any(is_itself for _, is_itself in moved) else _EXCLUSIVE
@@ -204,6 +219,12 @@ def _apart(ways: Sequence[Way], graph: WaitGraph) -> list[str]:
         more = f"spin{each} with MultiThreadedExecutor(num_threads={max(executors.values())})"
         clauses = [*clauses[:-1], f"{clauses[-1]},", f"and {more}"] if clauses else [more]
     return clauses
+
+
+def _runs_twice(executor: str, graph: WaitGraph) -> bool:
+    """Whether several of an executor's threads run the same handler, and others may come to."""
+    labels = [(a.node, a.label) for a in graph.activities.values() if executor in a.holds]
+    return len(labels) > len({*labels})
 
 
 def _named(holder: ActivityView) -> str:

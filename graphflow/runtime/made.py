@@ -14,9 +14,9 @@ from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.source import is_own
 from graphflow.deadlock.syntax import first_line, syntax_of
 from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.uses import is_own
 from graphflow.errors import ParameterError, Place
 from graphflow.interface import EndpointInfo, EndpointKind, HandlerInfo, HandlerKind, Interface, Parameter, type_of
 

@@ -11,9 +11,9 @@ import sys
 from collections.abc import Collection, Iterator
 from functools import cache
 
-from graphflow.deadlock.source import is_own
 from graphflow.deadlock.syntax import FunctionNode, syntax_of, walk
 from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.uses import is_own
 from graphflow.errors import DeclarationError, Place
 from graphflow.runtime import declared
 from graphflow.runtime.declare import Param

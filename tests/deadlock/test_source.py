@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from graphflow.deadlock.source import ClassSource, Unknown, Use, source_of
+from graphflow.deadlock.source import ClassSource, Unknown, source_of
+from graphflow.deadlock.uses import Use
 from tests.deadlock.conftest import Written
 
 HEAD = """

@@ -210,3 +210,38 @@ def test_folders_are_read_whole_but_for_what_is_built(tmp_path: Path) -> None:
     (tmp_path / "src/broken.py").write_text("def (")
     (tmp_path / "src/bytes.py").write_bytes(b"\xff\xfe\x00")
     assert [Path(way.place.file).name for way in findings_in(tmp_path)] == ["a.py"]
+
+
+CERTAIN = [("CERTAIN", "self.client.call(Trigger.Request())")]
+OTHERS = ", callback_group=ReentrantCallbackGroup()"
+
+
+@pytest.mark.parametrize(
+    "spin",
+    [
+        "from rclpy.executors import MultiThreadedExecutor as Pool; executor = Pool(); executor.add_node(Asker())",
+        "executor = lab.PriorityExecutor(); executor.add_node(Asker()); executor.spin()",
+    ],
+)
+def test_executors_that_may_have_more_threads(tmp_path: Path, spin: str) -> None:
+    """Under other names, or of the program's own: nothing is said of threads."""
+    tick = f"{TICK}self.client.call(Trigger.Request())"
+    assert found(tmp_path, tick=tick, client=OTHERS) == CERTAIN
+    assert found(tmp_path, tick=tick, client=OTHERS, spin=spin) == []
+
+
+def test_another_server_may_answer(tmp_path: Path) -> None:
+    """One of the same name, in the same file."""
+    client, tick = OTHERS, f"{TICK}self.client.call(Trigger.Request())"
+    serves = 'self.create_service(Trigger, "ask", self.on_own)'
+    assert found(tmp_path, tick=tick, client=client, init=serves, spin=POOL) == CERTAIN
+    other = f'{serves}\n        rclpy.create_node("other").create_service(Trigger, "ask", print)'
+    assert found(tmp_path, tick=tick, client=client, init=other, spin=POOL) == []
+
+
+@pytest.mark.parametrize("given", ["Timer(3.0, future.cancel).start()", "self.pending[future] = 1", "watch(future)"])
+def test_a_future_that_others_may_end(tmp_path: Path, given: str) -> None:
+    """Is not waited for in vain."""
+    lines = ["future = self.client.call_async(Trigger.Request())", "rclpy.spin_until_future_complete(self, future)"]
+    assert len(found(tmp_path, tick=TICK + "\n        ".join(lines))) == 1
+    assert found(tmp_path, tick=TICK + "\n        ".join([lines[0], given, lines[1]])) == []

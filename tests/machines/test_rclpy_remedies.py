@@ -176,6 +176,32 @@ def test_a_callback_without_a_name() -> None:
 
 
 def test_a_callback_that_is_not_the_users() -> None:
-    """Nobody can give it a group."""
+    """Nobody can give it a group, nor have it go on later: the client, which is the user's, is moved."""
     [only] = told(Edge("a", CALL, "q", "g"), replace(TICK, is_inner=True))
-    assert only.startswith("do not block in ")
+    assert only.startswith("make the client of /add in /arm with callback_group=MutuallyExclusiveCallbackGroup()")
+
+
+def test_threads_that_more_of_the_same_would_take() -> None:
+    """Are not asked for: a service that calls itself has as many runs as there are threads."""
+    again = replace(TICK, id="b", label="service add", holds=("e",))
+    more = replace(again, id="c")
+    both = in_rclpys_words_of(Edge("a", CALL, "q", "e"), replace(TICK, holds=("e",)), again, more)
+    assert [text.partition(" ")[0] for text in both] == ["do"]
+    one = in_rclpys_words_of(Edge("a", CALL, "q", "e"), replace(TICK, holds=("e",)), again)
+    assert one[-1] == "spin with MultiThreadedExecutor(num_threads=3)"
+
+
+def in_rclpys_words_of(edge: Edge, *activities: ActivityView) -> list[str]:
+    return told(edge, *activities, queues=(replace(ADD, needs=("e",)), replace(REPLY, needs=("o",))))
+
+
+def test_a_server_that_nobody_spins_beside_a_client_that_is_spun() -> None:
+    """Both are to be spun, by this thread or another."""
+    thread = replace(TICK, label="thread main", holds=("s",))
+    queues = (replace(ADD, node="/server", needs=("s",)), replace(REPLY, needs=("e",)))
+    [both, other] = told(Edge("a", CALL, "q", "s"), thread, queues=queues)
+    assert both == (
+        "spin /server as well while waiting, in arm.py:12: executor.add_node(...) for both nodes, "
+        "executor.spin_until_future_complete(future)"
+    )
+    assert other.startswith("let another thread spin /server before arm.py:12:")

@@ -9,6 +9,7 @@ import concurrent.futures
 import queue
 import threading
 import time
+from contextlib import suppress
 from typing import Any
 
 from example_interfaces.action import Fibonacci
@@ -17,6 +18,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.node import Node
@@ -163,6 +165,44 @@ class PollsTheFuture(Asker):
         while rclpy.ok() and not self.future.done():
             time.sleep(0.02)  # stuck: PollsTheFuture
         self.done.set()
+
+
+class PollsTheResult(Asker):
+    threads = 2
+
+    def tick(self) -> None:
+        future = self.client.call_async(Trigger.Request())
+        while future.result() is None:
+            time.sleep(0.02)  # stuck: PollsTheResult
+        self.done.set()
+
+
+class FixedPollsTheResult(PollsTheResult):
+    timer_group = MutuallyExclusiveCallbackGroup
+
+
+class WaitsForALambda(Asker):
+    """What is set by a function that only an answer calls."""
+
+    threads = 2
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.came = threading.Event()
+
+    def tick(self) -> None:
+        def answered(future: Any) -> None:
+            self.fires += 1
+
+        future = self.client.call_async(Trigger.Request())
+        future.add_done_callback(answered)
+        future.add_done_callback(lambda _: self.came.set())
+        self.came.wait()  # stuck: WaitsForALambda
+        self.done.set()
+
+
+class FixedWaitsForALambda(WaitsForALambda):
+    timer_group = MutuallyExclusiveCallbackGroup
 
 
 class FixedPollsTheFuture(PollsTheFuture):
@@ -338,6 +378,42 @@ class PollsAFlag(Waits):
 
 class FixedPollsAFlag(PollsAFlag):
     threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class PollsAtARate(PollsAFlag):
+    """The rate ticks, and what it waits for never comes."""
+
+    threads = 2
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rate = self.create_rate(50.0)
+
+    def tick(self) -> None:
+        while not self.flag:
+            self.rate.sleep()  # stuck: PollsAtARate
+        self.done.set()
+
+
+class FixedPollsAtARate(PollsAtARate):
+    group = MutuallyExclusiveCallbackGroup
+
+
+class SpinsIntoAFuture(Waits):
+    """A future of its own, which another callback sets, in the executor that it spins itself."""
+
+    threads = 2
+
+    def tick(self) -> None:
+        rclpy.spin_until_future_complete(self, self.future, self.executor)  # stuck: SpinsIntoAFuture
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.future.set_result(1)
+
+
+class FixedSpinsIntoAFuture(SpinsIntoAFuture):
     group = MutuallyExclusiveCallbackGroup
 
 
@@ -635,6 +711,22 @@ class FixedCallsInAGoal(CallsInAGoal):
     threads = 2
 
 
+class AsksInsideALock(Asker):
+    """A thread of the program's own asks, and holds what the answer needs."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lock = threading.Lock()
+
+    def answer(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            return response
+
+    def ask(self) -> None:
+        with self.lock, suppress(RCLError, TimeoutError):
+            self.client.call(Trigger.Request())  # stuck: AsksInsideALock
+
+
 OWN = "make fire of /asker with callback_group=MutuallyExclusiveCallbackGroup()"
 
 PLANTED: list[tuple[type[Any], type[Any], str]] = [
@@ -652,6 +744,14 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (SpinsOnceWithin, FixedSpinsWithin, OWN),
     (SpinsAndBreaks, FixedSpinsWithin, OWN),
     (PollsTheFuture, FixedPollsTheFuture, OWN),
+    (PollsTheResult, FixedPollsTheResult, OWN),
+    (WaitsForALambda, FixedWaitsForALambda, OWN),
+    (PollsAtARate, FixedPollsAtARate, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (
+        SpinsIntoAFuture,
+        FixedSpinsIntoAFuture,
+        "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()",
+    ),
     (Awaits, FixedAwaits, "callback_group=ReentrantCallbackGroup()"),
     (Sleeps, FixedSleeps, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AllThreads, FixedAllThreads, "spin with MultiThreadedExecutor(num_threads=3)"),

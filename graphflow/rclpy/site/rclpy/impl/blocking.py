@@ -11,6 +11,7 @@ from types import FrameType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.source import Unknown
+from graphflow.deadlock.user_code import is_users
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
@@ -67,6 +68,23 @@ def blocked(level: Level) -> Blocked:
     return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
 
 
+def is_private(level: Level) -> bool:
+    """Whether the future that is waited for is known to nobody but rclpy: it is that of a call that blocks."""
+    codes = {frame.f_code for frame in level.frames}
+    return not codes.isdisjoint((Client.call.__code__, ActionClient.send_goal.__code__))
+
+
+def limit_of(level: Level) -> float | None:
+    """The seconds after which a wait for an event, a queue or the like is given up; None for never."""
+    for frame in reversed(level.frames):
+        if is_users(frame.f_code.co_filename):
+            break
+        timeout = frame.f_locals.get("timeout")
+        if isinstance(timeout, (int, float)):
+            return timeout
+    return None
+
+
 def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
     """The thread of a pool that works for a future."""
     for thread, innermost in sys._current_frames().items():
@@ -107,6 +125,12 @@ def _asked(test: ast.expr) -> Iterator[ast.expr]:
     for node in ast.walk(test):
         match node:
             case ast.Call(func=ast.Attribute(value=owner, attr="done"), args=[]):
+                yield owner
+            case ast.Compare(
+                left=ast.Call(func=ast.Attribute(value=owner, attr="result"), args=[]),
+                ops=[ast.Is() | ast.IsNot()],
+                comparators=[ast.Constant(value=None)],
+            ):
                 yield owner
 
 

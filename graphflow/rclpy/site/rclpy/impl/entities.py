@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.source import ANSWERED
 from graphflow.deadlock.user_code import is_ours
 from graphflow.errors import ClosedError
 from graphflow.machines.wait_graph import goal_id
@@ -52,6 +53,8 @@ def role_of(entity: Any) -> Role:
     code = getattr(callback, "__code__", None)
     is_inner = code is not None and is_ours(code.co_filename)
     is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
+    if is_inner and isinstance(entity, Service):
+        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # such as change_state
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 
@@ -114,6 +117,8 @@ def after_answers(entity: Any, node: Any) -> Iterator[str]:
         for callback in list(future._callbacks):
             if getattr(callback, "__self__", None) is node:
                 yield name_of(callback)
+            elif any(cell.cell_contents is node for cell in getattr(callback, "__closure__", None) or ()):
+                yield ANSWERED
 
 
 def results_asked(entity: Any) -> Iterator[tuple[str, str]]:

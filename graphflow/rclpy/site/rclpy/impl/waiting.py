@@ -8,6 +8,7 @@ program's own. Nothing is recorded while callbacks run: all is read from stacks 
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from collections import Counter
@@ -20,7 +21,7 @@ from weakref import WeakKeyDictionary
 from graphflow.deadlock.asyncio_frames import know_futures
 from graphflow.deadlock.fresh import know_messages
 from graphflow.deadlock.held import setters
-from graphflow.deadlock.user_code import Pause, where
+from graphflow.deadlock.user_code import Pause, is_users, where
 from graphflow.errors import ClosedError
 from graphflow.machines.wait_graph import (
     FREE,
@@ -39,10 +40,9 @@ from graphflow.rclpy.messages import StrictMessage
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Kind
 from rclpy.action.client import ActionClient
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
-from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor, all_executors
-from rclpy.impl.blocking import blocked
+from rclpy.impl.blocking import blocked, is_private, limit_of
+from rclpy.impl.enders import may_be_ended
 from rclpy.impl.entities import (
     Role,
     after_answers,
@@ -55,6 +55,7 @@ from rclpy.impl.entities import (
     role_of,
     served,
 )
+from rclpy.impl.groups import ATTEMPTS, called, executors, is_exclusive, threads_of
 from rclpy.impl.locks import Entering, is_inside, is_kept
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
@@ -70,8 +71,6 @@ LOOK_EVERY = 0.15
 """Seconds between two looks whether some thread or callback stands still."""
 AGAIN_AFTER = 0.5
 """Seconds after which what stands still is looked into again."""
-ATTEMPTS = 5
-"""How often things are looked at that other threads change meanwhile."""
 
 know_futures(Future)
 know_messages(StrictMessage)
@@ -159,13 +158,18 @@ class _Look:
         self._activities: dict[str, ActivityView] = {}
         self._pause: Pause | None = None
         """Where the loop pauses in which the run waits that is looked at."""
+        self._asker: Any = None
+        """The node whose client waits for the answer that what is looked at waits for."""
         self._stacks = list(stacks())
         self._spun = {executor for stack in self._stacks for executor in stack.spins}
         self._levels = {level.run: level for stack in self._stacks for level in stack.levels if level.run is not None}
         mine = [executor for executor in executors() if executor.context.life is waiting._life]
         runs = [run for executor in mine for run in list(executor.spinning.running)]
         self._runs: dict[Run, None] = dict.fromkeys([*runs, *self._levels])
-        self._awaited = {blocked(level).thread for level in self._levels.values()}
+        found = [blocked(level) for level in self._levels.values()]
+        self._awaited = {one.thread for one in found}
+        locks = [one.lock.lock for one in found if one.lock is not None]
+        self._awaited |= {s.thread.ident for s in self._stacks for lock in locks if _holds(s, lock)}
         self._now = time.monotonic()
 
     def _id(self, thing: Any, prefix: str = "r") -> str:
@@ -188,15 +192,15 @@ class _Look:
 
     def _callback_group(self, group: Any, node: Any) -> tuple[str, ...]:
         """The id of a callback group, if it keeps anything out."""
-        if not _is_exclusive(group):
+        if not is_exclusive(group):
             return ()
         name = self._id(group, "g")
-        self._groups[name] = GroupView(name, _called(group, node), _name(node), 1, sort="callback")
+        self._groups[name] = GroupView(name, called(group, node), _name(node), 1, sort="callback")
         return (name,)
 
     def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
         """The id of an executor, as a group of threads."""
-        limit = _threads_of(executor)
+        limit = threads_of(executor)
         name = self._id(executor, "e")
         self._groups.setdefault(name, GroupView(name, type(executor).__name__, _name(node), limit, sort="executor"))
         return (name,)
@@ -215,7 +219,7 @@ class _Look:
         own, executor = self._callback_group(group, node), node.executor
         if executor is None or node not in executor.spinning.nodes:
             return (*own, *self._spinner(node))
-        if executor not in self._spun and _threads_of(executor) is not None:
+        if executor not in self._spun and threads_of(executor) is not None:
             return (*own, *self._executor(executor, node), *self._spinner(node))
         return (*own, *self._executor(executor, node))
 
@@ -248,7 +252,8 @@ class _Look:
         runs = [level for level in stack.levels if level.run is not None]
         held = (f"{self._zid}:spinner",) if stack.may_spin and f"{self._zid}:spinner" in self._groups else ()
         if not runs:
-            if (held and not stack.is_idle) or stack.thread.ident in self._awaited:
+            is_waiting = not stack.is_idle or blocked(stack.levels[0]).future is not None
+            if (held and is_waiting) or stack.thread.ident in self._awaited:
                 self._add_thread(stack, stack.levels[0], held)
             elif held:
                 self._add_idle(stack, held)
@@ -295,6 +300,7 @@ class _Look:
         selves = [frame.f_locals.get("self") for frame in level.frames]
         node = next((n for n in self._nodes if any(own is n for own in selves)), first)
         wait, left = self._wait(level, node, None)
+        node = node if self._asker is None else self._asker
         age, name = self._age(stack), self._id(stack.thread, "t")
         found = where(level.frames, node, self._pause)
         self._activities[name] = ActivityView(
@@ -336,6 +342,9 @@ class _Look:
         goal = goal_of(run)
         if goal is not None:
             return goal._action_server._node
+        owner = getattr(run.called, "__self__", None)
+        if run.node is None and any(node is owner for node in self._nodes):
+            return owner  # what follows an answer of its client's
         return run.node if run.node is not None else next(iter(run.executor.spinning.nodes), None)
 
     def _role(self, run: Run) -> Role:
@@ -351,20 +360,23 @@ class _Look:
 
     def _wait(self, level: Level, node: Any, run: Run | None) -> tuple[Condition, float | None]:
         """What code on a thread waits for, and for how many seconds at most from when it began to."""
-        self._pause = None
+        self._pause = self._asker = None
         found = blocked(level)
         if found.future is not None:
             return self._of_future(found.future, level, node, run), found.timeout
         if found.timer is not None:
-            return Call(self._tick(found.timer), "rate"), None
-        if level.waiting is not None or node is None:
+            turn = self._closed_world(level, None, node, run)  # of a loop that polls at that rate
+            executor: Any = None if run is None else run.executor
+            is_alone = executor is None or threads_of(executor) == 1  # then there will be no tick at all
+            return Call(self._tick(found.timer), "rate") if turn == FREE or is_alone else turn, None
+        if node is None or (level.waiting is not None and run is None):
             return FREE, None
         if found.thread is not None:
             joined = next((stack for stack in self._stacks if stack.thread.ident == found.thread), None)
             return FREE if joined is None else Join(self._id(joined.thread, "t")), found.timeout
         if found.lock is not None:
             return self._of_lock(found.lock, level, run), None
-        return self._closed_world(level, None, node, run), None
+        return self._closed_world(level, None, node, run), limit_of(level)
 
     def _of_future(self, future: Future[Any], level: Level, node: Any, run: Run | None) -> Condition:
         if future.done() or future.cancelled():
@@ -375,19 +387,32 @@ class _Look:
             if isinstance(entity, Client):
                 sequence = next((n for n, f in list(entity._pending.items()) if f is future), None)
                 if sequence is not None:
-                    return self._of_call(entity._endpoint, sequence)
+                    self._asker = self._owners[entity]
+                    return self._of_call(entity._endpoint, sequence, future, level)
             elif isinstance(entity, ActionClient):
                 found = next((key for key, (f, _) in list(entity._graphflow_waiting.items()) if f is future), None)
                 if found is not None:
-                    return self._of_call(*found)
+                    self._asker = self._owners[entity]
+                    return self._of_call(*found, future, level)
         return self._closed_world(level, future, node, run)
 
-    def _of_call(self, endpoint: Any, sequence: int) -> Condition:
+    def _of_call(self, endpoint: Any, sequence: int, future: Future[Any], level: Level) -> Condition:
+        if not is_private(level) and may_be_ended(future, self._nodes, self._files):
+            return FREE
         try:
             call = Call(endpoint.call_id(sequence), endpoint.name)
         except ClosedError:
             return FREE
         return call if self._servers[endpoint.name] < 2 else FREE  # another may answer
+
+    @cached_property
+    def _files(self) -> set[str]:
+        """Where the program's own code is that is under way, and that of its nodes."""
+        levels = [level for stack in self._stacks for level in stack.levels]
+        files = {frame.f_code.co_filename for level in levels for frame in level.frames}
+        modules = {sys.modules.get(cls.__module__) for node in self._nodes for cls in type(node).__mro__}
+        files |= {str(file) for module in modules if (file := getattr(module, "__file__", None))}
+        return {file for file in files if is_users(file) and "-packages" not in file and not file.startswith("<")}
 
     @cached_property
     def _servers(self) -> Counter[str]:
@@ -396,13 +421,14 @@ class _Look:
 
     def _of_lock(self, entering: Entering, level: Level, run: Run | None) -> Condition:
         """A lock that others are inside of."""
-        others = [(other, there.frames) for other, there in self._levels.items() if other is not run]
+        others = [(self._id(other), there.frames) for other, there in self._levels.items() if other is not run]
+        others += [(self._id(s.thread, "t"), s.levels[0].frames) for s in self._stacks if s.levels[0] is not level]
         if run is not None:
-            others.append((run, level.frames[:-1]))  # it may be inside itself
+            others.append((self._id(run), level.frames[:-1]))  # it may be inside itself
         inside = [(one, frames) for one, frames in others if any(is_inside(f, entering.lock) for f in frames)]
         if len(inside) != 1 or not is_kept(entering, [*level.frames, *inside[0][1]]):
             return FREE
-        return SetBy(entering.text, (), (self._id(inside[0][0]),), True, "releases")
+        return SetBy(entering.text, (), (inside[0][0],), True, "releases")
 
     def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
         """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
@@ -438,7 +464,7 @@ class _Look:
                 row["handlers"].append({"handler": role.handler, "kind": role.kind, **numbers})
             executor = node.executor
             if executor is not None:
-                limit = _threads_of(executor)
+                limit = threads_of(executor)
                 name = f"{type(executor).__name__}{'' if executor in self._spun else ' (not spinning)'}"
             else:
                 limit, name = 0, "no executor"
@@ -449,47 +475,17 @@ class _Look:
 
 def _plain(group: Any, node: Any) -> dict[str, Any]:
     """A callback group as plain data, with nothing in it yet."""
-    about = {"name": _called(group, node), "limit": 1 if _is_exclusive(group) else None, "when_full": "wait"}
+    about = {"name": called(group, node), "limit": 1 if is_exclusive(group) else None, "when_full": "wait"}
     return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}
 
 
-def executors() -> list[Executor]:
-    """Those of this process; more may be made meanwhile."""
-    for _ in range(ATTEMPTS):
-        try:
-            return list(all_executors)
-        except RuntimeError:  # one was, in another thread
-            continue
-    return []
+def _holds(stack: Stack, lock: object) -> bool:
+    """Whether a thread of the program's own is inside of a lock, outside of all callbacks."""
+    return any(is_inside(frame, lock) for frame in stack.levels[0].frames)
 
 
 def _name(node: Any) -> str:
     return "" if node is None else str(node._graphflow.node.full_name)
-
-
-def _called(group: Any, node: Any) -> str:
-    """What a callback group is called: by the attribute of its node."""
-    if node is not None and group is node.default_callback_group:
-        return "default callback group"
-    attribute = next((a for a, value in list(vars(node).items()) if value is group), "") if node is not None else ""
-    kind = "callback group" if _is_exclusive(group) else type(group).__name__
-    return f"{kind} '{attribute}'" if attribute else kind
-
-
-def _is_exclusive(group: Any) -> bool:
-    """Whether one callback of a group runs at a time: for groups whose ways are their own that is not known."""
-    kind = MutuallyExclusiveCallbackGroup
-    return isinstance(group, kind) and type(group).beginning_execution is kind.beginning_execution
-
-
-def _threads_of(executor: Executor) -> int | None:
-    """The threads of an executor; None for one whose ways are its own."""
-    way = type(executor).spin_once
-    if isinstance(executor, SingleThreadedExecutor) and way is SingleThreadedExecutor.spin_once:
-        return 1
-    if isinstance(executor, MultiThreadedExecutor) and way is MultiThreadedExecutor.spin_once:
-        return executor._executor._max_workers
-    return None
 
 
 def attend(life: Life) -> None:

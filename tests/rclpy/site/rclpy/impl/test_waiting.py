@@ -177,6 +177,51 @@ def test_of_two_servers_another_may_answer(
     thread.join(LIMIT)
 
 
+def test_a_server_that_nobody_spins(caplog: pytest.LogCaptureFixture, network: object) -> None:
+    """While a thread spins its client alone: that its own answers are taken does not help."""
+    rclpy.init()
+    server, client_node = Node("server"), Node("client")
+    server.create_service(Trigger, "answer", lambda request, response: response)
+    client = client_node.create_client(Trigger, "answer")
+    assert client.wait_for_service(LIMIT)
+    future = client.call_async(Trigger.Request())
+
+    def help_out() -> None:
+        until(lambda: reports(caplog), "the report")
+        rclpy.spin_once(server, executor=SingleThreadedExecutor(), timeout_sec=LIMIT)
+
+    helper = threading.Thread(target=help_out, name="graphflow-helper")  # which is not taken for the program's
+    helper.start()
+    rclpy.spin_until_future_complete(client_node, future, timeout_sec=LIMIT)
+    helper.join(LIMIT)
+    told = flat(reports(caplog)[0])
+    assert "thread MainThread of /client" in told
+    assert "waits for a thread that spins /server, and there is none" in told
+    assert "executor.add_node(...) for both nodes, executor.spin_until_future_complete(future)" in told
+    assert future.done()
+    rclpy.shutdown()
+
+
+def test_a_lock_of_a_thread_that_asks(caplog: pytest.LogCaptureFixture, network: object) -> None:
+    """And which the service wants that answers."""
+    rclpy.init()
+    node = planted.AsksInsideALock()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=spin, args=(executor,))
+    asking = threading.Thread(target=node.ask, name="asking")
+    spinning.start()
+    asking.start()
+    until(lambda: reports(caplog), "the report")
+    told = flat(reports(caplog)[0])
+    assert f"planted.py:{line_of(planted.AsksInsideALock)} in ask" in told
+    assert "which thread asking of /asker holds" in told
+    assert "to where it does not hold self.lock" in told
+    rclpy.shutdown()
+    for thread in (asking, spinning):
+        thread.join(LIMIT)
+
+
 def spin(executor: Executor) -> None:
     """Spin until the context ends."""
     with suppress(Exception):

@@ -1,0 +1,87 @@
+"""Whether a program's own code may end the future of an answer: cancel it, or set its result, as watchdogs do."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import Any, NamedTuple
+
+from graphflow.deadlock.syntax import FunctionNode, syntax_of
+from graphflow.deadlock.uses import is_own
+from rclpy.task import Future
+
+_WAYS = ("cancel", "set_result", "set_exception")
+_OTHERS = ("create_timer", "create_rate", "Timer")
+"""What makes things that can be cancelled, too."""
+
+
+class _Ending(NamedTuple):
+    """A place in the source that may end a future."""
+
+    attribute: str = ""
+    """The attribute of `self` that it ends; empty for anything else."""
+    cls: str = ""
+    """The class in which it stands; empty for none."""
+
+
+def may_be_ended(future: Future[Any], nodes: Iterable[Any], files: Iterable[str]) -> bool:
+    """Whether some code may end a future that is waited for, as far as its files show.
+
+    Args:
+        nodes: Nodes, of whose attributes it is known what they are.
+        files: Where that code would be.
+    """
+    nodes = list(nodes)
+    classes = _classes_of_nodes(nodes)
+    return any(_may_end(ending, future, nodes, classes) for file in files for ending in _endings(file))
+
+
+def _classes_of_nodes(nodes: list[Any]) -> set[str]:
+    """The names of all classes of nodes that there are."""
+    todo = [cls for node in nodes[:1] for cls in type(node).__mro__ if cls.__module__ == "rclpy.node"]
+    names = set[str]()
+    while todo:
+        cls = todo.pop()
+        names.add(cls.__name__)
+        todo += cls.__subclasses__()
+    return names
+
+
+def _may_end(ending: _Ending, future: Future[Any], nodes: list[Any], classes: set[str]) -> bool:
+    of_class = [node for node in nodes if any(cls.__name__ == ending.cls for cls in type(node).__mro__)]
+    if ending.cls in classes and not of_class:
+        return False  # there is no such node
+    known = [vars(node)[ending.attribute] for node in of_class or nodes if ending.attribute in vars(node)]
+    return not known or any(value is future for value in known)
+
+
+@cache
+def _endings(file: str) -> list[_Ending]:
+    try:
+        syntax = syntax_of(file)
+    except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
+        return [_Ending()]
+    return list(_endings_in(syntax.parts))
+
+
+def _endings_in(parts: Iterable[tuple[ast.AST, list[ast.AST]]]) -> Iterator[_Ending]:
+    for node, parents in parts:
+        if isinstance(node, ast.Attribute) and node.attr in _WAYS:
+            owner = node.value
+            within = next((parent for parent in parents if isinstance(parent, ast.ClassDef)), None)
+            cls = within.name if within is not None else ""
+            if isinstance(owner, ast.Attribute) and is_own(owner):
+                yield _Ending(owner.attr, cls)
+            elif not (isinstance(owner, ast.Name) and _is_timer(owner.id, parents)):
+                yield _Ending("", cls)
+
+
+def _is_timer(name: str, parents: list[ast.AST]) -> bool:
+    """Whether a local name is a timer's: by what it is called, or by what makes it."""
+    if "timer" in name.lower():
+        return True
+    functions = [parent for parent in parents if isinstance(parent, FunctionNode)] or parents[:1]
+    made = (n for parent in functions for n in ast.walk(parent) if isinstance(n, ast.Assign))
+    values = [n.value for n in made if any(isinstance(t, ast.Name) and t.id == name for t in n.targets)]
+    return bool(values) and all(isinstance(v, ast.Call) and ast.unparse(v.func).endswith(_OTHERS) for v in values)
