@@ -54,7 +54,7 @@ def import_everything() -> None:
     """Import every module of the package, so that no class is missing."""
     root, handler = Path(graphflow.__file__).parent, signal.getsignal(signal.SIGINT)
     for path in set(root.rglob("*.py")) - {root / "__main__.py"}:  # which would run a command
-        if (root / "rclpy" / "site") in path.parents:  # what is imported under ROS's names, and raises rclpy's errors
+        if {root / "rclpy" / "site", root / "rclpy" / "packages"} & {*path.parents}:  # ROS's names, and rclpy's errors
             continue
         words = path.relative_to(root.parent).with_suffix("").parts
         import_module(".".join(words).removesuffix(".__init__"))

@@ -219,8 +219,8 @@ class _Stream:
 
     def _greet(self, seconds: float) -> None:
         run = self._run
-        width = max(len(n["node"]) for n in self._nodes)
-        class_width = max(len(n["class"]) for n in self._nodes)
+        width = max((len(n["node"]) for n in self._nodes), default=0)
+        class_width = max((len(n["class"]) for n in self._nodes), default=0)
         count = f"{len(self._nodes)} node{'s' if len(self._nodes) > 1 else ''}"
         output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
         for node in self._nodes:

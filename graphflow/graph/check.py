@@ -276,7 +276,7 @@ def _may_have_more(plan: Plan, interfaces: Interfaces, name: str) -> bool:
 def _check_set(step: PlannedStep, plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     node = next((node for node in plan.nodes if node.name == step.target and not node.command), None)
     if node is None:
-        if not any(node.command for node in plan.nodes):
+        if step.type is None and not any(node.command for node in plan.nodes):
             near = did_you_mean(step.target, [n.name for n in plan.nodes])
             yield Problem(step.target_place, f"there is no node {step.target}{near}")
         return

@@ -22,7 +22,7 @@ from graphflow.errors import GraphFileError, InvalidName, Place, Problem
 from graphflow.graph import executables
 from graphflow.graph.arguments import Arguments
 from graphflow.graph.faults import Problems, example, unknown_key, validated
-from graphflow.graph.inherit import BY_ENTRY, with_groups
+from graphflow.graph.inherit import BY_ENTRY, after_groups, with_groups
 from graphflow.graph.model import (
     BLOCKS,
     FROM_LAUNCH,
@@ -364,7 +364,7 @@ class Expansion:
             return
         if self._is_taken(name, item, self.steps, "steps"):
             return
-        item = self._substituted(item.without("if", "unless"), scope)
+        item = after_groups(self._substituted(item.without("if", "unless"), scope), scope.shared)
         for key in ("call", "set", "goal", "wait"):
             target = item.entries.get(key)
             if target is None or not isinstance(target.value, str):

@@ -13,13 +13,30 @@ INHERITED = ("restart", "on_exit", "critical", "log_level", "lifecycle")
 """Keys of a group that a node has unless it says otherwise."""
 
 
+def after_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
+    """A node or step that comes after what the groups around it come after, too."""
+    afters = [entries["after"] for entries in (item.entries, *groups) if "after" in entries]
+    if not afters or afters == [item.entries.get("after")]:
+        return item
+    names = {name: word for after in afters for name, word in _names(after).items()}
+    return item._replace(value={**item.entries, "after": Item(names, afters[0].place, afters[0].key)})
+
+
+def _names(after: Item) -> dict[str, Item]:
+    """What comes before, each with what it must have become; an empty word for the usual."""
+    if isinstance(after.value, dict):
+        return after.value
+    words = after.value if isinstance(after.value, list) else [after]
+    return {str(word.value): Item("", word.place) for word in words}
+
+
 def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
     """A node with what the groups around it give it.
 
     Args:
         groups: Their settings, the innermost first.
     """
-    entries = dict(item.entries)
+    entries = dict(after_groups(item, groups).entries)
     for key in INHERITED:
         found = first_of([entries, *groups]).get(key)
         if found is not None and (key != "lifecycle" or "exec" not in entries):  # which only some programs have

@@ -83,7 +83,7 @@ def _after(value: Any) -> Any:
         return {value: ""}
     if isinstance(value, list) and all(isinstance(name, str) for name in value):
         return dict.fromkeys(value, "")
-    if not isinstance(value, dict) or not all(word in AFTER for word in value.values()):
+    if not isinstance(value, dict) or not all(word in (*AFTER, "") for word in value.values()):
         raise ValueError(f"after: expected a name, a list of names, or NAME: {'|'.join(AFTER)}, got {value!r}")
     return value
 
@@ -248,7 +248,7 @@ class NodeSpec(_Settings):
 
 
 class StepSpec(_Model):
-    """Something done once, after nodes and other steps: a service call, parameters set, a goal, a wait, a message."""
+    """Something done once, after nodes and other steps: a call, parameters set, a goal, a wait, a message, the end."""
 
     call: StrictStr = ""
     set_: StrictStr = Field("", alias="set")
@@ -256,6 +256,7 @@ class StepSpec(_Model):
     wait: StrictStr = ""
     delay: StrictFloat | StrictInt | None = Field(None, gt=0)
     log: StrictStr = ""
+    shutdown: StrictStr = ""
     type: Annotated[StrictStr, AfterValidator(_interface_type)] | None = None
     request: dict[str, Any] = {}
     params: dict[str, Any] = {}
@@ -268,6 +269,7 @@ class StepSpec(_Model):
 class GroupBlock(_Settings):
     """Nodes and steps that share a namespace and settings."""
 
+    after: After = {}
     nodes: dict[str, Any] = {}
     steps: dict[str, Any] = {}
     group: Any = None

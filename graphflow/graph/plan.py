@@ -13,7 +13,7 @@ from graphflow.machines.regrouping import Regrouping
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Remap, did_you_mean
 
-Deed = Literal["call", "set", "goal", "wait", "delay", "log"]
+Deed = Literal["call", "set", "goal", "wait", "delay", "log", "shutdown"]
 """What a step does: a service call, parameters set, a goal to its end, a wait for a name, or for some seconds."""
 
 
@@ -128,7 +128,7 @@ class PlannedStep:
     name: str
     do: Deed
     target: str
-    """Full name of the service, node or action, or of what is waited for; the text of a `log`."""
+    """Full name of the service, node or action, or of what is waited for; the text of a `log` or `shutdown`."""
     place: Place
     target_place: Place
     request_place: Place
@@ -259,7 +259,7 @@ class Plan:
         for step in self.steps:
             yield f"step {step.name}"
             yield from _after_line(step.after)
-            sent = "" if step.do in ("wait", "delay", "log") else step.request
+            sent = "" if step.do in ("wait", "delay", "log", "shutdown") else step.request
             yield f"  {step.do:8} {step.target} {sent}".rstrip()
 
 

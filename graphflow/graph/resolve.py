@@ -395,7 +395,7 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
     return tuple(rules)
 
 
-_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": "", "log": ""}
+_STEPS = {"call": "request", "set": "params", "goal": "request", "wait": "", "delay": "", "log": "", "shutdown": ""}
 """What a step does, and the key for what it sends."""
 
 
@@ -404,6 +404,7 @@ def _steps(src: Source, model: GraphFile, problems: Problems) -> list[PlannedSte
     for name, spec in model.steps.items():
         at: source.Path = ("steps", name)
         written = {"call": spec.call, "set": spec.set_, "goal": spec.goal, "wait": spec.wait, "log": spec.log}
+        written["shutdown"] = spec.shutdown
         written["delay"] = "" if spec.delay is None else f"{spec.delay:g} s"
         deeds = [deed for deed, target in written.items() if target]
         if len(deeds) != 1:

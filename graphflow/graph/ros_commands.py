@@ -46,7 +46,8 @@ def step_of(words: Sequence[str], command: Item, complain: Complain) -> dict[str
             return _sent("goal", name, type_, fields, command, complain)
         case ["ros2", "param", "set", node, parameter, value]:
             params = Item({parameter: typed(Item(value, command.place))}, command.place)
-            return {"set": Item(node, command.place), "params": params}
+            found = {"set": Item(node, command.place), "params": params}
+            return {**found, "type": Item("rcl_interfaces/srv/SetParametersAtomically", command.place)}
     return None
 
 

@@ -26,7 +26,7 @@ from graphflow.graph.ros_attributes import children, items, says, split
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
-from graphflow.graph.ros_settings import pair, params, ros_words, setting
+from graphflow.graph.ros_settings import conditional, pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
 from graphflow.graph.workspace import bundled, find_workspace
 from graphflow.names import did_you_mean
@@ -64,16 +64,18 @@ _KNOWN: dict[str, set[str]] = {
     "set_use_sim_time": {"value", *_ANY},
     "timer": {"period", "children", *_ANY, *_RECORDED},
     "log": {"message", "level", *_ANY, *_RECORDED},
+    "shutdown": {"reason", *_ANY, *_RECORDED},
 }
 """Actions that have words here, and their attributes."""
 _SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace", "lifecycle_node": "node"}
 _ELSEWHERE = {
-    "shutdown": "write on_exit: shutdown at the node that it waits for",
     "unset_env": "write env: in a group or at a node",
     "reset_env": "write env: in a group or at a node",
     "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
+PATIENCE = 60.0
+"""Seconds that a command of ROS's may take, which would wait for ever for a server."""
 _SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
 
 
@@ -151,10 +153,9 @@ class _Translation:
             if name in _SCOPING:
                 _add(body, "group", self._around(name, item, after))
                 break
-            if name == "group" and says(item, "scoped", "false", "0"):  # what it sets holds for what comes after, too
-                if self._conditions(item):
-                    self._complain(item.at, "group: scoped: false with a condition has no words in a graph file")
-                for key, more in self._block([*children(item), *after]).items():
+            sets = any(_SAME.get(key, key) in _SCOPING for child in children(item) for key in child.entries)
+            if name == "group" and sets and says(item, "scoped", "false", "0"):  # it holds for what comes after, too
+                for key, more in self._block([*self._each_if(item), *after]).items():
                     _extend(body, key, more)
                 break
             self._act(name, item, body)
@@ -177,11 +178,11 @@ class _Translation:
 
     def _around(self, name: str, item: Item, after: list[Item]) -> Item:
         """A group around the actions that come after one which sets something for them."""
-        if self._conditions(item):
+        if self._conditions(item) and name != "let":
             self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
-            values = Item([typed(item.entries.get("value", nothing))], item.place)
+            values = Item([conditional(item, typed(item.entries.get("value", nothing)))], item.place)
             loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
             return item._replace(value={"for": Item(loop, item.place)})
         key, value = setting(name, item, self._complain)
@@ -207,6 +208,9 @@ class _Translation:
             message = item.entries.get("message", Item("", item.place))
             if message.value:
                 self._add_step(body, "log", item, {"log": message})
+        elif name == "shutdown":
+            reason = item.entries.get("reason", Item("a launch file asks for it", item.place))
+            self._add_step(body, "shutdown", item, {"shutdown": reason})
         elif name == "include":
             _add(body, "include", self._include(item))
         elif name == "group":
@@ -257,13 +261,25 @@ class _Translation:
             return
         step = self._add_step(body, "timer", item, {"delay": typed(period)})
         after = Item(step, item.place, item.place)
+        if set(inner) - {"nodes", "steps"}:
+            _add(body, "group", item._replace(value={"after": after, **inner}))
+            return
         for section in ("nodes", "steps"):
             for name, entry in inner.get(section, Item({}, item.place)).entries.items():
                 _put(body, section, name, entry._replace(value={"after": after, **entry.entries}))
-        if set(inner) - {"nodes", "steps"}:
-            self._complain(
-                item.at, "timer: only nodes and programs can be delayed; put the timer into the group or file"
-            )
+
+    def _each_if(self, group: Item) -> list[Item]:
+        """The actions in a group, each with the group's condition."""
+        conditions, made = self._conditions(group), []
+        for action in children(group):
+            for name, inner in action.entries.items() if conditions else ():
+                if self._conditions(inner):
+                    text = "two conditions, its own and its group's with scoped: false, have no words in a graph file"
+                    self._complain(inner.at, f"{name}: {text}")
+                inner = inner._replace(value={**inner.entries, **conditions})
+                action = action._replace(value={name: inner})
+            made.append(action)
+        return made
 
     def _conditions(self, item: Item) -> dict[str, Item]:
         return {key: item.entries[key] for key in _ANY if key in item.entries}
@@ -341,7 +357,7 @@ class _Translation:
             words, is_shells = plain_words(line), False
         step = step_of(words, command, self._complain)
         if step is not None:
-            self._add_step(body, words[2], item, step)
+            self._add_step(body, words[2], item, {**step, "timeout": Item(PATIENCE, command.place)})
             return
         if is_shells:
             words = ["sh", "-c", f"{OUR_ROS2}{line}" if "ros2 " in line else line]

@@ -36,6 +36,22 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
             return "env", pair(item, "name", "value", complain)
 
 
+def conditional(item: Item, value: Item) -> Item:
+    """What a variable becomes that is set under a condition: else it stays what it is, or empty."""
+    name = item.entries.get("name", Item("", item.place)).value
+    for key in ("if", "unless"):
+        if key in item.entries:
+            ways = [str(value.value), f"$(var {name} '')"]
+            chosen = " ".join(map(_quoted, [str(item.entries[key].value), *(ways if key == "if" else ways[::-1])]))
+            value = value._replace(value=f"$(if {chosen})")
+    return value
+
+
+def _quoted(text: str) -> str:
+    """A text as one word, whatever its substitutions stand for; it may have quotes of one kind."""
+    return f'"{text}"' if "'" in text else f"'{text}'"
+
+
 def pair(item: Item, key: str, value: str, complain: Complain, *, is_typed: bool = False) -> Item:
     """A mapping of what one attribute of an action names to what another says.
 

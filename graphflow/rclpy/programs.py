@@ -170,7 +170,7 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
     meant = f"; did you mean {near!r}?" if near is not None else ""
     into = f"clone its package beside those below {workspace.root}" if workspace.packages else "clone its package"
     if name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
-        return f"there is no {name} here{meant or f': {into}'}"
+        return f"there is no {name} here: {into}{meant}"
     return f"there is no {name} here{meant or f': {into} if it is of ROS, and pip install it if it is on PyPI'}"
 
 

@@ -219,7 +219,7 @@ WORDS = (
         "`create_publisher(...)`, or a declared `Publisher`: in a `LifecycleNode` all are silent until it is active",
         "create_lifecycle_publisher destroy_lifecycle_publisher add_managed_entity",
     ),
-    Word("`tf2_ros`", "not yet"),
+    Word("`tf2_ros`", "in [code written for rclpy](rclpy.md); for native nodes not yet"),
     Word("`use_sim_time`, `/clock`", "the same"),
     Word(
         "`SubscriptionEventCallbacks`, `PublisherEventCallbacks`", "`on_event=` with a method that takes a `QosEvent`"

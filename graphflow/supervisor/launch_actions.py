@@ -101,6 +101,10 @@ def _action(said: Said) -> tuple[str, Any]:
             return "", _handled(said)
         case "EmitEvent" if _change(said) is not None:  # the node has been told to be brought there
             return "", []
+        case "Shutdown" | "EmitEvent" if _is_shutdown(said):
+            event = said if said.name == "Shutdown" else get("event", 0)
+            reason = text(event.get("reason", 0, default="")) or "a launch file asks for it"
+            return "shutdown", {"reason": reason}
         case "Node" | "LifecycleNode":
             found = {"autostart": "true"} if get("autostart") is True else {}
             return "node", {**_node(said), **found}
@@ -186,8 +190,7 @@ def _handled(said: Said) -> list[dict[str, Any]]:
         )
         RECORDING.problem(said, text)
         return []
-    then = [one for one in then if not _is_shutdown(one)]
-    return _after(target, then, what)
+    return _after(target, [] if id(target) in _ending and all(map(_is_shutdown, then)) else then, what)
 
 
 def _after(target: Said, then: list[Any], what: str) -> list[dict[str, Any]]:
@@ -349,7 +352,8 @@ def _number(said: Said) -> None:
     if isinstance(target := said.get(whose), Said):
         _numbers.setdefault(id(target), len(_numbers) + 1)
         then = said.get(key) if key in ("on_exit", "on_completion") else None
-        if any(_is_shutdown(one) for one in (then if isinstance(then, list) else [then])):
+        kept = _without_functions(then)[0]
+        if kept and all(map(_is_shutdown, kept)):
             _ending.add(id(target))
     if change := _change(said):
         node, state = change

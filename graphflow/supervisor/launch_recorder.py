@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 import runpy
 import sys
@@ -40,6 +41,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
     RECORDING.file = path
     if values is not None:
         RECORDING.values = {name: as_text(value) for name, value in values.items()}
+        logging.basicConfig(level=logging.INFO, format="[%(levelname)s] [%(name)s]: %(message)s", stream=sys.stderr)
     sys.meta_path.insert(0, StandIns())
     sys.argv = ["ros2", "launch", path, *(f"{name}:={value}" for name, value in (RECORDING.values or {}).items())]
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's

@@ -288,6 +288,9 @@ class Supervisor:
             self._tell(event="step", step=planned.name, ok=False, text=f"{planned.target}: {error}")
             self._fail(f"step {planned.name} failed")
             return
+        if planned.do == "shutdown":
+            self.begin_stop(now=False, reason=planned.target)
+            return
         if planned.do == "log":
             self._tell(event="said", text=planned.target)
         else:

@@ -335,7 +335,7 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
         ("include: {file: 3}", "2:17: file: expected text, got 3"),
         (
             "steps: {s: {call: /x, set: /y}}",
-            "2:9: a step has one of call, set, goal, wait, delay, log; 's' has call",
+            "2:9: a step has one of call, set, goal, wait, delay, log, shutdown; 's' has call",
         ),
         ("steps: {s: {wait: /x, request: {a: 1}}}", "2:23: request: does not go with wait:, which sends nothing"),
         ("steps: {s: {call: /x, params: {a: 1}}}", "2:23: params: does not go with call:; write request:"),

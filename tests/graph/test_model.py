@@ -24,7 +24,7 @@ def test_keys_are_those_written_in_files() -> None:
     words = "namespace params remap env restart on_exit critical log_level lifecycle if unless class command"
     more = "pkg exec args keep_names prefix template params_file process after concurrency"
     assert keys_of(NodeSpec) == [*words.split(), *more.split()]
-    words = "call set goal wait delay log type request params after timeout if unless"
+    words = "call set goal wait delay log shutdown type request params after timeout if unless"
     assert keys_of(StepSpec) == words.split()
     assert keys_of(Arg) == ["default", "doc", "unit", "type", "choices"]
     words = (

@@ -296,7 +296,10 @@ HEAD = "nodes:\n  a: {class: x:Y}\n"
         (HEAD + "args: {b: {defualt: 3}}\n", "3:12: unknown key 'defualt'; did you mean 'default'?"),
         (HEAD + "args: {b: }\n", "3:8: argument 'b' has no default: give it as b:=VALUE"),
         (HEAD + "args: {b: {default: 3, choices: 3}}\n", "3:33: args.b.choices: expected a list, got 3"),
-        (HEAD + "steps: {s: {}}\n", "3:9: a step has one of call, set, goal, wait, delay, log; 's' has none of them"),
+        (
+            HEAD + "steps: {s: {}}\n",
+            "3:9: a step has one of call, set, goal, wait, delay, log, shutdown; 's' has none of them",
+        ),
         (HEAD + "steps: {s: /spawn}\n", "3:12: steps.s: expected a mapping, got '/spawn', for example {call: /spawn}"),
         (HEAD + "steps: [{call: /x}]\n", "3:8: steps: expected a mapping, got [{'call': '/x'}], for example steps: "),
         (HEAD + "steps: {s: {call: b c}}\n", "3:19: 'b c' is not a topic or service name: 'b c' may have only letters"),

@@ -28,7 +28,10 @@ HERE = Place("f.xml", 3, 1)
             "ros2 action send_goal /a b/action/C '{x: 1}' --feedback",
             {"goal": "/a", "type": "b/action/C", "request": {"x": 1}},
         ),
-        ("ros2 param set /n rate 2.5", {"set": "/n", "params": {"rate": 2.5}}),
+        (
+            "ros2 param set /n rate 2.5",
+            {"set": "/n", "params": {"rate": 2.5}, "type": "rcl_interfaces/srv/SetParametersAtomically"},
+        ),
         ("ros2 topic list", None),
         ("echo hello", None),
     ],

@@ -138,7 +138,7 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
             "[{executable: {cmd: ['ros2 service call /a b/srv/C \"{x: 1}\"'], shell: 'true'}}, "
             "{executable: {cmd: 'sleep 1; ros2 topic list', shell: 'true'}}]",
             {
-                "steps": {"call_1": {"call": "/a", "type": "b/srv/C", "request": {"x": 1}}},
+                "steps": {"call_1": {"call": "/a", "type": "b/srv/C", "request": {"x": 1}, "timeout": 60.0}},
                 "nodes": {"sh_1": {"command": ["sh", "-c", f"{OUR_ROS2}sleep 1; ros2 topic list"]}},
             },
         ),
@@ -152,12 +152,19 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
                         "call": "/spawn",
                         "type": "turtlesim/srv/Spawn",
                         "request": {"x": 2.0, "name": "leo"},
+                        "timeout": 60.0,
                     },
-                    "set_1": {"set": "/sim", "params": {"background_r": 150}},
+                    "set_1": {
+                        "set": "/sim",
+                        "params": {"background_r": 150},
+                        "type": "rcl_interfaces/srv/SetParametersAtomically",
+                        "timeout": 60.0,
+                    },
                     "send_goal_1": {
                         "goal": "/turn",
                         "type": "turtlesim/action/RotateAbsolute",
                         "request": {"theta": 1.5},
+                        "timeout": 60.0,
                     },
                 }
             },
@@ -176,7 +183,7 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
         ("[{log: {message: hello}}, {log: {message: ''}}, {group: []}]", {"steps": {"log_1": {"log": "hello"}}}),
         (
             "[{executable: {cmd: '$(find-exec ros2) service call $(var ns)/reset std_srvs/srv/Empty', shell: true}}]",
-            {"steps": {"call_1": {"call": "$(var ns)/reset", "type": "std_srvs/srv/Empty"}}},
+            {"steps": {"call_1": {"call": "$(var ns)/reset", "type": "std_srvs/srv/Empty", "timeout": 60.0}}},
         ),
         (
             "[{executable: {cmd: ls, number: 1}}, {log: {message: a, number: 2, after_number: 1, after_what: exited}}, "
@@ -262,7 +269,7 @@ def test_lifecycle_nodes() -> None:
             "load_composable_node: {target: c, composable_node: [{pkg: a}]}",
             "f.yaml:1:63: composable_node: the attributes 'pkg' and 'plugin' are needed",
         ),
-        ("shutdown: {}", "f.yaml:1:11: the action 'shutdown' has no words in a graph file: write on_exit: shutdown"),
+        ("unset_env: {name: A}", "f.yaml:1:11: the action 'unset_env' has no words in a graph file: write env: in"),
         ("arg: {default: '1'}", "f.yaml:1:11: arg: the attribute 'name' is missing"),
         ("set_remap: {to: a}", "f.yaml:1:11: the attribute 'from' is missing"),
         ("set_remap: {from: a, to: b, if: 'true'}", "f.yaml:1:11: set_remap: a condition here has no words"),
@@ -382,7 +389,37 @@ def test_a_group_without_a_scope() -> None:
     turtle = {"nodes": {"turtlesim": {"class": "nodes.turtlesim:TurtleSim"}}}
     assert (made, complaints) == ({**turtle, "group": {"namespace": "a", **turtle}}, [])
     _, complaints, _ = native(f"launch: [{{group: {{scoped: False, if: 'true', {inner}}}}}, {{{TURTLE}}}]\n")
-    assert complaints == ["f.yaml:1:11: group: scoped: false with a condition has no words in a graph file"]
+    assert complaints == [
+        "f.yaml:1:58: push_ros_namespace: a condition here has no words in a graph file; put it on a group"
+    ]
+
+
+def test_variables_that_are_set_under_conditions(tmp_path: Path) -> None:
+    """By an action of their own, or in a group that opens no scope; else they stay what they are."""
+    text = """
+    - arg: {name: fast, default: 'true'}
+    - let: {name: way, value: it's a walk, unless: $(var fast)}
+    - let: {name: way, value: a run, if: $(var fast)}
+    - group: {scoped: false, unless: $(var fast), children: [{let: {name: why, value: none}}]}
+    - executable: {cmd: [echo, $(var way), $(var why)]}
+    """
+    (tmp_path / "a.launch.yaml").write_text(f"launch:{text}")
+    for fast, said in (("true", ("a run", "")), ("false", ("it's a walk", "none"))):
+        [echo] = load(tmp_path / "a.launch.yaml", [f"fast:={fast}"], {}).nodes
+        assert echo.command == ("echo", *said)
+
+
+def test_what_is_delayed_as_a_whole(tmp_path: Path) -> None:
+    """A group, or another file: all that is in it comes after the timer, and after what it comes after itself."""
+    run = "{executable: {cmd: ls, number: 1}}, {log: {message: listed, after_number: 1, after_what: exited}}"
+    (tmp_path / "inner.launch.yaml").write_text(f"launch: [{run}]\n")
+    inner = "{include: {file: $(dirname)/inner.launch.yaml}}, {group: {children: [{log: {message: a}}]}}"
+    (tmp_path / "a.launch.yaml").write_text(f"launch: [{{timer: {{period: 1.5, children: [{inner}]}}}}]\n")
+    plan = load(tmp_path / "a.launch.yaml", [], {})
+    assert [node.after for node in plan.nodes] == [{"timer_1": "done"}]
+    after = {step.name: step.after for step in plan.steps}
+    assert after["log_1"] == {"timer_1": "done"}
+    assert after["log_1_of_2"] == {"/ls_1": "exited", "timer_1": "done"}
 
 
 def test_what_is_delayed_replaces_nothing() -> None:
@@ -397,7 +434,7 @@ def test_what_was_recorded_of_python() -> None:
     actions = [
         {"node": {"line": 3, "pkg": "turtlesim", "exec": "turtlesim_node", "name": "sim", "number": 1}},
         {"executable": {"line": 5, "cmd": ["echo", "$(var x)"], "after_number": 1, "after_what": "exited"}},
-        {"group": {"line": 7, "children": [{"shutdown": {"line": 8}}]}},
+        {"group": {"line": 7, "children": [{"reset_env": {"line": 8}}]}},
     ]
     complaints: list[str] = []
     top = ros_launch.recorded(actions, "f.launch.py")

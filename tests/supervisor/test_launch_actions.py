@@ -38,10 +38,23 @@ def test_what_comes_after_what() -> None:
     then = [said("LogInfo", msg="over"), said("Shutdown")]
     whole = [first, said("RegisterEventHandler", said("OnProcessExit", target_action=first, on_exit=then))]
     number_targets(whole)
-    ls, log = actions(whole)
+    ls, log, end = actions(whole)
     number = ls["executable"]["number"]
-    assert ls["executable"]["on_exit"] == "shutdown"
+    assert "on_exit" not in ls["executable"]  # which would end all before it is said
     assert (log["log"]["after_number"], log["log"]["after_what"]) == (number, "exited")
+    assert (end["shutdown"]["after_number"], end["shutdown"]["reason"]) == (number, "a launch file asks for it")
+
+
+def test_what_only_ends_all() -> None:
+    """Is the process's own affair; a timer may end all as well."""
+    first = said("ExecuteProcess", cmd=["ls"])
+    ends = said("RegisterEventHandler", said("OnProcessExit", target_action=first, on_exit=[said("Shutdown")]))
+    timer = said("TimerAction", period=2.0, actions=[said("EmitEvent", event=said("Shutdown", reason="late"))])
+    whole = [first, ends, timer]
+    number_targets(whole)
+    ls, later = actions(whole)
+    assert ls["executable"]["on_exit"] == "shutdown"
+    assert later["timer"]["children"][0]["shutdown"]["reason"] == "late"
 
 
 def test_what_follows_the_end_of_a_program() -> None:

@@ -63,6 +63,18 @@ def test_a_message_is_said_when_it_is_due(machine: Machine, project: Path) -> No
     assert up.end() == 0
 
 
+@pytest.mark.real
+def test_a_step_may_stop_the_graph(machine: Machine, project: Path) -> None:
+    """With its reason, and as if it had been asked for."""
+    text = (
+        "nodes:\n  /long: {command: [sleep, '60']}\n"
+        "steps:\n  late: {delay: 0.1}\n  end: {shutdown: it is late, after: late}\n"
+    )
+    up = machine.start("up", write(project, text), cwd=project)
+    assert up.wait() == 0
+    assert "stopping (it is late)" in up.text
+
+
 TYPE = "example_interfaces/srv/AddTwoInts"
 
 
