@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import Problem, UsageFault
+from graphflow.graph.workspace import FOLDERS_BOUND
 from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
@@ -27,14 +29,21 @@ class _Verbs(Verbs):
 
 @click.group(cls=_Verbs, subcommand_metavar="[PACKAGE] FILE [NAME:=VALUE]... | convert FILE")
 def launch() -> None:
-    """Start a launch file as `up` does, or convert it."""
+    """Start a launch file as `up` does, or convert it.
+
+    \b
+    Before FILE may stand:
+      -s, --show-args                      show the file's arguments and start nothing
+      -p, --print                          show what would run and start nothing
+      -n, --noninteractive, --no-console   show logs instead of the console
+    """  # noqa: D301 - click wants the character
 
 
 @launch.command(hidden=True)
 @click.argument("words", nargs=-1, required=True, metavar="[PACKAGE] FILE [NAME:=VALUE]...")
 @click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
 @click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
-@click.option("-n", "--noninteractive", is_flag=True, help="Show logs instead of the console.")
+@click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
 @click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands.")
 @click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
 def start(words: tuple[str, ...], show_args: bool, is_shown: bool, noninteractive: bool, **unused: bool) -> int:  # noqa: ARG001
@@ -64,12 +73,23 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
         raise UsageFault(f"Package {first!r} not found; a file is started by: graphflow launch FILE")
-    files = sorted(Path(at, name) for at, _, names in os.walk(folder, followlinks=True) for name in names)
+    files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:
         there = sorted({file.name for file in files if "launch" in file.name})
         raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], there)}")
     return str(found[0]), rest[1:]
+
+
+def _files_below(folder: Path) -> Iterator[Path]:
+    """The files below a folder, also behind links to folders; each folder once, and a bounded number."""
+    seen: set[str] = set()
+    for at, folders, names in os.walk(folder, followlinks=True):
+        folders[:] = [one for one in folders if os.path.realpath(os.path.join(at, one)) not in seen]
+        seen.update(os.path.realpath(os.path.join(at, one)) for one in folders)
+        if len(seen) > FOLDERS_BOUND:
+            return
+        yield from (Path(at, name) for name in names)
 
 
 @launch.command()

@@ -41,6 +41,8 @@ _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "
     "lifecycle_listener": "lc_listener",
 }
 """Names of nodes that are not those of their executables."""
+ROS2 = Path(__file__).parents[1] / "rclpy" / "bin"
+"""The folder with a program `ros2`, which is graphflow."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 SLIP = 0.7
 """How alike two names are, from 0 to 1, if one is taken for a slip of the other."""
@@ -111,7 +113,7 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         NoExecutable: Nobody here has one of that name; the text says which there are.
     """
     own = workspace.packages.get(package)
-    if own is None and shutil.which("ros2", path=env.get("PATH")) is not None:
+    if own is None and is_ros_sourced(env):
         return ("ros2", "run", package, name)
     if own is None:
         own = bundled().packages.get(package)
@@ -131,6 +133,12 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
     if fault is not None:
         raise NoExecutable(fault, is_slip=True)
     return ("graphflow", "run", str(own.folder), known)
+
+
+def is_ros_sourced(env: Mapping[str, str]) -> bool:
+    """Whether there is a ROS 2: a program `ros2` that is not graphflow's own."""
+    found = shutil.which("ros2", path=env.get("PATH"))
+    return found is not None and Path(found).parent != ROS2
 
 
 def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Workspace) -> NoExecutable:

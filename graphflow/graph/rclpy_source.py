@@ -295,17 +295,23 @@ def _futures(function: ast.AST, clients: dict[str, _Group | None]) -> dict[str, 
                 targets=[target],
                 value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
             ) if name in clients and verb in ("call_async", "send_goal_async"):
-                if not (isinstance(target, ast.Name) and _is_known_elsewhere(target.id, function)):
+                if not _is_known_elsewhere(_word(target), function):
                     found[_word(target)] = name
     return found
 
 
 def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
     """Whether a function gives a future to others, who may end it, or ends it itself."""
-    for node, parents in _walk(function):
-        if not (isinstance(node, ast.Name) and node.id == future and isinstance(node.ctx, ast.Load)):
+    parents = {child: node for node in ast.walk(function) for child in ast.iter_child_nodes(node)}
+    inner = {n for top in ast.walk(function) if isinstance(top, _NESTED) and top is not function for n in ast.walk(top)}
+    for node in parents:
+        if not (isinstance(node, ast.Name | ast.Attribute) and _word(node) == future):
             continue
-        match parents[-1]:
+        if not isinstance(node.ctx, ast.Load):
+            continue
+        if node in inner:
+            return True  # which runs at any time
+        match parents[node]:
             case ast.Attribute(attr=attr) if attr not in ("cancel", "set_result", "set_exception"):
                 continue
             case ast.Await() | ast.Expr():

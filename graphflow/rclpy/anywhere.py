@@ -3,7 +3,9 @@
 rclpy and messages can be imported then, and what lies in the workspace around.
 """
 
+import sys
+
 from graphflow.rclpy import enabling, finder
 
-if enabling.here():
+if enabling.here() and not sys.flags.safe_path:  # python -P imports nothing from where it stands
     finder.look_around()

@@ -84,7 +84,7 @@ class MessagePackages:
 
 
 _NEVER = ("sitecustomize", "usercustomize", "org")
-"""Modules that Python itself looks for at each start, or in `pickle`, and that are hardly ever there."""
+"""Modules that Python looks for at each start, and Jython's, which `pickle` looks for: they are hardly ever there."""
 
 
 class WorkspacePackages:
@@ -108,6 +108,8 @@ class WorkspacePackages:
                 self._roots = _of_workspace()
             except ImportError:  # what this needs is itself being imported right now
                 return None
+            except OSError:  # such as a folder that has been removed
+                self._roots = []
             finally:
                 self._is_looking = False
             if is_package(fullname):
@@ -125,7 +127,7 @@ def _of_workspace() -> list[str]:
 
     program = Path(sys.argv[0]) if sys.argv and sys.argv[0].endswith(".py") else Path.cwd()
     found = workspace_around(program) or workspace_around(Path.cwd())
-    if found is None:
+    if found is None or found.root in (Path.home(), Path(found.root.anchor)):  # whose src may hold anything
         return []
     for name, folder in found.interfaces.items():
         KNOWN[name] = str(folder)

@@ -112,10 +112,10 @@ class Life:
         self._ends_with_process = True
         self.close()
 
-    def hold_daemon(self) -> None:
-        """Let a daemon thread of a program that has ended stand still until it is gone."""
+    def end_daemon(self) -> None:
+        """End a daemon thread of a program that has ended, without a word. Raises SystemExit in such a one."""
         if self._ends_with_process and threading.current_thread().daemon:
-            Wake().wait()
+            raise SystemExit  # which threads end by
 
     def close(self) -> None:
         """Leave the network; where another thread does so already, wait until it has."""

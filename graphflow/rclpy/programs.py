@@ -16,15 +16,12 @@ from typing import NamedTuple
 
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
-from graphflow.graph.executables import SLIP
+from graphflow.graph.executables import ROS2, SLIP
 from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder
 from graphflow.wire.profile import wire_profile
-
-BIN = str(Path(__file__).parent / "bin")
-"""The folder with a program `ros2`, which is graphflow."""
 
 
 class Program(NamedTuple):
@@ -98,7 +95,7 @@ def make_importable(workspace: Workspace) -> bool:
             finder.KNOWN[name] = str(folder)
             registry.add_package(name, folder)
     if shutil.which("ros2") is None:  # for what this process starts
-        os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), BIN])
+        os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), str(ROS2)])
         os.environ["GRAPHFLOW_PYTHON"] = sys.executable
     sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
     return is_ours

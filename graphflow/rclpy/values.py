@@ -13,6 +13,7 @@ from array import array
 from collections import UserList
 from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
+from contextlib import suppress
 from typing import Any
 
 from graphflow.wire.schema import INTEGER_RANGES, STRINGS, FieldType
@@ -157,8 +158,7 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
         return count == size if type_.array == "fixed" else not size or count <= size
 
     def plain(value: Any) -> list[Any]:
-        is_sequence = isinstance(value, (Sequence, AbstractSet, UserList, array)) or hasattr(value, "dtype")
-        if not is_sequence or isinstance(value, str) or not fits(len(value)):
+        if not _is_sequence(value) or not fits(len(value)):
             raise AssertionError(complaint)
         items = list(value)
         try:
@@ -192,6 +192,13 @@ def _sequence(name: str, type_: FieldType, cls: type | None) -> Check:
     return numbers
 
 
+def _is_sequence(value: Any) -> bool:
+    """Whether something has elements; one number of numpy's has a type as its arrays have, and none."""
+    if hasattr(value, "dtype"):
+        return getattr(value, "ndim", 1) > 0
+    return isinstance(value, (Sequence, AbstractSet, UserList, array)) and not isinstance(value, str)
+
+
 def _fixed(type_: FieldType, value: Any, plain: Check) -> Any:
     """An array of fixed length, as numpy's."""
     import numpy as np
@@ -199,7 +206,10 @@ def _fixed(type_: FieldType, value: Any, plain: Check) -> Any:
     from graphflow.wire.arrays import DTYPES, ndarray
 
     dtype = DTYPES[type_.base]
-    given = np.asarray(value) if not isinstance(value, ndarray) and isinstance(value, (list, tuple, array)) else value
+    given = value
+    if isinstance(value, (list, tuple, array)):
+        with suppress(ValueError):  # of lists of several lengths
+            given = np.asarray(value)
     if isinstance(given, ndarray) and given.size == type_.size:
         if given.dtype == dtype:
             return given

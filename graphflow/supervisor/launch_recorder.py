@@ -10,6 +10,7 @@ for a value is told it.
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import json
 import logging
@@ -55,7 +56,7 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         found = actions(whole)
         changed = {name: value for name, value in os.environ.items() if before.get(name) != value}
         found = [*({"set_env": {"name": n, "value": v, "line": 1}} for n, v in changed.items()), *found]
-    except Exception as error:  # whatever a user's file does
+    except (Exception, SystemExit) as error:  # whatever a user's file does
         trace, line = error.__traceback__, getattr(error, "lineno", None) or 1
         while trace is not None:
             if trace.tb_frame.f_code.co_filename == path:
@@ -69,19 +70,25 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
 def _described(path: str) -> list[Any]:
     """What a file describes: by its function, or where it would start it itself."""
     with open(path, encoding="utf-8") as file:
-        code = compile(file.read(), path, "exec")
+        tree = ast.parse(file.read(), path)
+    code = compile(tree, path, "exec")
     space: dict[str, Any] = {"__name__": "launch_file", "__file__": path}
     exec(code, space)  # noqa: S102 - the user's own file, in a process of its own
     if "generate_launch_description" not in space:
-        try:
-            runpy.run_path(path, run_name="__main__")
-        except Described as told:
-            return told.description
+        if any(isinstance(n, ast.Name | ast.Attribute) and _last(n) == "LaunchService" for n in ast.walk(tree)):
+            try:
+                runpy.run_path(path, run_name="__main__")
+            except Described as told:
+                return told.description
         raise NameError("it has no function generate_launch_description()")
     described = space["generate_launch_description"]()
     if not isinstance(described, Said):
         raise TypeError(f"generate_launch_description() returned {described!r}, and not a LaunchDescription")
     return [described]
+
+
+def _last(expression: ast.Name | ast.Attribute) -> str:
+    return expression.id if isinstance(expression, ast.Name) else expression.attr
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from typing import Any
 
 from graphflow.supervisor.launch_stand_ins import OWN, RECORDING, Said
@@ -48,10 +49,21 @@ class LaunchService(Said):
             raise Described(self._included)
         file = os.path.abspath(sys.argv[0])
         given = [word for word in self.get("argv", default=None) or () if ":=" in word]
-        self._up = subprocess.Popen([sys.executable, "-m", "graphflow", "up", "--no-console", file, *given])
+        command = [sys.executable, "-m", "graphflow", "up", "--no-console", file, *given]
+        self._up = subprocess.Popen(command, env=os.environ | {"GRAPHFLOW_ENDS_WITH": str(os.getpid())})
+        is_main = threading.current_thread() is threading.main_thread()
+        former = signal.signal(signal.SIGTERM, self.shutdown) if is_main else None
+        try:
+            return self._wait(self._up)
+        finally:
+            if is_main:
+                signal.signal(signal.SIGTERM, former)
+
+    @staticmethod
+    def _wait(up: subprocess.Popen[bytes]) -> int:
         while True:
             try:
-                return self._up.wait()
+                return up.wait()
             except KeyboardInterrupt:
                 continue  # the command has heard it as well, and stops what it has started
 

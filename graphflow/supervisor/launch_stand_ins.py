@@ -141,6 +141,8 @@ class Said:
 
     def add_action(self, action: Any) -> None:
         """As a LaunchDescription has it, also while it is carried out."""
+        if "entities" not in self.__dict__:
+            raise AttributeError(f"{self.name} has no add_action")
         self.entities.append(action)
 
     add_entity = add_action
@@ -151,7 +153,7 @@ class Said:
 
     def perform(self, context: Any = None) -> str:
         """As a substitution has it."""
-        return RECORDING.known(text(self))
+        return RECORDING.known(_written(self))
 
     def evaluate(self, context: Any = None) -> bool:
         """As a condition has it."""
@@ -177,6 +179,13 @@ def text(value: Any) -> str:
         return "".join(map(text, value))
     if not isinstance(value, Said):
         return str(value)
+    if type(value).perform is not Said.perform and RECORDING.values is not None:  # a class of the file's own
+        return text(value.perform(Context()))
+    return _written(value)
+
+
+def _written(value: Said) -> str:
+    """A substitution of ROS's as a text."""
     first = value.args[0] if value.args else next(iter(value.kwargs.values()), "")
     match value.name:
         case "LaunchConfiguration":
@@ -223,8 +232,6 @@ def text(value: Any) -> str:
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
             return text(first)
-    if type(value).perform is not Said.perform and RECORDING.values is not None:  # a class of the file's own
-        return text(value.perform(Context()))
     RECORDING.problem(value, f"{value.name} has no words in a graph file")
     return ""
 

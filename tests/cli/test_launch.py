@@ -100,6 +100,7 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     told = machine.look("launch", "my_robot", "talk.launch.yml", cwd=tmp_path, code=2)
     assert "my_robot has no file 'talk.launch.yml'; did you mean 'talk.launch.yaml'?" in told
     (folder / "launch" / "all.launch.py").write_text(PYTHON)
+    (folder / "launch" / "round").symlink_to(folder)
     told = machine.look("launch", "-p", "my_robot", "all.launch.py", "loud:=2", cwd=tmp_path)
     assert "/listener" in told
     assert "/talker" in told  # of the file that it includes

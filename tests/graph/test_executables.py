@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from graphflow.graph.executables import (
+    ROS2,
     Executable,
     find,
+    is_ros_sourced,
     package_folder,
     package_prefix,
     package_program,
@@ -102,3 +104,12 @@ def test_hidden_folders_are_passed_over(root: Path) -> None:
     (root / "pkg").mkdir()
     (root / "pkg" / "package.xml").write_text("<package><name>mine</name></package>")
     assert package_folder("mine", root) == root / "pkg"
+
+
+def test_a_ros_that_is_sourced(tmp_path: Path) -> None:
+    """Has a program `ros2` on the path; graphflow's own of that name is none."""
+    assert not is_ros_sourced({"PATH": str(ROS2)})
+    (tmp_path / "ros2").touch(mode=0o755)
+    assert not is_ros_sourced({"PATH": f"{ROS2}:{tmp_path}"})
+    assert is_ros_sourced({"PATH": f"{tmp_path}:{ROS2}"})
+    assert (ROS2 / "ros2").exists()

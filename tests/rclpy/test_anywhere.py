@@ -63,3 +63,14 @@ def test_a_packages_own_tests(workspace: Path) -> None:
     assert "1 passed" in python(workspace, code)
     env = {**os.environ, "PYTHONPATH": "."}
     assert subprocess.run([sys.executable, "-c", "import lamp"], cwd=workspace, env=env, check=False).returncode == 1
+
+
+def test_where_nothing_is_looked_for(workspace: Path, tmp_path: Path) -> None:
+    """In a folder that has been removed, from a home folder on, and by a Python that is to be safe."""
+    gone = "import os, sys; os.mkdir('gone'); os.chdir('gone'); os.rmdir('../gone'); sys.argv = ['']; import lamp"
+    assert python(tmp_path, gone) == "ModuleNotFoundError: No module named 'lamp'"
+    home = f"import pathlib; pathlib.Path.home = lambda: pathlib.Path({str(workspace)!r}); import lamp"
+    assert python(workspace, home) == "ModuleNotFoundError: No module named 'lamp'"
+    safe = [sys.executable, "-P", "-c", "import graphflow.rclpy.anywhere\nimport lamp"]
+    ran = subprocess.run(safe, cwd=workspace, capture_output=True, text=True, timeout=60, check=False)
+    assert ran.stderr.endswith("ModuleNotFoundError: No module named 'lamp'\n")

@@ -247,3 +247,25 @@ def test_a_program_without_an_end_of_its_own_ends_too() -> None:
         [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=30, check=False
     )
     assert (ended.stdout, ended.stderr, ended.returncode) == ("left\n", "", 0)
+
+
+@pytest.mark.parametrize(
+    "order", ["import rclpy", "import atexit; atexit.register(lambda: end())"], ids=["first", "last"]
+)
+def test_a_daemon_that_spins_can_be_waited_for_at_the_end(order: str) -> None:
+    """By what the program has registered, whether that is called before the context is left or after it."""
+    code = (
+        "from graphflow.rclpy import enabling; enabling.here()\n"
+        f"{order}\n"
+        "import atexit, threading, rclpy; from rclpy.node import Node\n"
+        "def end(): thread.join(20); print(thread.is_alive())\n"
+        f"{'atexit.register(end)' if order == 'import rclpy' else ''}\n"
+        "rclpy.init(); node = Node('left')\n"
+        "thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True); thread.start()\n"
+        f"{'rclpy.shutdown()' if order == 'import rclpy' else ''}\n"
+    )
+    env = {**os.environ, "GRAPHFLOW_RENDEZVOUS": free_endpoint()}
+    ended = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=30, check=False
+    )
+    assert (ended.stdout, ended.returncode) == ("False\n", 0), ended.stderr

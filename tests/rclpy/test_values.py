@@ -95,6 +95,10 @@ def test_checks_may_be_left_to_sending() -> None:
         (FieldType("float64", array="fixed", size=2), np.zeros(3)),
         (FieldType("int32", array="fixed", size=2), np.zeros(2)),
         (FieldType("uint8", array="fixed", size=2), [1, 300]),
+        (FieldType("float64", array="fixed", size=2), [[1.0], [2.0, 3.0]]),
+        (FieldType("float64", array="unbounded"), [[1.0], [2.0, 3.0]]),
+        (FieldType("float64", array="unbounded"), np.float64(1.0)),
+        (FieldType("float64", array="unbounded"), np.array(1.0)),
     ],
 )
 def test_a_sequence_that_does_not_fit_is_refused(type_: FieldType, given: Any) -> None:

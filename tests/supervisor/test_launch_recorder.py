@@ -170,6 +170,8 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
         ("import launch\n\nx = 1 / 0\n", 3, "ZeroDivisionError: division by zero"),
         ("def f(:\n", 1, "SyntaxError: invalid syntax"),
         ("x = 1\n", 1, "NameError: it has no function generate_launch_description()"),
+        ("x = 1\nif __name__ == '__main__':\n    x / 0\n", 1, "NameError: it has no function"),
+        ("x = 1\nraise SystemExit('no robot')\n", 2, "SystemExit: no robot"),
         ("import numpyy\n", 1, "ModuleNotFoundError: No module named 'numpyy'; if it is on PyPI: pip"),
         ("def generate_launch_description():\n    open('/nowhere/x')\n", 2, "FileNotFoundError: [Errno 2]"),
         (

@@ -6,6 +6,9 @@ import os
 import signal
 import subprocess
 import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -40,27 +43,58 @@ if __name__ == "__main__":
 def test_a_program_starts_what_it_describes(machine: Machine, tmp_path: Path) -> None:
     """With its arguments; Ctrl-C, which the whole group of processes hears, stops it, and the program goes on."""
     (tmp_path / "bringup.py").write_text(PROGRAM)
-    with subprocess.Popen(
-        [sys.executable, "-m", "graphflow", "run", "bringup.py", "word:=hello"],
-        cwd=tmp_path,
-        env=machine.env,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        assert process.stdout is not None
-        text = ""
-        try:
-            for line in process.stdout:
-                text += line
-                if "Publishing" in line:
-                    os.killpg(process.pid, signal.SIGINT)
-            assert process.wait(20) == 0, text
-        finally:
-            process.kill()
-    assert "says hello\n" in text
-    assert text.endswith("it has ended with 0\n")
+    with started(machine, tmp_path) as (process, output):
+        until(lambda: "Publishing" in output.read_text(), output)
+        os.killpg(process.pid, signal.SIGINT)
+        assert process.wait(30) == 0, output.read_text()
+    assert "says hello\n" in output.read_text()
+    assert output.read_text().endswith("it has ended with 0\n")
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_what_it_has_started_ends_with_the_program(machine: Machine, tmp_path: Path, number: signal.Signals) -> None:
+    """Also where that cannot say so."""
+    (tmp_path / "bringup.py").write_text(PROGRAM)
+    with started(machine, tmp_path) as (process, output):
+        until(lambda: "Publishing" in output.read_text(), output)
+        process.send_signal(number)
+        assert process.wait(30) == (0 if number == signal.SIGTERM else -number)
+        until(lambda: not is_group(process.pid), output)
+
+
+@contextmanager
+def started(machine: Machine, folder: Path) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
+    """The program as its own group of processes, and the file with what they print."""
+    output = folder / "output"
+    command = [sys.executable, "-m", "graphflow", "run", "bringup.py", "word:=hello"]
+    with output.open("wb") as file:
+        process = subprocess.Popen(
+            command, cwd=folder, env=machine.env, stdout=file, stderr=subprocess.STDOUT, start_new_session=True
+        )
+    try:
+        yield process, output
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait(10)
+
+
+def is_group(pid: int) -> bool:
+    """Whether any process is left of a group."""
+    try:
+        os.killpg(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def until(condition: Callable[[], bool], output: Path) -> None:
+    """Wait until a condition holds."""
+    end = time.monotonic() + 30
+    while not condition():
+        assert time.monotonic() < end, output.read_text()
+        time.sleep(0.02)
 
 
 def test_its_file_is_a_launch_file_too(machine: Machine, tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ class Executor(AbstractContextManager["Executor"]):
         super().__init__()
         self._context = get_default_context() if context is None else context
         self._graphflow = Spinning(self, self._context)
+        self._graphflow_watched: WeakSet[Any] = WeakSet()
         all_executors.add(self)
 
     @property
@@ -156,7 +157,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, at most `timeout_sec` seconds."""
-        _when_done(future, self.wake)
+        self._graphflow_wake_when_done(future)
         if timeout_sec is None or timeout_sec < 0:
             while self._graphflow_may_go_on(future):
                 self.spin_once_until_future_complete(future, timeout_sec)
@@ -168,6 +169,14 @@ class Executor(AbstractContextManager["Executor"]):
             limit.timeout = until - time.monotonic()
             if limit.timeout <= 0:
                 return
+
+    def _graphflow_wake_when_done(self, future: Any) -> None:
+        """Look again when a future is done, be it one of asyncio's; once, however often it is waited for."""
+        if isinstance(future, Future):
+            future._when_done(self.wake)
+        elif future not in self._graphflow_watched:
+            self._graphflow_watched.add(future)
+            future.add_done_callback(lambda _: self.wake())
 
     def _graphflow_may_go_on(self, future: Future[Any]) -> bool:
         is_over = future.done() or future.cancelled()
@@ -247,16 +256,8 @@ class SingleThreadedExecutor(Executor):
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        _when_done(future, self.wake)
+        self._graphflow_wake_when_done(future)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
-
-
-def _when_done(future: Any, wake: Callable[[], None]) -> None:
-    """Wake when a future is done, be it one of asyncio's."""
-    if isinstance(future, Future):
-        future._when_done(wake)
-    else:
-        future.add_done_callback(lambda _: wake())
 
 
 class _Pool:
@@ -329,8 +330,11 @@ class MultiThreadedExecutor(Executor):
             pass
         else:
             self._executor.submit(lambda: self._graphflow_work(handler))
-        if self._graphflow_failures:
-            raise self._graphflow_failures.popleft()
+        try:
+            error = self._graphflow_failures.popleft()
+        except IndexError:  # none, or another thread has it
+            return
+        raise error
 
     def _graphflow_work(self, handler: Task[Any]) -> None:
         try:
@@ -348,7 +352,7 @@ class MultiThreadedExecutor(Executor):
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
-        _when_done(future, self.wake)
+        self._graphflow_wake_when_done(future)
         self._graphflow_do_one(timeout_sec, lambda: future.done() or future.cancelled())
 
 

@@ -103,18 +103,22 @@ class LivelinessPolicy(QoSPolicyEnum):
 class _FormerName:
     """A value by the name that it had in ROS 2's first versions; it is warned of."""
 
-    def __init__(self, name: str) -> None:
-        self._name = name
+    def __init__(self, former: str, name: str) -> None:
+        self._former, self._name = former, name
 
     def __get__(self, value: object, policy: type[QoSPolicyEnum]) -> QoSPolicyEnum:
-        warnings.warn(f"a deprecated name; it is {policy.__name__}.{self._name} now", stacklevel=2)
+        warnings.warn(f"{self._former} is deprecated; it is {policy.__name__}.{self._name} now", stacklevel=2)
         return policy[self._name]
 
 
-for _policy in (HistoryPolicy, ReliabilityPolicy, DurabilityPolicy, LivelinessPolicy):
-    for _name in _policy.__members__:
-        _word = _policy.__name__.removesuffix("Policy").upper()
-        setattr(_policy, f"RMW_QOS_POLICY_{_word}_{_name}", _FormerName(_name))
+def _know_former_names(policy: type[QoSPolicyEnum]) -> None:
+    for name in policy.__members__:
+        former = f"RMW_QOS_POLICY_{policy.__name__.removesuffix('Policy').upper()}_{name}"
+        setattr(policy, former, _FormerName(former, name))
+
+
+for _each in (HistoryPolicy, ReliabilityPolicy, DurabilityPolicy, LivelinessPolicy):
+    _know_former_names(_each)
 
 QoSHistoryPolicy = HistoryPolicy
 QoSReliabilityPolicy = ReliabilityPolicy

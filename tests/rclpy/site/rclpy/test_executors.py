@@ -307,19 +307,21 @@ def test_a_group_of_ones_own(node: Node, single: SingleThreadedExecutor) -> None
 
 
 def test_a_second_thread_may_wait_for_a_future(single: SingleThreadedExecutor, node: Node) -> None:
-    """In the executor that another one spins: either does what there is, and both end."""
-    ticks = list[int]()
-    node.create_timer(0.001, lambda: ticks.append(threading.get_ident()))
-    thread = threading.Thread(target=single.spin)
-    thread.start()
-    future = Future[int]()
-    threading.Timer(0.05, future.set_result, [7]).start()
-    single.spin_until_future_complete(future, timeout_sec=10)
-    assert future.done()
-    single.shutdown()
-    thread.join(5)
-    assert not thread.is_alive()
-    assert ticks
+    """In the executor that another one spins: what ends one of them wakes both, and nothing else does."""
+    first, second = Future[int](), Future[int]()
+    threads = [threading.Thread(target=single.spin_until_future_complete, args=(f,)) for f in (first, second)]
+    for thread, count in zip(threads, (1, 2), strict=True):
+        thread.start()
+        end = time.monotonic() + 10
+        while len(single._graphflow._asking) < count:
+            assert time.monotonic() < end
+            time.sleep(0.001)
+    first.set_result(7)
+    threads[0].join(10)
+    assert [thread.is_alive() for thread in threads] == [False, True]
+    second.set_result(8)
+    threads[1].join(10)
+    assert not threads[1].is_alive()
 
 
 def test_a_second_thread_may_not_spin_the_same_executor(single: SingleThreadedExecutor) -> None:
@@ -350,7 +352,11 @@ def test_a_future_of_asyncio_may_be_waited_for(single: SingleThreadedExecutor, n
     future: Any = asyncio.Future(loop=loop)
     node.create_timer(0.001, lambda: future.done() or future.set_result(1))
     single.spin_until_future_complete(future, timeout_sec=10)
-    loop.close()
     assert future.done()
+    other: Any = asyncio.Future(loop=loop)
+    for _ in range(3):
+        single.spin_until_future_complete(other, timeout_sec=0)
+    assert len(other._callbacks) == 1
+    loop.close()
     single._is_shutdown = True
     assert single.spinning.is_shutdown

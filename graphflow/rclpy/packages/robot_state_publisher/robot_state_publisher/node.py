@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_py.core import message
@@ -33,8 +33,10 @@ class RobotStatePublisher(Node):
     def __init__(self, description: str = "") -> None:
         super().__init__("robot_state_publisher")
         self.declare_parameter("robot_description", description, ParameterDescriptor(description="The robot, in URDF."))
+        most = FloatingPointRange(from_value=0.0, to_value=1000.0)
+        about = "How often a joint is published at most, in Hz; 0 for each state."
         self.declare_parameter(
-            "publish_frequency", 20.0, ParameterDescriptor(description="The most that a joint is published, in Hz.")
+            "publish_frequency", 20.0, ParameterDescriptor(description=about, floating_point_range=[most])
         )
         self.declare_parameter(
             "ignore_timestamp", False, ParameterDescriptor(description="Publish every joint state, whatever its time.")
@@ -75,9 +77,6 @@ class RobotStatePublisher(Node):
                     parse(str(parameter.value))
                 except URDFError as error:
                     return SetParametersResult(successful=False, reason=f"robot_description: {error}")
-            if parameter.name == "publish_frequency" and not 0.0 <= parameter.value <= 1000.0:
-                reason = "publish_frequency must be between 0 and 1000"
-                return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
     def _changed(self, parameters: list[Parameter[Any]]) -> None:
@@ -101,13 +100,14 @@ class RobotStatePublisher(Node):
             self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
             self._published.clear()
         self._heard = now
-        least = min((self._published.get(name, 0) for name in state.name), default=now)
+        own = [name for name in state.name if name in self._robot.joints]
+        least = min((self._published.get(name, 0) for name in own), default=now)
         frequency = self.get_parameter("publish_frequency").value
         period = 1e9 / frequency if frequency else 0.0
         if stamp < least + period and not self.get_parameter("ignore_timestamp").value:
             return
         known = dict(zip(state.name, state.position, strict=True))
-        self._published.update(dict.fromkeys((n for n in state.name if n in self._robot.joints), stamp))
+        self._published.update(dict.fromkeys(own, stamp))
         moved = moved_joints(self._robot, known)
         if moved:
             self._moving.sendTransform([self._transform(joint, at, stamp) for joint, at in moved])

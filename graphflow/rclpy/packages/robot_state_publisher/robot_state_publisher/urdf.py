@@ -13,7 +13,7 @@ MOVES = {"revolute", "continuous", "prismatic"}
 
 
 class URDFError(ValueError):
-    """A description is none; the text says why."""
+    """A text is not the description of a robot; it says why."""
 
 
 class Mimic(NamedTuple):
@@ -61,15 +61,18 @@ def parse(text: str) -> Robot:
     """Read a description.
 
     Raises:
-        URDFError: It is none.
+        URDFError: It is not one.
     """
     try:
         top = ElementTree.fromstring(text)  # noqa: S314 - a robot's description is its user's own
     except ElementTree.ParseError as error:
-        raise URDFError(f"it is no XML: {error}") from None
+        raise URDFError(f"it is not XML: {error}") from None
     if top.tag != "robot":
         raise URDFError(f"its first element is <{top.tag}>, and not <robot>")
     links = [_name(link) for link in top.findall("link")]
+    twice = next((link for i, link in enumerate(links) if link in links[:i]), None)
+    if not links or twice is not None:
+        raise URDFError("it has no link" if not links else f"there are two links {twice!r}")
     joints: dict[str, Joint] = {}
     for element in top.findall("joint"):
         joint = _joint(element)
@@ -95,11 +98,9 @@ def _check_tree(links: list[str], joints: dict[str, Joint]) -> None:
             )
         above[joint.child] = joint
     roots = [link for link in links if link not in above]
-    if not links:
-        raise URDFError("it has no link")
     if len(roots) != 1:
         said = f"several roots: {', '.join(roots)}" if roots else "no root: its joints go in a circle"
-        raise URDFError(f"its links are no tree; there are {said}")
+        raise URDFError(f"its links are not a tree: there are {said}")
 
 
 def _joint(element: ElementTree.Element) -> Joint:
@@ -152,7 +153,7 @@ def _number(text: str, joint: str) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise URDFError(f"{text!r} at the joint {joint!r} is no number") from None
+        raise URDFError(f"{text!r} at the joint {joint!r} is not a number") from None
     if not math.isfinite(number):
         raise URDFError(f"{text!r} at the joint {joint!r} is not finite")
     return number

@@ -59,9 +59,20 @@ class StaticTransformPublisher(Node):
 def _normalized(q: Quaternion) -> Quaternion:
     length = math.hypot(*q)
     if not math.isfinite(length) or length == 0.0:
-        raise ValueError(f"the rotation {q} is none: its length is {length}")
+        raise ValueError(f"{q} is not a rotation: the length of the quaternion is {length}")
     x, y, z, w = (part / length for part in q)
     return x, y, z, w
+
+
+def _number(word: str) -> float:
+    """The number that a word says. Raises ArgumentTypeError if there is none, or it is not finite."""
+    try:
+        number = float(word)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"{word!r} is not a finite number")
+    return number
 
 
 def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
@@ -77,7 +88,7 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
     )
     for names, unit in ((METRES, "METRES"), (TURNS, "RADIANS"), (PARTS, "NUMBER")):
         for name in names:
-            parser.add_argument(f"--{name}", type=float, metavar=unit)
+            parser.add_argument(f"--{name}", type=_number, metavar=unit)
     parser.add_argument("--frame-id", help="the frame that the other is in; always needed")
     parser.add_argument("--child-frame-id", help="the other frame; always needed")
     if len(words) in (8, 9) and not any(word.startswith("--") for word in words):
@@ -94,7 +105,7 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
         parser.error("give --roll, --pitch and --yaw, or --qx, --qy, --qz and --qw, and not some of both")
     x, y, z = (getattr(found, name) or 0.0 for name in METRES)
     if any(part is not None for part in parts):
-        a, b, c, w = (0.0 if part is None else part for part in parts)
+        a, b, c, w = (usual if part is None else part for part, usual in zip(parts, (0.0, 0.0, 0.0, 1.0), strict=True))
     else:
         roll, pitch, yaw = (turn or 0.0 for turn in turns)
         a, b, c, w = map(float, quaternion_from_euler(roll, pitch, yaw))

@@ -130,7 +130,7 @@ class ActionClient(Waitable):
                 told = ThreadedSubscription(
                     core, carrier, full, to_graphflow(qos), bell, mark, lambda event: self._graphflow_look()
                 )
-                told.in_order = True
+                told.in_order = part == "feedback"
                 return told
 
             return held.add(node._graphflow.node, make)
@@ -165,15 +165,16 @@ class ActionClient(Waitable):
         status = self._graphflow_status.take()
         if status is not None:
             work.append(partial(self._graphflow_heard_status, status.payload))
+        answers: list[Callable[[], Any]] = []
+        for client in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results):
+            answered = client.take()
+            if answered is not None:
+                answers.append(partial(self._graphflow_settle, client, answered))
         for _ in range(self._graphflow_feedback.waiting):  # all that came before a result
             feedback = self._graphflow_feedback.take()
             if feedback is not None:
                 work.append(partial(self._graphflow_heard_feedback, feedback.payload))
-        for client in (self._graphflow_goals, self._graphflow_cancels, self._graphflow_results):
-            answered = client.take()
-            if answered is not None:
-                work.append(partial(self._graphflow_settle, client, answered))
-        return work
+        return [*work, *answers]
 
     async def execute(self, taken_data: list[Callable[[], Any]]) -> None:
         for work in taken_data:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.syntax import FunctionNode, syntax_of
+from graphflow.deadlock.user_code import is_users
 from graphflow.deadlock.uses import is_own
 from rclpy.task import Future
 
-_WAYS = ("cancel", "set_result", "set_exception")
+_WAYS = ("cancel", "set_result", "set_exception", "remove_pending_request")
+_LIBRARIES = {"site-packages", "dist-packages"}
 _OTHERS = ("create_timer", "create_rate", "Timer")
 """What makes things that can be cancelled, too."""
 
@@ -23,6 +27,17 @@ class _Ending(NamedTuple):
     """The attribute of `self` that it ends; empty for anything else."""
     cls: str = ""
     """The class in which it stands; empty for none."""
+
+
+def programs_files() -> list[str]:
+    """The files of the program's own modules: those that are not installed."""
+    files = [str(file) for module in list(sys.modules.values()) if (file := getattr(module, "__file__", None))]
+    return [file for file in files if is_users(file) and file.endswith(".py") and not _is_installed(file)]
+
+
+@cache
+def _is_installed(file: str) -> bool:
+    return not _LIBRARIES.isdisjoint(Path(file).parts)
 
 
 def may_be_ended(future: Future[Any], nodes: Iterable[Any], files: Iterable[str]) -> bool:
@@ -52,7 +67,7 @@ def _may_end(ending: _Ending, future: Future[Any], nodes: list[Any], classes: se
     of_class = [node for node in nodes if any(cls.__name__ == ending.cls for cls in type(node).__mro__)]
     if ending.cls in classes and not of_class:
         return False  # there is no such node
-    known = [vars(node)[ending.attribute] for node in of_class or nodes if ending.attribute in vars(node)]
+    known = [vars(node)[ending.attribute] for node in of_class if ending.attribute in vars(node)]
     return not known or any(value is future for value in known)
 
 
@@ -79,9 +94,9 @@ def _endings_in(parts: Iterable[tuple[ast.AST, list[ast.AST]]]) -> Iterator[_End
 
 def _is_timer(name: str, parents: list[ast.AST]) -> bool:
     """Whether a local name is a timer's: by what it is called, or by what makes it."""
-    if "timer" in name.lower():
-        return True
     functions = [parent for parent in parents if isinstance(parent, FunctionNode)] or parents[:1]
     made = (n for parent in functions for n in ast.walk(parent) if isinstance(n, ast.Assign))
     values = [n.value for n in made if any(isinstance(t, ast.Name) and t.id == name for t in n.targets)]
-    return bool(values) and all(isinstance(v, ast.Call) and ast.unparse(v.func).endswith(_OTHERS) for v in values)
+    if not values:
+        return name.lower().endswith("timer")
+    return all(isinstance(v, ast.Call) and ast.unparse(v.func).endswith(_OTHERS) for v in values)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from types import CellType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.source import ANSWERED
@@ -117,8 +118,16 @@ def after_answers(entity: Any, node: Any) -> Iterator[str]:
         for callback in list(future._callbacks):
             if getattr(callback, "__self__", None) is node:
                 yield name_of(callback)
-            elif any(cell.cell_contents is node for cell in getattr(callback, "__closure__", None) or ()):
+            elif any(_content(cell) is node for cell in getattr(callback, "__closure__", None) or ()):
                 yield ANSWERED
+
+
+def _content(cell: CellType) -> Any:
+    """What a function inside another knows by a name; None before that is bound."""
+    try:
+        return cell.cell_contents
+    except ValueError:
+        return None
 
 
 def results_asked(entity: Any) -> Iterator[tuple[str, str]]:

@@ -180,7 +180,7 @@ class Spinning:
 
         Raises:
             ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: As they say.
-            ValueError: Another thread waits with the same arguments: ROS 2 allows it with others only.
+            ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
         asked = (timeout, nodes, condition)
         if asked in self._asking:
@@ -197,7 +197,7 @@ class Spinning:
                         raise ShutdownException
                     if not self.context.ok():
                         if life is not None:
-                            life.hold_daemon()
+                            life.end_daemon()
                         raise ExternalShutdownException
                     if condition() or self.has_failed():
                         raise ConditionReachedException

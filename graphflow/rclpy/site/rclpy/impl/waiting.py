@@ -8,7 +8,6 @@ program's own. Nothing is recorded while callbacks run: all is read from stacks 
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from collections import Counter
@@ -21,7 +20,7 @@ from weakref import WeakKeyDictionary
 from graphflow.deadlock.asyncio_frames import know_futures
 from graphflow.deadlock.fresh import know_messages
 from graphflow.deadlock.held import setters
-from graphflow.deadlock.user_code import Pause, is_users, where
+from graphflow.deadlock.user_code import Pause, where
 from graphflow.errors import ClosedError
 from graphflow.machines.wait_graph import (
     FREE,
@@ -42,7 +41,7 @@ from graphflow.wire.liveliness import Kind
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.blocking import blocked, is_private, limit_of
-from rclpy.impl.enders import may_be_ended
+from rclpy.impl.enders import may_be_ended, programs_files
 from rclpy.impl.entities import (
     Role,
     after_answers,
@@ -397,22 +396,13 @@ class _Look:
         return self._closed_world(level, future, node, run)
 
     def _of_call(self, endpoint: Any, sequence: int, future: Future[Any], level: Level) -> Condition:
-        if not is_private(level) and may_be_ended(future, self._nodes, self._files):
+        if not is_private(level) and may_be_ended(future, self._nodes, programs_files()):
             return FREE
         try:
             call = Call(endpoint.call_id(sequence), endpoint.name)
         except ClosedError:
             return FREE
         return call if self._servers[endpoint.name] < 2 else FREE  # another may answer
-
-    @cached_property
-    def _files(self) -> set[str]:
-        """Where the program's own code is that is under way, and that of its nodes."""
-        levels = [level for stack in self._stacks for level in stack.levels]
-        files = {frame.f_code.co_filename for level in levels for frame in level.frames}
-        modules = {sys.modules.get(cls.__module__) for node in self._nodes for cls in type(node).__mro__}
-        files |= {str(file) for module in modules if (file := getattr(module, "__file__", None))}
-        return {file for file in files if is_users(file) and "-packages" not in file and not file.startswith("<")}
 
     @cached_property
     def _servers(self) -> Counter[str]:

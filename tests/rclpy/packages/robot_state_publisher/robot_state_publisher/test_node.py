@@ -63,7 +63,7 @@ def test_states_are_published_at_most_so_often(robot: Any) -> None:
     robot._moving.sendTransform = sent.append
     robot.set_parameters([Parameter("publish_frequency", value=0.5)])
     for stamp in (10, 11, 12, 13, 14):
-        robot.on_joint_state(state(stamp, turn=1.0))
+        robot.on_joint_state(state(stamp, turn=1.0, wheel=2.0))  # one that the robot does not have
     assert len(sent) == 3  # at 10, 12 and 14
     robot.set_parameters([Parameter("ignore_timestamp", value=True)])
     robot.on_joint_state(state(14, turn=1.0))

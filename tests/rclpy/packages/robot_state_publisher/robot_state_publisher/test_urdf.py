@@ -45,7 +45,7 @@ def test_rotations_are_about_fixed_axes() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("<link", "it is no XML"),
+        ("<link", "it is not XML"),
         ("", "it has no link"),
         ("<link/>", "a <link> has no name"),
         (LINKS, "several roots: base, arm"),
@@ -56,7 +56,7 @@ def test_rotations_are_about_fixed_axes() -> None:
         (LINKS + joint("springy"), "of no known type: 'springy'"),
         (LINKS + joint(more='<axis xyz="0 0 0"/>'), "has no direction"),
         (LINKS + joint(more='<origin xyz="1 2"/>'), "expected three numbers"),
-        (LINKS + joint(more='<origin xyz="1 2 z"/>'), "'z' at the joint 'j' is no number"),
+        (LINKS + joint(more='<origin xyz="1 2 z"/>'), "'z' at the joint 'j' is not a number"),
         (LINKS + joint(more='<origin xyz="1 2 nan"/>'), "is not finite"),
         (LINKS + joint(more='<mimic joint="k"/>'), "mimics 'k', and there is no such joint"),
         (LINKS + '<joint name="j" type="fixed"><child link="arm"/></joint>', "the joint 'j' has no parent"),

@@ -23,7 +23,8 @@ FRAMES = ["--frame-id", "map", "--child-frame-id", "base"]
         (["--x", "-1e-3", "--z", "-.5"], (-0.001, 0, -0.5), (0, 0, 0, 1)),
         (["--x=2", "--yaw", str(math.pi / 2)], (2, 0, 0), (0, 0, math.sqrt(0.5), math.sqrt(0.5))),
         (["--roll", str(math.pi)], (0, 0, 0), (1, 0, 0, 0)),
-        (["--qz", "1"], (0, 0, 0), (0, 0, 1, 0)),
+        (["--qz", "1", "--qw", "0"], (0, 0, 0), (0, 0, 1, 0)),
+        (["--qx", "0"], (0, 0, 0), (0, 0, 0, 1)),
     ],
 )
 def test_options(
@@ -51,7 +52,8 @@ def test_the_old_way(program: Callable[[str], Any], capfd: pytest.CaptureFixture
     [
         (["--frame-id", "map"], "--frame-id and --child-frame-id are needed"),
         ([*FRAMES, "--yaw", "1", "--qw", "1"], "and not some of both"),
-        ([*FRAMES, "--x", "one"], "invalid float value: 'one'"),
+        ([*FRAMES, "--x", "one"], "argument --x: 'one' is not a finite number"),
+        ([*FRAMES, "--yaw", "inf"], "argument --yaw: 'inf' is not a finite number"),
         ([*FRAMES, "--x"], "argument --x: expected one argument"),
     ],
 )

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from rclpy.impl.enders import may_be_ended
+from rclpy.impl.enders import may_be_ended, programs_files
 from rclpy.node import Node
 from rclpy.task import Future
 
@@ -70,3 +70,11 @@ def test_code_of_nodes_that_are_not_there(node: Node, load: Any) -> None:
 def test_a_file_that_cannot_be_read_may_do_anything(node: Node) -> None:
     """As far as anybody knows."""
     assert may_be_ended(Future(), [node], ["/no/such/file.py"])
+
+
+def test_the_programs_files_are_those_of_its_modules(load: Any) -> None:
+    """What is installed is not among them, nor is graphflow."""
+    _, file = load("")
+    files = programs_files()
+    assert file in files
+    assert not [f for f in files if "site-packages" in f or "graphflow/wire" in f]

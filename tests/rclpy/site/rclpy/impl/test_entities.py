@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from example_interfaces.action import Fibonacci
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from graphflow.deadlock.source import ANSWERED
 from rclpy.action import ActionClient, ActionServer
-from rclpy.impl.entities import role_of
+from rclpy.impl.entities import after_answers, role_of
 from rclpy.node import Node
 
 
@@ -30,3 +33,18 @@ def test_each_is_called_by_its_callback(node: Node) -> None:
     ]
     assert [role_of(entity).label for entity, _ in made] == [label for _, label in made]
     assert [role_of(entity).is_inner for entity, _ in made] == [False] * 7 + [True]
+
+
+def test_who_is_told_of_an_answer(node: Node) -> None:
+    """A method of the node, or a function that knows it; one may know names that are not bound yet."""
+    client = node.create_client(Trigger, "ask")
+    late: Any
+
+    def told(_: object) -> Any:
+        return node, late
+
+    client.call_async(Trigger.Request()).add_done_callback(told)
+    assert list(after_answers(client, node)) == [ANSWERED]
+    late = client.call_async(Trigger.Request())
+    late.add_done_callback(node.destroy_timer)
+    assert list(after_answers(client, node)) == [ANSWERED, "destroy_timer"]
