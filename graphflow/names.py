@@ -84,8 +84,6 @@ def _fault(name: str) -> str | None:
             return "it has // in it"
         if not _TOKEN.match(token):
             return f"{token!r} may have only letters, digits and _, and may not begin with a digit"
-        if "__" in token:
-            return f"{token!r} has two underscores in a row"
     return None
 
 

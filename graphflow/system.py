@@ -13,6 +13,10 @@ import sys
 from typing import Any
 
 PORTABLE_VARIABLE = "GRAPHFLOW_PORTABLE"
+SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rclpy", "site")
+"""The folder of what is imported under ROS's names."""
+ROS2 = os.path.join(os.path.dirname(SITE), "bin")
+"""The folder with a program `ros2`, which is graphflow."""
 
 
 def is_portable() -> bool:
@@ -29,6 +33,15 @@ def detached() -> dict[str, Any]:
     """Options of `subprocess.Popen` for a process that a terminal's Ctrl-C does not reach."""
     create_new_process_group = 0x200
     return {"creationflags": create_new_process_group} if sys.platform == "win32" else {"start_new_session": True}
+
+
+def offer_ros2() -> None:
+    """Let what this process starts find a program `ros2`: graphflow, unless a ROS 2 is sourced."""
+    import shutil
+
+    if shutil.which("ros2") is None:
+        os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), ROS2])
+        os.environ["GRAPHFLOW_PYTHON"] = sys.executable
 
 
 def host_name() -> str:

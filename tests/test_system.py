@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.system import detached, host_name, is_portable
+from graphflow.system import ROS2, detached, host_name, is_portable, offer_ros2
 
 
 @pytest.mark.parametrize(
@@ -29,6 +30,20 @@ def test_which_ways(platform: str, value: str, portable: bool, monkeypatch: pyte
     monkeypatch.setenv("GRAPHFLOW_PORTABLE", value)
     assert is_portable() is portable
     assert list(detached()) == (["creationflags"] if platform == "win32" else ["start_new_session"])
+
+
+def test_a_program_ros2(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is offered once, and after one that there is."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("GRAPHFLOW_PYTHON", raising=False)
+    offer_ros2()
+    offer_ros2()
+    assert os.environ["PATH"] == f"{tmp_path}{os.pathsep}{ROS2}"
+    assert os.environ["GRAPHFLOW_PYTHON"] == sys.executable
+    (tmp_path / "ros2").touch(mode=0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    offer_ros2()
+    assert os.environ["PATH"] == str(tmp_path)
 
 
 def test_a_host_name_fits_into_a_key(monkeypatch: pytest.MonkeyPatch) -> None:

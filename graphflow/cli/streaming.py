@@ -221,7 +221,7 @@ class _Stream:
         run = self._run
         width = max((len(n["node"]) for n in self._nodes), default=0)
         class_width = max((len(n["class"]) for n in self._nodes), default=0)
-        count = f"{len(self._nodes)} node{'s' if len(self._nodes) > 1 else ''}"
+        count = f"{len(self._nodes)} node{'' if len(self._nodes) == 1 else 's'}"
         output.talk(f"graph {run['graph']} is up: {count} in domain {run['domain']}, {seconds:.2f} s")
         for node in self._nodes:
             place = self._classes.get(node["class"], "")

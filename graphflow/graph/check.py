@@ -139,7 +139,7 @@ def _check_shared_rules(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]
         if isinstance(interface, Problem) or node.executable:  # only a program knows what names it has
             return
         for rule in node.remaps if interface is not None else ():
-            if rule.is_optional and interface is not None:
+            if rule.is_optional and not rule.is_unchecked and interface is not None:
                 names = resolver(node)
                 full = {names.full(e.name): e.name for e in interface.endpoints}
                 fits[rule.place] = fits.get(rule.place, False) or _fits(rule.match, names, full, interface)

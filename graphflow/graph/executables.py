@@ -17,6 +17,7 @@ from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.names import did_you_mean, nearest
+from graphflow.system import ROS2
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
@@ -41,8 +42,6 @@ _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "
     "lifecycle_listener": "lc_listener",
 }
 """Names of nodes that are not those of their executables."""
-ROS2 = Path(__file__).parents[1] / "rclpy" / "bin"
-"""The folder with a program `ros2`, which is graphflow."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 SLIP = 0.7
 """How alike two names are, from 0 to 1, if one is taken for a slip of the other."""
@@ -89,6 +88,11 @@ def as_class(node: Item, root: Path) -> Item:
     return node._replace(
         value={"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").value}
     )
+
+
+def as_name(executable: str) -> str:
+    """An executable, be it a file, as a node's name."""
+    return re.sub(r"[\W_]+", "_", Path(executable).name.removesuffix(".py")).strip("_") or "program"
 
 
 class NoExecutable(LookupError):
@@ -138,7 +142,7 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
 def is_ros_sourced(env: Mapping[str, str]) -> bool:
     """Whether there is a ROS 2: a program `ros2` that is not graphflow's own."""
     found = shutil.which("ros2", path=env.get("PATH"))
-    return found is not None and Path(found).parent != ROS2
+    return found is not None and os.path.dirname(found) != ROS2
 
 
 def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Workspace) -> NoExecutable:

@@ -311,6 +311,8 @@ class Expansion:
             self.refused.add(key)
             return
         item = whole
+        if "keep_names" in item.entries and item.at.file in self._problems.launch_files:
+            key, item = self._named(key, item, scope)
         own = item.entries.get("namespace")
         own = own and self._substituted(own, scope)
         name = self._full_name(key, item, own, scope)
@@ -334,6 +336,18 @@ class Expansion:
             item = with_groups(executables.as_class(item, self._outside.root), scope.shared)
         self.nodes[name] = item
         self.written[name] = (key, scope.namespace)
+
+    def _named(self, key: str, item: Item, scope: _Scope) -> tuple[str, Item]:
+        """An executable of a launch file with its name, where it is only known now which it is."""
+        words = {k: item.entries[k] for k in ("pkg", "exec") if k in item.entries}
+        if not any("$(" in str(word.value) for word in words.values()) or self._is_left_out(item, scope):
+            return key, item
+        item = item._replace(value={**item.value, **{k: self._substituted(word, scope) for k, word in words.items()}})
+        package, name = (str(item.entries[k].value) if k in words else "" for k in ("pkg", "exec"))
+        found = executables.find(package, name, self._outside.root)
+        if found is None:
+            return executables.as_name(name), item
+        return found.node_name, item.without("keep_names")
 
     def _full_name(self, key: str, item: Item, own: Item | None, scope: _Scope) -> str | None:
         namespace = own.value if own is not None and isinstance(own.value, str) else ""

@@ -83,7 +83,7 @@ def read(path: Path, name: str) -> list[Section]:
     Raises:
         GraphFileError: The file cannot be read, or is not a parameter file; every mistake with its place.
     """
-    src = source.read_file(path, name, merges=True)
+    src = source.read_file(path, name, is_params=True)
     problems: list[Problem] = []
     sections = list(_sections(src, problems))
     if not sections and not problems:

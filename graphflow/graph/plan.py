@@ -38,6 +38,8 @@ class Rule:
     place: Place
     is_optional: bool = False
     """Whether nodes without such a name ignore it, since it was written for many nodes at once."""
+    is_unchecked: bool = False
+    """Whether it may be that no node has such a name."""
 
     def remap(self) -> Remap:
         return Remap(self.match, self.replacement, source=str(self.place))

@@ -51,7 +51,7 @@ def read(
         for left_out in told["remarks"]:
             remark(Place(name, left_out["line"], 1), left_out["message"])
         return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note, number)
-    top = xml_source.read_file(path, name) if path.suffix == ".xml" else tree(source.read_file(path, name))
+    top = xml_source.read_file(path, name) if path.suffix in (".xml", ".launch") else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):
         return ros_launch.native(top, project_root(path), complain, note, number)
     return top

@@ -84,7 +84,7 @@ def _resolve(
     outside = Outside(os.environ if env is None else env, root, logs, run, describe)
     expansion = Expansion(given, outside, problems)
     expansion.file(top, path)
-    if not problems and not top.entries.keys() & {*BLOCKS}:
+    if not problems and not top.entries.keys() & {*BLOCKS} and top.place.file not in problems.launch_files:
         problems.add(top.place, "the key 'nodes' is missing")
     src = source_of(expansion.whole(top))
     model = validated(GraphFile, src, problems)
@@ -307,7 +307,7 @@ def _nodes(
             lifecycle=spec.lifecycle or "",
             lifecycle_place=src.place((*base, "lifecycle")),
         )
-    if not model.nodes and not problems and not (model.steps and src.file in problems.launch_files):
+    if not model.nodes and not problems and src.file not in problems.launch_files:
         problems.add(src.place(("nodes",)), f"there is no node{example('nodes')}")
     return nodes
 
@@ -327,7 +327,11 @@ def _params(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) 
     """Parameters of a node's groups, which it need not have, and its own."""
     shared = params_file.flatten(src, spec.shared_params, (*base, f"params{FROM_GROUPS}"), problems)
     own = params_file.flatten(src, spec.params, (*base, "params"), problems)
-    return {name: replace(setting, is_optional=True) for name, setting in shared.items()} | own
+    found = {name: replace(setting, is_optional=True) for name, setting in shared.items()} | own
+    return {
+        name: replace(s, is_optional=True, is_unchecked=True) if s.place.file in problems.launch_files else s
+        for name, s in found.items()
+    }
 
 
 def _restart(src: Source, spec: NodeSpec, base: source.Path, problems: Problems) -> Backoff:
@@ -391,7 +395,8 @@ def _remaps(src: Source, spec: NodeSpec, base: source.Path, node: str, problems:
             except InvalidName as error:
                 problems.add(place, str(error))
                 continue
-            rules.append(Rule(match, replacement, place, is_optional=key != "remap"))
+            is_ros = place.file in problems.launch_files  # which lets pass what the node does not have
+            rules.append(Rule(match, replacement, place, is_optional=is_ros or key != "remap", is_unchecked=is_ros))
     return tuple(rules)
 
 

@@ -11,8 +11,6 @@ from graphflow.graph.ros_attributes import split
 from graphflow.graph.tree import Item, located, tree
 
 Complain = Callable[[Place, str], None]
-OUR_ROS2 = 'command -v ros2 >/dev/null || ros2() { graphflow "$@"; }; '
-"""What comes before a line of a shell's in which there is `ros2`."""
 
 
 def plain_words(line: str) -> list[str]:

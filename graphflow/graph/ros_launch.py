@@ -15,7 +15,6 @@ Source: launch and launch_ros, the parsers of their frontends; the design articl
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from graphflow.graph import executables
 from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.ros_attributes import children, items, says, split
 from graphflow.graph.ros_attributes import words as words_of
-from graphflow.graph.ros_commands import OUR_ROS2, Complain, plain_words, step_of, typed
+from graphflow.graph.ros_commands import Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
 from graphflow.graph.ros_settings import conditional, pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
@@ -314,7 +313,7 @@ class _Translation:
         if "launch-prefix" in item.entries:
             entries["prefix"] = item.entries["launch-prefix"]
         entries |= self._common(item)
-        usual = re.sub(r"\W", "_", Path(name.value).name.removesuffix(".py")) if found is None else found.node_name
+        usual = executables.as_name(name.value) if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
         self._add_node(body, key, item._replace(value=entries, key=own.place if own is not None else item.key))
 
@@ -360,7 +359,7 @@ class _Translation:
             self._add_step(body, words[2], item, {**step, "timeout": Item(PATIENCE, command.place)})
             return
         if is_shells:
-            words = ["sh", "-c", f"{OUR_ROS2}{line}" if "ros2 " in line else line]
+            words = ["sh", "-c", line]
         words = [*words_of(item.entries.get("launch-prefix")), *words]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
@@ -368,7 +367,7 @@ class _Translation:
             words[0] = "graphflow"
         entries = {"command": Item([Item(word, command.place) for word in words], command.place, item.at), **entries}
         own = item.entries.get("name")
-        base = re.sub(r"\W", "_", Path(words[0].removeprefix("$(find-exec ").rstrip(")")).name)
+        base = executables.as_name(words[0].removeprefix("$(find-exec ").rstrip(")"))
         key = f"{base}_{self._next(base)}"
         if own is not None:  # a label, which several may have
             count = self._next(f"label {own.value}")

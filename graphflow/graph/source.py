@@ -80,12 +80,12 @@ class _Frame(NamedTuple):
     path: Path
 
 
-def read_file(path: pathlib.Path, name: str, *, merges: bool = False) -> Source:
+def read_file(path: pathlib.Path, name: str, *, is_params: bool = False) -> Source:
     """Read a YAML file.
 
     Args:
         name: The file as messages show it.
-        merges: As for `read`.
+        is_params: As for `read`.
 
     Raises:
         GraphFileError: As for `read`; also when there is no such file, or it is not text.
@@ -95,18 +95,19 @@ def read_file(path: pathlib.Path, name: str, *, merges: bool = False) -> Source:
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
     try:
-        return read(data.decode("utf-8-sig"), name, merges=merges)
+        return read(data.decode("utf-8-sig"), name, is_params=is_params)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise _error(Place(name, line), "is not UTF-8 text; save the file as UTF-8") from None
 
 
-def read(text: str, file: str, *, merges: bool = False) -> Source:
+def read(text: str, file: str, *, is_params: bool = False) -> Source:
     """Read one YAML document.
 
     Args:
         file: The name to give in messages.
-        merges: Whether mappings under the same key are one, as in ROS's files of parameters.
+        is_params: Whether it is read as ROS reads files of parameters: every key is a text, and mappings under the
+            same key are one.
 
     Raises:
         GraphFileError: `text` is not YAML, or uses what is refused here; the first such place.
@@ -119,7 +120,7 @@ def read(text: str, file: str, *, merges: bool = False) -> Source:
         place = Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
         raise _error(place, f"the character U+{ord(unprintable[0]):04X} is not allowed in a YAML file; delete it")
     try:
-        return _build(text, file, merges=merges)
+        return _build(text, file, is_params=is_params)
     except yaml.MarkedYAMLError as error:
         mark: Any = error.problem_mark or error.context_mark
         lines = text.splitlines()
@@ -164,7 +165,7 @@ def _error(place: Place, message: str) -> GraphFileError:
     return GraphFileError([Problem(place, message)])
 
 
-def _build(text: str, file: str, *, merges: bool) -> Source:
+def _build(text: str, file: str, *, is_params: bool) -> Source:
     places: dict[Path, Place] = {}
     keys: dict[Path, Place] = {}
     stack: list[_Frame] = []
@@ -217,9 +218,9 @@ def _build(text: str, file: str, *, merges: bool) -> Source:
                 raise _error(place, f"{written}: tags are not used here; write a plain value")
             waits_for_key = bool(stack) and isinstance(stack[-1].container, dict) and pending[-1] is None
             if waits_for_key:
-                key = _key(event, place)
+                key = _key(event, place, is_params=is_params)
                 container, above = stack[-1]
-                if key in container and not (merges and isinstance(container[key], dict)):
+                if key in container and not (is_params and isinstance(container[key], dict)):
                     raise twice(key, keys[(*above, key)], place)
                 keys.setdefault((*above, key), place)
                 pending[-1] = key
@@ -244,10 +245,10 @@ def _build(text: str, file: str, *, merges: bool) -> Source:
     return Source(root[0], places, keys)
 
 
-def _key(event: Any, place: Place) -> str:
+def _key(event: Any, place: Place, *, is_params: bool) -> str:
     if not isinstance(event, yaml.ScalarEvent):
         raise _error(place, "a key must be a word, not a list or mapping")
-    if not event.style and not isinstance(_scalar_value(event, place), str):
+    if not (is_params or event.style) and not isinstance(_scalar_value(event, place), str):
         raise _error(place, f"the key {event.value} is not text; write it in quotes: '{event.value}'")
     return str(event.value)
 

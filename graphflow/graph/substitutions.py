@@ -8,6 +8,7 @@ Source: launch frontends, "Substitutions".
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import shutil
 import zlib
@@ -25,6 +26,8 @@ MAX_TEXT = 100_000
 """Characters of a text, and bytes of a file that `$(file-content ...)` takes in, or that `$(command ...)` prints."""
 ON_STDERR = ("fail", "ignore", "warn", "capture")
 """What may be done with what a program of `$(command ...)` writes to its error output."""
+_QUOTED = re.compile(r"""(?P<quote>['"])(?P<inside>(?:(?!(?P=quote))[^\\]|\\.)+)(?P=quote)""", re.DOTALL)
+"""A text in quotes, in which a backslash makes the next character one like any other."""
 
 
 class SubstitutionError(ValueError):
@@ -142,9 +145,9 @@ class Substitutions:
         return value
 
     def _eval(self, text: str) -> Any:
-        quote = text[:1]
-        if quote in ("'", '"') and text[-1:] == quote and text.count(quote) == 2 and len(text) > 2:
-            text = text[1:-1]  # as ROS's files write it
+        quoted = _QUOTED.fullmatch(text)
+        if quoted:  # as ROS's files write it
+            text = re.sub(r"\\(.)", r"\1", quoted["inside"])
         try:
             values = {name: arg.value if isinstance(arg, Written) else arg for name, arg in self._args.items()}
             return evaluate(text, values)
@@ -271,7 +274,8 @@ def _text(value: Any) -> str:
 
 def _found(folder: Path | None, written: str) -> str:
     if folder is None:
-        raise SubstitutionError(f"$({written}): no package of that name is installed")
+        hint = "; it is on PyPI: pip install xacro" if written.endswith(" xacro") else ""
+        raise SubstitutionError(f"$({written}): no package of that name is installed{hint}")
     return str(folder)
 
 

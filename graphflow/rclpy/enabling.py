@@ -9,8 +9,8 @@ import importlib.machinery
 import os
 import sys
 
-SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "site")
-"""The folder of what is imported under ROS's names."""
+from graphflow.system import SITE
+
 FILE = "graphflow-rclpy.pth"
 """What `enable` writes where Python looks for installed packages; Python runs the line each time that it starts."""
 TYPINGS = "graphflow-rclpy"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import runpy
-import shutil
 import signal
 import sys
 from collections.abc import Sequence
@@ -16,11 +15,12 @@ from typing import NamedTuple
 
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
-from graphflow.graph.executables import ROS2, SLIP
+from graphflow.graph.executables import SLIP
 from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder
+from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
 
 
@@ -94,9 +94,7 @@ def make_importable(workspace: Workspace) -> bool:
         for name, folder in workspace.interfaces.items():
             finder.KNOWN[name] = str(folder)
             registry.add_package(name, folder)
-    if shutil.which("ros2") is None:  # for what this process starts
-        os.environ["PATH"] = os.pathsep.join([os.environ.get("PATH", os.defpath), str(ROS2)])
-        os.environ["GRAPHFLOW_PYTHON"] = sys.executable
+    offer_ros2()
     sys.path[:0] = [str(folder) for folder in workspace.import_roots if str(folder) not in sys.path]
     return is_ours
 

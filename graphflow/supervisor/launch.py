@@ -23,7 +23,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.supervisor import family
 from graphflow.supervisor.guardian import guard, leave_note
-from graphflow.system import detached, is_portable
+from graphflow.system import detached, is_portable, offer_ros2
 
 if TYPE_CHECKING:
     from graphflow.graph.check import Interfaces
@@ -83,6 +83,7 @@ def launch(
     Returns:
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
+    offer_ros2()
     begin = _begin_portable if is_portable() else _begin_forked
     begun = begin(
         {"file": str(file), "given": given, "domain": domain, "only": list(only), "debug": list(debug), "watch": watch}

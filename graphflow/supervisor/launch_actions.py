@@ -18,8 +18,10 @@ _ending: set[int] = set()
 """Actions with whose end everything ends."""
 _lives: dict[int, str] = {}
 """The states that lifecycle nodes are brought to."""
-_STATES = {1: "inactive", 3: "active"}
-"""Where lifecycle_msgs/msg/Transition's configure and activate lead."""
+_STATES = {"configure": "inactive", "activate": "active"}
+"""Where transitions of lifecycle nodes lead."""
+_TRANSITIONS = {1: "configure", 2: "cleanup", 3: "activate", 4: "deactivate", **dict.fromkeys((5, 6, 7), "shutdown")}
+"""Those of lifecycle_msgs/msg/Transition."""
 
 
 def actions(said: Any) -> list[dict[str, Any]]:
@@ -99,8 +101,13 @@ def _action(said: Said) -> tuple[str, Any]:
             return "", actions(_called(said))
         case "RegisterEventHandler":
             return "", _handled(said)
-        case "EmitEvent" if _change(said) is not None:  # the node has been told to be brought there
-            return "", []
+        case "EmitEvent" if (change := _change(said)) is not None:
+            node, transition = change
+            if transition in _STATES:  # the node has been told to be brought there
+                return "", []
+            parts = text([node.get("namespace", default=""), "/", node.get("name", default="")]).split("/")
+            name = "/".join(["", *filter(None, parts)])
+            return "executable", {**_common(said), "cmd": ["ros2", "lifecycle", "set", name, transition]}
         case "Shutdown" | "EmitEvent" if _is_shutdown(said):
             event = said if said.name == "Shutdown" else get("event", 0)
             reason = text(event.get("reason", 0, default="")) or "a launch file asks for it"
@@ -154,13 +161,13 @@ _LEFT_OUT = {
 
 
 def _change(said: Any) -> tuple[Said, str] | None:
-    """The lifecycle node that an event brings to a state, and that state."""
+    """The lifecycle node that an event is for, and the transition."""
     event = said.get("event", 0) if isinstance(said, Said) and said.name == "EmitEvent" else None
     if not isinstance(event, Said) or event.name != "ChangeState":
         return None
-    matcher, state = event.get("lifecycle_node_matcher"), _STATES.get(event.get("transition_id"))
+    matcher, transition = event.get("lifecycle_node_matcher"), _TRANSITIONS.get(event.get("transition_id"))
     node = matcher.get("action", 0) if isinstance(matcher, Said) and matcher.name == "matches_action" else None
-    return (node, state) if isinstance(node, Said) and state else None
+    return (node, transition) if isinstance(node, Said) and transition else None
 
 
 def _handled(said: Said) -> list[dict[str, Any]]:
@@ -355,6 +362,6 @@ def _number(said: Said) -> None:
         kept = _without_functions(then)[0]
         if kept and all(map(_is_shutdown, kept)):
             _ending.add(id(target))
-    if change := _change(said):
-        node, state = change
+    if (change := _change(said)) and change[1] in _STATES:
+        node, state = change[0], _STATES[change[1]]
         _lives[id(node)] = "active" if "active" in (state, _lives.get(id(node))) else state

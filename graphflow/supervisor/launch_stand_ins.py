@@ -24,7 +24,7 @@ from typing import Any
 from graphflow.folders import newest_logs
 from graphflow.graph.executables import package_prefix, package_share
 from graphflow.graph.project import project_root
-from graphflow.graph.substitutions import Outside, Substitutions, truth
+from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
 from graphflow.supervisor.launch_names import NAMES
 from graphflow.supervisor.printed import printed
 
@@ -42,6 +42,8 @@ class Recording:
         """The arguments that it is to be started with; None if it is only written down."""
         self.defaults: dict[str, str] = {}
         """Those of the arguments that have been declared so far."""
+        self.needed: set[str] = set()
+        """The arguments that have been declared without one."""
         self.descriptions: list[Said] = []
         """All that were made, to which a function may add while it is called."""
         self.problems: list[dict[str, Any]] = []
@@ -70,7 +72,14 @@ class Recording:
         Raises:
             SubstitutionError: A substitution cannot be made.
         """
-        return text if self.values is None else self._made(text, self.arguments())
+        if self.values is None:
+            return text
+        missing = next(
+            (name for name in self.needed - self.values.keys() - self.defaults.keys() if f"$(var {name})" in text), None
+        )
+        if missing is not None:
+            raise SubstitutionError(f"the argument {missing!r} has no default; give {missing}:=VALUE")
+        return self._made(text, self.arguments())
 
     def arguments(self) -> dict[str, str]:
         """The values of arguments that are known: what is given, and defaults."""
@@ -122,8 +131,12 @@ class Said:
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         self.args, self.kwargs, self.line = args, kwargs, RECORDING.line()
         default = self.get("default_value")
-        if self.name == "DeclareLaunchArgument" and default is not None:
-            RECORDING.defaults[text(self.get("name", 0))] = text(default)
+        if self.name == "DeclareLaunchArgument":
+            name = text(self.get("name", 0))
+            if default is None:
+                RECORDING.needed.add(name)
+            else:
+                RECORDING.defaults[name] = text(default)
         if self.name == "LaunchDescription":
             self.entities = list(self.get("initial_entities", 0) or ())
             RECORDING.descriptions.append(self)
@@ -237,7 +250,15 @@ def _written(value: Said) -> str:
 
 
 def _quoted(value: Any) -> str:
-    return shlex.quote(text(value))
+    """A value as a word of a substitution; those inside it are made before it is split into words."""
+    parts = value if isinstance(value, (list, tuple)) else [value]
+    if not any(isinstance(part, Said) for part in parts):
+        return shlex.quote(text(value))
+    literal = [not isinstance(part, Said) or part.name == "TextSubstitution" for part in parts]
+    texts = [
+        text(part).replace("'", "'\"'\"'") if is_ else text(part) for part, is_ in zip(parts, literal, strict=True)
+    ]
+    return f"'{''.join(texts)}'"
 
 
 def condition(said: Said) -> dict[str, str]:

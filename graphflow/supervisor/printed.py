@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import logging
+import os
 import shlex
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from graphflow.graph.executables import is_ros_sourced
 from graphflow.graph.substitutions import MAX_TEXT, SubstitutionError
+from graphflow.system import SITE
 
 logger = logging.getLogger("graphflow")
 
@@ -31,7 +34,7 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     """
     written = f"$(command {shlex.join(words)[:60]})"
     errors = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
-    options: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": errors, "cwd": folder, "env": dict(env)}
+    options: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": errors, "cwd": folder, "env": _with_ros(env)}
     try:
         ended = subprocess.run(words, stdin=subprocess.DEVNULL, timeout=LIMIT, check=False, **options)
         text = str(ended.stdout, "utf-8")
@@ -43,7 +46,8 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     except (OSError, ValueError) as error:
         raise SubstitutionError(f"{written}: {error}") from None
     complaint = (ended.stderr or b"").decode(errors="replace").strip()
-    last = f": {complaint.splitlines()[-1]}" if complaint else ""
+    lines = complaint.splitlines()
+    last = next((f": {line}" for line in lines if line.startswith("error: ")), f": {lines[-1]}" if lines else "")
     if ended.returncode:
         raise SubstitutionError(f"{written}: exit code {ended.returncode}{last}")
     if complaint and on_stderr == "fail":
@@ -53,3 +57,10 @@ def printed(words: list[str], on_stderr: str, folder: Path, env: Mapping[str, st
     if len(text) > MAX_TEXT:
         raise SubstitutionError(f"{written}: it printed more than {MAX_TEXT:,} characters")
     return text
+
+
+def _with_ros(env: Mapping[str, str]) -> dict[str, str]:
+    """An environment in which Python finds what programs such as xacro ask for a package's folder."""
+    if is_ros_sourced(env):
+        return dict(env)
+    return {**env, "PYTHONPATH": os.pathsep.join(filter(None, [env.get("PYTHONPATH"), SITE]))}

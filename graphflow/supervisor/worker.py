@@ -20,8 +20,10 @@ from typing import Any, Protocol
 from graphflow.deadlock.user_code import place_in, users_part
 from graphflow.errors import GraphflowError, TransitionFailed
 from graphflow.graph.check import resolver
-from graphflow.graph.plan import PlannedNode, node_from_json
+from graphflow.graph.plan import PlannedNode, Setting, node_from_json
+from graphflow.interface import COMMON_PARAMETERS, Interface
 from graphflow.machines.lifecycle import LifecycleState
+from graphflow.names import did_you_mean
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
@@ -63,11 +65,8 @@ def make_node(planned: PlannedNode, file: str) -> Node:
     """
     cls = import_class(planned.class_path)
     names = resolver(planned)
-    has = cls.interface().param
     overrides = {
-        name: (setting.value, str(setting.place))
-        for name, setting in planned.params.items()
-        if not setting.is_optional or has(name) is not None
+        name: (setting.value, str(setting.place)) for name, setting in _known(planned, cls.interface()).items()
     }
     given = Surroundings(
         names.name,
@@ -85,6 +84,20 @@ def make_node(planned: PlannedNode, file: str) -> Node:
     if isinstance(core, ManagedCore) and planned.lifecycle:
         core.target = LifecycleState[planned.lifecycle.upper()]
     return node
+
+
+def _known(planned: PlannedNode, interface: Interface) -> dict[str, Setting]:
+    """The parameters that a node has of those that it is given; what a launch file has for it alone is told."""
+    known: dict[str, Setting] = {}
+    for name, setting in planned.params.items():
+        is_there = interface.param(name) is not None or (setting.is_unchecked and interface.dynamic_names is True)
+        if is_there or not setting.is_optional:
+            known[name] = setting
+        elif setting.is_unchecked and name not in COMMON_PARAMETERS:
+            near = did_you_mean(name, [param.name for param in interface.params])
+            text = "%s: there is no parameter %r; it is left out%s"
+            node_logger(planned.name).warning(text, setting.place, name, near)
+    return known
 
 
 class Reporter(Protocol):

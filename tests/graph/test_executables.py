@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from graphflow.graph.executables import (
-    ROS2,
     Executable,
     find,
     is_ros_sourced,
@@ -18,6 +17,7 @@ from graphflow.graph.executables import (
     package_program,
     package_share,
 )
+from graphflow.system import ROS2
 
 SETUP = (
     "from setuptools import setup\nsetup(entry_points={'console_scripts': ['go = my_robot.driver:main', 'x=a:b']})\n"
@@ -108,8 +108,8 @@ def test_hidden_folders_are_passed_over(root: Path) -> None:
 
 def test_a_ros_that_is_sourced(tmp_path: Path) -> None:
     """Has a program `ros2` on the path; graphflow's own of that name is none."""
-    assert not is_ros_sourced({"PATH": str(ROS2)})
+    assert not is_ros_sourced({"PATH": ROS2})
     (tmp_path / "ros2").touch(mode=0o755)
     assert not is_ros_sourced({"PATH": f"{ROS2}:{tmp_path}"})
     assert is_ros_sourced({"PATH": f"{tmp_path}:{ROS2}"})
-    assert (ROS2 / "ros2").exists()
+    assert Path(ROS2, "ros2").exists()

@@ -169,6 +169,8 @@ def test_arguments_do_not_grow_without_end(text: str, said: str) -> None:
         ("if: $(var view)", False),
         ("unless: $(var view)", True),
         ("if: $(eval mode == 'sim')", True),
+        (r"if: $(eval '\'$(var mode)\' == \'sim\'')", True),
+        (r"if: $(eval '\'$(var mode)\' == \'real\'')", False),
         ("if: $(equals $(var mode) sim)", True),
         ("if: $(not $(var view))", True),
         ('if: "1"', True),

@@ -232,3 +232,9 @@ def test_a_section_that_goes_on_further_down(tmp_path: Path) -> None:
     for again, line in (("/**: {ros__parameters: {a: 4}}", 4), ("n: 5", 4)):
         with pytest.raises(GraphFileError, match=rf"p.yaml:{line}:\d+: .* is here twice, first on line"):
             sections(tmp_path, f"{text}{again}\n")
+
+
+def test_keys_are_texts(tmp_path: Path) -> None:
+    """As in ROS, whatever they look like."""
+    found = sections(tmp_path, "lamp:\n  ros__parameters: {motors: {0: {id: 7}, on: a}, 1.5: b}\n")
+    assert values(found, "/lamp") == {"motors.0.id": 7, "motors.on": "a", "1.5": "b"}

@@ -17,6 +17,7 @@ NODE = "{pkg: turtlesim, exec: turtlesim_node}"
     [
         ("a.yaml", "nodes: {a: {class: x:Y}}", ["a"]),
         ("a.yaml", f"launch: [{{node: {NODE}}}]", ["turtlesim"]),
+        ("a.launch", '<launch><node pkg="turtlesim" exec="turtlesim_node" name="s"/></launch>', ["s"]),
         ("a.launch.xml", '<launch><node pkg="turtlesim" exec="turtlesim_node" name="s"/></launch>', ["s"]),
     ],
 )

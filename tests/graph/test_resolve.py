@@ -752,3 +752,32 @@ def test_arguments_that_no_launch_file_declares_are_let_pass(lamps: Path) -> Non
     (lamps / "f.launch.yaml").write_text("launch: [{executable: {cmd: ls}}]\n")
     [remark] = load(lamps / "f.launch.yaml", ["N:=2"]).remarks
     assert "there is no argument 'N'; the file declares none" in remark
+
+
+def test_what_a_node_does_not_have_is_let_pass_in_launch_files(lamps: Path) -> None:
+    """As ROS does; the node itself tells it."""
+    params = "param: [{name: no_such, value: 1}], remap: [{from: nothing, to: /x}]"
+    (lamps / "f.launch.yaml").write_text(f"launch: [{{node: {{pkg: turtlesim, exec: turtlesim_node, {params}}}}}]\n")
+    [node] = load(lamps / "f.launch.yaml").nodes
+    assert (node.params["no_such"].is_optional, node.params["no_such"].is_unchecked) == (True, True)
+    assert [(rule.is_optional, rule.is_unchecked) for rule in node.remaps] == [(True, True)]
+
+
+def test_executables_that_are_only_known_when_a_launch_file_starts(lamps: Path) -> None:
+    """Are called as they are then."""
+    args = "{arg: {name: which, default: turtlesim_node}}"
+    text = f"launch: [{args}, {{node: {{pkg: $(var p turtlesim), exec: $(var which)}}}}]\n"
+    (lamps / "f.launch.yaml").write_text(text)
+    [node] = load(lamps / "f.launch.yaml").nodes
+    assert (node.name, node.class_path) == ("/turtlesim", "nodes.turtlesim:TurtleSim")
+    [node] = load(lamps / "f.launch.yaml", ["which:=turtle_teleop_key"]).nodes
+    assert node.name == "/teleop_turtle"
+    (lamps / "f.launch.yaml").write_text(text.replace("turtlesim_node", "shine").replace("$(var p turtlesim)", "lamp"))
+    assert [(node.name, node.executable) for node in load(lamps / "f.launch.yaml").nodes] == [("/shine", "lamp shine")]
+
+
+def test_a_launch_file_may_have_nothing_to_start(lamps: Path) -> None:
+    """Also because of its conditions."""
+    for actions in ("", "{executable: {cmd: ls, if: 'false'}}"):
+        (lamps / "f.launch.yaml").write_text(f"launch: [{actions}]\n")
+        assert load(lamps / "f.launch.yaml").nodes == ()

@@ -11,7 +11,6 @@ from graphflow.errors import GraphFileError
 from graphflow.graph import ros_launch, source
 from graphflow.graph.model import FROM_LAUNCH
 from graphflow.graph.resolve import load
-from graphflow.graph.ros_commands import OUR_ROS2
 from graphflow.graph.tree import tree
 
 CANONICAL = """\
@@ -139,7 +138,7 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
             "{executable: {cmd: 'sleep 1; ros2 topic list', shell: 'true'}}]",
             {
                 "steps": {"call_1": {"call": "/a", "type": "b/srv/C", "request": {"x": 1}, "timeout": 60.0}},
-                "nodes": {"sh_1": {"command": ["sh", "-c", f"{OUR_ROS2}sleep 1; ros2 topic list"]}},
+                "nodes": {"sh_1": {"command": ["sh", "-c", "sleep 1; ros2 topic list"]}},
             },
         ),
         (

@@ -16,6 +16,7 @@ from graphflow.rclpy import enabling
 from graphflow.rclpy.finder import MessagePackages
 from graphflow.rclpy.life import Life
 from graphflow.runtime.context import Context
+from graphflow.system import SITE
 from graphflow.transport.memory import MemorySession, Network
 
 enabling.here()
@@ -30,13 +31,11 @@ from rclpy.signals import uninstall_signal_handlers  # noqa: E402
 
 def hide() -> None:
     """Let nothing be imported under ROS's names: tests elsewhere, in the same process, are to know nothing of it."""
-    if enabling.SITE in sys.path:
-        sys.path.remove(enabling.SITE)
+    if SITE in sys.path:
+        sys.path.remove(SITE)
     sys.meta_path[:] = [finder for finder in sys.meta_path if not isinstance(finder, MessagePackages)]
     for name, module in list(sys.modules.items()):
-        if "__graphflow__" in getattr(module, "__dict__", {}) or str(getattr(module, "__file__", "")).startswith(
-            enabling.SITE
-        ):
+        if "__graphflow__" in getattr(module, "__dict__", {}) or str(getattr(module, "__file__", "")).startswith(SITE):
             hidden[name] = sys.modules.pop(name)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.rclpy import enabling
+from graphflow.system import SITE
 from tests.cases import slow
 
 
@@ -20,11 +21,11 @@ def test_a_ros_that_is_sourced_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
     assert enabling.elsewhere() == str(tmp_path / "rclpy" / "__init__.py")
     assert not enabling.here()
-    assert enabling.SITE not in sys.path
+    assert SITE not in sys.path
     monkeypatch.setattr(sys, "path", [entry for entry in sys.path if entry != str(tmp_path)])
     assert enabling.elsewhere() is None
     assert enabling.here()
-    assert sys.path[-1] == enabling.SITE
+    assert sys.path[-1] == SITE
 
 
 @slow

@@ -19,7 +19,7 @@ def problems() -> Iterator[list[dict[str, Any]]]:
     RECORDING.problems = []
 
 
-def said(name: str, *args: Any, **kwargs: Any) -> Said:
+def said(name: str, /, *args: Any, **kwargs: Any) -> Said:
     made: Said = type(name, (Said,), {"name": name})(*args, **kwargs)
     made.line = 7
     return made
@@ -93,6 +93,16 @@ def test_a_lifecycle_node_that_events_bring_up(problems: list[dict[str, Any]]) -
     assert problems == []
 
 
+def test_a_lifecycle_node_that_events_bring_down() -> None:
+    """By a command, since it is brought up as part of the graph."""
+    node = said("LifecycleNode", package="p", executable="e", name="n", namespace="a/")
+    whole = [node, change(node, 3), said("TimerAction", period=1.0, actions=[change(node, 4)]), change(node, 7)]
+    number_targets(whole)
+    _, timer, command = actions(whole)
+    assert timer["timer"]["children"][0]["executable"]["cmd"] == ["ros2", "lifecycle", "set", "/a/n", "deactivate"]
+    assert command["executable"]["cmd"][-1] == "shutdown"
+
+
 def test_a_handler_before_what_it_waits_for() -> None:
     """It is described after it; one that stands behind it, where it stands."""
     first, last = said("Node", package="p", executable="first"), said("LogInfo", msg="last")
@@ -109,7 +119,7 @@ def test_a_handler_before_what_it_waits_for() -> None:
 @pytest.mark.parametrize(
     ("made", "told"),
     [
-        (lambda node: [node, change(node, 5)], "EmitEvent has no words in a graph file"),
+        (lambda node: [node, change(node, 99)], "EmitEvent has no words in a graph file"),
         (lambda node: [change(None, 1)], "EmitEvent has no words in a graph file"),
         (
             lambda node: [node, change(node, 1), on_state(node, "active")],

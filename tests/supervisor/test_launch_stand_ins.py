@@ -15,7 +15,7 @@ from graphflow.supervisor.launch_stand_ins import RECORDING, Context, Said, Stan
 def nothing_is_known() -> Iterator[None]:
     """What a file is about to be started with is forgotten."""
     yield
-    RECORDING.values, RECORDING.defaults = None, {}
+    RECORDING.values, RECORDING.defaults, RECORDING.needed = None, {}, set()
 
 
 def said(name: str, *args: object, **kwargs: object) -> Said:
@@ -49,6 +49,9 @@ def test_values_are_known_when_a_file_is_started() -> None:
     assert said("IfCondition", said("PythonExpression", [x, " > 3"])).evaluate(Context())
     assert not said("UnlessCondition", "true").evaluate(Context())
     assert said("LaunchConfigurationEquals", "x", "4").evaluate(Context())
+    said("DeclareLaunchArgument", "w")
+    with pytest.raises(SubstitutionError, match="'w' has no default; give w:=VALUE"):
+        said("LaunchConfiguration", "w").perform(Context())
     with pytest.raises(SubstitutionError, match="there is no argument 'z'"):
         said("LaunchConfiguration", "z").perform(Context())
     assert [as_text(value) for value in ("True", True, 2.5)] == ["True", "true", "2.5"]
@@ -72,3 +75,10 @@ def test_folders_of_packages(tmp_path: Path) -> None:
     assert share.find("robot") == "$(find-pkg-share robot)"
     RECORDING.values = {}
     assert (share.find("robot"), share.perform()) == (str(tmp_path), str(tmp_path))
+
+
+def test_substitutions_in_words_of_others() -> None:
+    """They keep their own quotes: they are made first."""
+    same = said("EqualsSubstitution", said("LaunchConfiguration", "x"), "it's")
+    chosen = said("IfElseSubstitution", same, if_value=["a ", said("LaunchConfiguration", "y")], else_value="b c")
+    assert text(chosen) == """$(if '$(equals '$(var x)' 'it'"'"'s')' 'a $(var y)' 'b c')"""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -56,3 +57,15 @@ def test_a_program_that_fails(text: str, message: str, tmp_path: Path, monkeypat
     with pytest.raises(SubstitutionError) as caught:
         apply(text, tmp_path)
     assert message in str(caught.value)
+
+
+def test_a_program_that_asks_where_a_package_is(tmp_path: Path) -> None:
+    """As xacro does; of its complaint the line that says what is wrong is told."""
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm" / "package.xml").write_text("<package><name>arm</name></package>")
+    asks = "from ament_index_python import get_package_share_directory as f; print(f('%s'))"
+    (tmp_path / "ask.py").write_text(asks % "arm")
+    assert Path(apply(f"$(command '{sys.executable} ask.py')", tmp_path).strip()).name == "arm"
+    (tmp_path / "ask.py").write_text("import sys; sys.exit('error: no such file\\nwhen processing it')")
+    with pytest.raises(SubstitutionError, match=r"exit code 1: error: no such file$"):
+        apply(f"$(command '{sys.executable} ask.py')", tmp_path)

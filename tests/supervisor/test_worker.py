@@ -86,6 +86,15 @@ async def test_a_node_as_planned(graph: Graph) -> None:
     assert [m.data for m in heard] == ["Hi: 1", "Hi: 2"]
 
 
+async def test_parameters_of_launch_files_that_a_node_does_not_have(graph: Graph, caplog: Any) -> None:
+    """They are left out, and told where nothing else would have told them."""
+    params = {"use_sim_time": Setting(False, PLACE, True, True), "raet": Setting(1, PLACE, True, True)}
+    node = make_node(planned(params=params), PLACE.file)
+    assert isinstance(node, Talker)
+    told = "graph.yaml:2:3: there is no parameter 'raet'; it is left out; did you mean 'rate'?"
+    assert caplog.messages == [told]
+
+
 @pytest.mark.parametrize(("level", "number"), [("debug", 10), ("error", 40), ("", 0)])
 def test_the_level_of_its_log(level: str, number: int) -> None:
     """As the plan says, and the process's own where it says nothing."""

@@ -92,8 +92,9 @@ class BufferCore:
         Raises:
             TransformException: One of its kinds says why there is none.
         """
-        _check(target_frame, "target_frame")
-        _check(source_frame, "source_frame")
+        if target_frame != source_frame:
+            _check(target_frame, "target_frame")
+            _check(source_frame, "source_frame")
         with self._graphflow_lock:
             pose, stamp = self._graphflow_frames.find(target_frame, source_frame, nanoseconds(time))
         return message(pose, target_frame, source_frame, stamp)

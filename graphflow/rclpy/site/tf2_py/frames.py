@@ -120,6 +120,8 @@ class Frames:
         Raises:
             LookupException, ConnectivityException, ExtrapolationException: There is none.
         """
+        if target == source:  # where every frame is, also one that nobody has heard of
+            return IDENTITY, stamp or (self.latest_common(target, source) if self.has(target) else 0)
         for frame, role in ((target, "target_frame"), (source, "source_frame")):
             if not self.has(frame):
                 raise LookupException(f'"{frame}" passed to lookupTransform argument {role} does not exist. ')

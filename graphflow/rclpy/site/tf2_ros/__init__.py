@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
 from tf2_py import (
     BufferCore,
     ConnectivityException,
@@ -40,11 +42,13 @@ __all__ = [
     "NotImplementedException",
     "Stamped",
     "StaticTransformBroadcaster",
+    "TFMessage",
     "TimeoutException",
     "TransformBroadcaster",
     "TransformException",
     "TransformListener",
     "TransformRegistration",
+    "TransformStamped",
     "TypeException",
     "convert",
 ]

@@ -84,5 +84,7 @@ def test_names_that_are_asked_for_are_checked() -> None:
         core.lookup_transform_core("/odom", "base", Time())
     with pytest.raises(InvalidArgumentException, match="cannot be empty"):
         core.lookup_transform_core("odom", "", Time())
+    assert core.lookup_transform_core("moon", "moon", Time()).transform.rotation.w == 1.0  # whatever that is
+    assert core.can_transform_core("", "", Time()) == (True, "")
     with pytest.raises(LookupException):
         core.lookup_transform_core("odom", "bsae", Time())

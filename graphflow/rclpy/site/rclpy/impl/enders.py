@@ -9,15 +9,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from graphflow.deadlock.syntax import FunctionNode, syntax_of
+from graphflow.deadlock.syntax import FunctionNode, Syntax, syntax_of
 from graphflow.deadlock.user_code import is_users
 from graphflow.deadlock.uses import is_own
 from rclpy.task import Future
 
 _WAYS = ("cancel", "set_result", "set_exception", "remove_pending_request")
 _LIBRARIES = {"site-packages", "dist-packages"}
-_OTHERS = ("create_timer", "create_rate", "Timer")
-"""What makes things that can be cancelled, too."""
+_OTHERS = ("create_timer", "create_rate", "Timer", "Future")
+"""The ends of names of what makes things that can be cancelled or set, and are not the future of an answer."""
 
 
 class _Ending(NamedTuple):
@@ -77,26 +77,34 @@ def _endings(file: str) -> list[_Ending]:
         syntax = syntax_of(file)
     except (OSError, SyntaxError, ValueError):  # no source to be read: who knows
         return [_Ending()]
-    return list(_endings_in(syntax.parts))
+    return list(_endings_in(syntax))
 
 
-def _endings_in(parts: Iterable[tuple[ast.AST, list[ast.AST]]]) -> Iterator[_Ending]:
-    for node, parents in parts:
+def _endings_in(syntax: Syntax) -> Iterator[_Ending]:
+    for node, parents in syntax.parts:
         if isinstance(node, ast.Attribute) and node.attr in _WAYS:
             owner = node.value
             within = next((parent for parent in parents if isinstance(parent, ast.ClassDef)), None)
             cls = within.name if within is not None else ""
             if isinstance(owner, ast.Attribute) and is_own(owner):
-                yield _Ending(owner.attr, cls)
-            elif not (isinstance(owner, ast.Name) and _is_timer(owner.id, parents)):
-                yield _Ending("", cls)
+                if not _is_another(owner, [syntax.module]):
+                    yield _Ending(owner.attr, cls)
+            else:
+                functions = [parent for parent in parents if isinstance(parent, FunctionNode)]
+                if not (isinstance(owner, ast.Name) and _is_another(owner, functions or [syntax.module])):
+                    yield _Ending("", cls)
 
 
-def _is_timer(name: str, parents: list[ast.AST]) -> bool:
-    """Whether a local name is a timer's: by what it is called, or by what makes it."""
-    functions = [parent for parent in parents if isinstance(parent, FunctionNode)] or parents[:1]
-    made = (n for parent in functions for n in ast.walk(parent) if isinstance(n, ast.Assign))
-    values = [n.value for n in made if any(isinstance(t, ast.Name) and t.id == name for t in n.targets)]
+def _is_another(owner: ast.Name | ast.Attribute, scopes: Iterable[ast.AST]) -> bool:
+    """Whether a name or an attribute is no answer's future: by what makes it, or else by what it is called."""
+    word = ast.unparse(owner)
+    made = (n for scope in scopes for n in ast.walk(scope) if isinstance(n, ast.Assign | ast.AnnAssign) and n.value)
+    values = [
+        n.value
+        for n in made
+        if word in map(ast.unparse, n.targets if isinstance(n, ast.Assign) else [n.target])
+        and not (isinstance(n.value, ast.Constant) and n.value.value is None)
+    ]
     if not values:
-        return name.lower().endswith("timer")
+        return isinstance(owner, ast.Name) and owner.id.lower().endswith("timer")
     return all(isinstance(v, ast.Call) and ast.unparse(v.func).endswith(_OTHERS) for v in values)

@@ -45,6 +45,9 @@ def load(tmp_path: Path, request: pytest.FixtureRequest) -> Any:
         ("timer.cancel()", False),
         ("t = self.create_timer(1, print); t.cancel()", False),
         ("t = self.make(); t.cancel()", True),
+        ("done = Future(); done.set_result(1)", False),
+        ("self.late: Timer = self.create_timer(1, print); self.late.cancel()", False),
+        ("self.late = None; self.late = self.client.call_async(given); self.late.cancel()", True),
         ("given.done()", False),
     ],
 )
