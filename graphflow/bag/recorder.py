@@ -94,7 +94,9 @@ class Recorder:
         self._waiting = 0
         """Bytes in the queue."""
         self._work = threading.Condition()
-        self._is_ending = self._is_writing_snapshot = self._is_splitting = False
+        self._is_ending = self._is_writing_snapshot = False
+        self._split_after: int | None = None
+        """How many of those in the queue are to be in the old file, where a new one is asked for."""
         self._tasks: set[asyncio.Task[None]] = set()
         self._thread = threading.Thread(target=self._write, name="graphflow-recorder", daemon=True)
 
@@ -154,9 +156,9 @@ class Recorder:
     # commands
 
     def split(self) -> None:
-        """Go on in a new file."""
+        """Go on in a new file; what has come before is in the old one."""
         with self._work:
-            self._is_splitting = True
+            self._split_after = len(self._queue)
             self._work.notify()
 
     def take_snapshot(self) -> bool:
@@ -302,19 +304,21 @@ class Recorder:
         with self._work:
             if not (self._queue and not self._is_snapshot) and not self._is_ending:
                 self._work.wait(FLUSH_EVERY)
-            is_ending, is_splitting = self._is_ending, self._is_splitting
+            is_ending, split_after = self._is_ending, self._split_after
             topics, self._new = self._new, []
             batch: list[Record] = []
             if not self._is_snapshot or self._is_writing_snapshot:
                 batch = list(self._queue)
                 self._queue.clear()
                 self._waiting = 0
-            self._is_splitting = self._is_writing_snapshot = False
-        if is_splitting:
-            self._writer.split()
+            self._split_after, self._is_writing_snapshot = None, False
         for topic in topics:
             self._writer.declare(topic)
-        for record in batch:
+        if split_after is not None:
+            for record in batch[:split_after]:
+                self._writer.add(record)
+            self._writer.split()
+        for record in batch[split_after:]:
             self._writer.add(record)
         self._writer.keep_up()
         return not is_ending

@@ -266,12 +266,13 @@ async def test_snapshots(graph: Graph, session: Session) -> None:
 
 
 async def test_splitting(graph: Graph, session: Session) -> None:
-    """What comes after it is in a new file."""
+    """What comes after it is in a new file, and what came before in the old one, written already or not."""
     publisher = await speaker(graph)
     recorder = await session.start()
-    publisher.publish(String(data="one"))
-    await session.until(lambda: recorder.recorded == 1)
-    recorder.split()
+    with recorder._work:  # so that nothing is written yet
+        publisher.publish(String(data="one"))
+        await session.until(lambda: recorder.recorded == 1)
+        recorder.split()
     await session.until(lambda: len(list(session.folder.glob("*.mcap"))) == 2)
     publisher.publish(String(data="two"))
     await session.until(lambda: recorder.recorded == 2)
