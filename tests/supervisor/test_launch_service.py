@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 PROGRAM = """
@@ -51,6 +52,7 @@ def test_a_program_starts_what_it_describes(machine: Machine, tmp_path: Path) ->
     assert output.read_text().endswith("it has ended with 0\n")
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
 def test_what_it_has_started_ends_with_the_program(machine: Machine, tmp_path: Path, number: signal.Signals) -> None:
