@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.cli.launch import _files_below
 from graphflow.graph.resolve import load
 from tests.conftest import PROGRAMS, Machine
 
@@ -107,3 +108,12 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     assert "'loud':" in machine.look("launch", "-s", "my_robot", "all.launch.py", cwd=tmp_path)
     assert "2 nodes" in machine.look("check", "my_robot/launch/all.launch.py", cwd=tmp_path)
     assert "[PACKAGE] FILE" in machine.look("launch", "--help")
+
+
+def test_a_folder_with_a_link_to_itself_is_searched_once(tmp_path: Path) -> None:
+    """Also behind links to others."""
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    (tmp_path / "a" / "b" / "f.launch.py").touch()
+    (tmp_path / "a" / "round").symlink_to(tmp_path)
+    (tmp_path / "elsewhere").symlink_to(tmp_path / "a" / "b")
+    assert [file.name for file in _files_below(tmp_path)] == ["f.launch.py"]

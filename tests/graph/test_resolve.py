@@ -18,6 +18,7 @@ from graphflow.graph.check import check
 from graphflow.graph.order import find_cycle
 from graphflow.graph.plan import Plan, Rule, Setting
 from graphflow.graph.resolve import load, resolve
+from nodes.turtlesim import TurtleSim
 from tests.cases import count
 
 ENV = {"USER": "ada"}
@@ -761,6 +762,8 @@ def test_what_a_node_does_not_have_is_let_pass_in_launch_files(lamps: Path) -> N
     [node] = load(lamps / "f.launch.yaml").nodes
     assert (node.params["no_such"].is_optional, node.params["no_such"].is_unchecked) == (True, True)
     assert [(rule.is_optional, rule.is_unchecked) for rule in node.remaps] == [(True, True)]
+    plan = load(lamps / "f.launch.yaml")
+    assert check(plan, {node.class_path: TurtleSim.interface()}) == []
 
 
 def test_executables_that_are_only_known_when_a_launch_file_starts(lamps: Path) -> None:

@@ -142,3 +142,9 @@ def test_an_error_in_what_follows_an_answer_leaves_spin(node: Node, spin: Spinne
     client.send_goal_async(Fibonacci.Goal()).add_done_callback(follow)
     with pytest.raises(LookupError, match="in what follows"):
         spin(lambda: False)
+
+
+def test_feedback_is_asked_for_in_order(node: Node) -> None:
+    """With answers, which come by another way; what is not waited for with them is not."""
+    client = ActionClient(node, Fibonacci, "count")
+    assert (client._graphflow_feedback.in_order, client._graphflow_status.in_order) == (True, False)
