@@ -17,9 +17,10 @@ import sys
 import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Iterable, Iterator
-from types import CodeType, FrameType, FunctionType, MethodType
+from types import CodeType, FunctionType, MethodType
 from typing import Any, Literal, NamedTuple
 
+from graphflow.deadlock.frames import Frame, awaited, code_of, suspended
 from graphflow.deadlock.user_code import is_users
 
 FUTURE = ("set_result", "set_exception", "cancel")
@@ -67,24 +68,13 @@ _EXITS = ("__aexit__", "__exit__")
 
 
 def coroutines(task: Any) -> Iterator[Any]:
-    """The coroutine of a suspended task and those that it awaits, the outermost first.
-
-    They end before an asynchronous generator: its loops can be left by who iterates over it, and so tell nothing.
-    """
-    coroutine = task.get_coro()
-    while coroutine is not None:
-        yield coroutine
-        coroutine = getattr(coroutine, "cr_await", None) or getattr(coroutine, "gi_yieldfrom", None)
+    """The coroutine of a suspended task and those that it awaits, the outermost first."""
+    return awaited(task.get_coro())
 
 
-def frame_of(coroutine: Any) -> FrameType | None:
-    """Where a coroutine is suspended; None for one that is running or has ended."""
-    return getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
-
-
-def frames_of(task: Any) -> list[FrameType]:
+def frames_of(task: Any) -> list[Frame]:
     """The frames of a suspended task, the outermost first."""
-    return [frame for frame in map(frame_of, coroutines(task)) if frame is not None]
+    return [frame for frame in map(suspended, coroutines(task)) if frame is not None]
 
 
 def entered(coroutine: Any) -> Iterator[Any]:
@@ -105,9 +95,9 @@ def files_entered(coroutine: Any) -> Iterator[str]:
     """The source files of what a suspended coroutine has entered by `with`; empty for what is not known."""
     for context in entered(coroutine):
         generator = getattr(context, "gen", None)  # of contextlib's decorators
-        frame = getattr(generator, "ag_frame", None) or getattr(generator, "gi_frame", None)
-        if frame is not None:
-            yield frame.f_code.co_filename
+        code = code_of(generator)
+        if code is not None:
+            yield code.co_filename
         elif isinstance(context, (contextlib.ExitStack, contextlib.AsyncExitStack)):
             yield ""
         else:
@@ -121,16 +111,6 @@ def may_give_up(task: Any) -> bool:
 
 def _is_method_of(function: FunctionType, thing: object) -> bool:
     return any(vars(cls).get(function.__name__) is function for cls in type(thing).__mro__)
-
-
-def stack_of(thread: int) -> list[FrameType]:
-    """The frames of a running thread, the outermost first."""
-    frames: list[FrameType] = []
-    frame = sys._current_frames().get(thread)
-    while frame is not None:
-        frames.append(frame)
-        frame = frame.f_back
-    return frames[::-1]
 
 
 def waiter_of(task: Any) -> Any:
@@ -152,7 +132,7 @@ class JointWait(NamedTuple):
     """Whether an error in one of them ends the wait."""
 
 
-def joint_wait(frame: FrameType) -> JointWait | None:
+def joint_wait(frame: Frame) -> JointWait | None:
     """The tasks that one of asyncio's primitives waits for, if this is the frame of one."""
     code, names = frame.f_code, frame.f_locals
     if code in _TASK_GROUP_EXITS:
@@ -212,7 +192,7 @@ def _callbacks(future: Any) -> Iterator[Any]:
 
 def deadlines(coroutine: Any) -> Iterator[float]:
     """When a suspended coroutine times out by asyncio's means, in seconds of its loop's clock."""
-    frame = frame_of(coroutine)
+    frame = suspended(coroutine)
     if frame is not None and frame.f_code in (_WAIT, _WAIT_FOR):
         when = getattr(frame.f_locals.get("timeout_handle"), "when", None)  # uvloop's has one too
         if when is not None:
@@ -222,7 +202,7 @@ def deadlines(coroutine: Any) -> Iterator[float]:
             yield due
 
 
-def sent_to_loop(frame: FrameType) -> Any:
+def sent_to_loop(frame: Frame) -> Any:
     """The task of the coroutine that a thread has sent to a loop and waits for in this frame; None for no such wait."""
     if frame.f_code is not concurrent.futures.Future.result.__code__:
         return None
@@ -240,7 +220,7 @@ class ObjectWait(NamedTuple):
     """Whether a thread gives up the wait after some time."""
 
 
-def object_wait(frame: FrameType) -> ObjectWait | None:
+def object_wait(frame: Frame) -> ObjectWait | None:
     """What one of asyncio's or threading's primitives waits for, if this is the frame of one."""
     endings = _WAITS.get(frame.f_code)
     if endings is None:
@@ -273,9 +253,8 @@ def times_inside(task: Any, lock: Any) -> int:
     """How often a suspended task has entered a lock, or a condition that has it, by `with`, and is inside now."""
     chain = list(coroutines(task))
     entries = sum(is_inside(context, lock) for coroutine in chain for context in entered(coroutine))
-    outside = [
-        f.f_locals["self"] for f in map(frame_of, chain) if f is not None and f.f_code in (_CONDITION_WAIT, _ENTER)
-    ]
+    inside = [frame for frame in map(suspended, chain) if frame is not None]
+    outside = [frame.f_locals["self"] for frame in inside if frame.f_code in (_CONDITION_WAIT, _ENTER)]
     return entries - sum(is_inside(context, lock) for context in outside)
 
 

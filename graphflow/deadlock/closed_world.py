@@ -17,7 +17,6 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from types import FrameType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import DEEDS, ENDINGS, awaited_future, is_inside, object_wait
@@ -33,6 +32,7 @@ from graphflow.deadlock.conditions import (
     arrays,
     makes_task,
 )
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new, messages
 from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
@@ -137,7 +137,7 @@ def handler_of(runner: Runner) -> str:
 class _Spot:
     """A frame of one of the node's methods."""
 
-    frame: FrameType
+    frame: Frame
     function: Function
 
     @cached_property
@@ -158,7 +158,7 @@ class Question:
     owner = ""
     """The attribute by which the node holds the object in which it waits; empty for the node itself."""
 
-    def __init__(self, frames: list[FrameType], node: Subject, instance: object = None) -> None:
+    def __init__(self, frames: list[Frame], node: Subject, instance: object = None) -> None:
         self._node, self._instance = node, node.instance if instance is None else instance
         self._source = source_of(self._instance)
         self._waits = [wait for wait in map(object_wait, frames) if wait is not None]
@@ -362,7 +362,7 @@ class Question:
         return handlers_above(what, methods, self._node)
 
 
-def _pause(loop: Loop, frame: FrameType) -> Pause | None:
+def _pause(loop: Loop, frame: Frame) -> Pause | None:
     """Where a loop pauses, if it does so in one line."""
     calls = [node for node in ast.walk(loop) if isinstance(node, ast.Call)]
     lines = {call.lineno for call in calls if ast.unparse(call.func).split(".")[-1] == "sleep"}
@@ -390,7 +390,7 @@ def method_of(task: Any) -> str:
 _LIBRARIES = ("graphflow.", "rclpy.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")
 
 
-def is_library(frame: FrameType) -> bool:
+def is_library(frame: Frame) -> bool:
     """Whether a frame is of code that sooner or later yields to the handler's, and does nothing else."""
     name = f"{frame.f_globals.get('__name__', '')}."
     return name.startswith(_LIBRARIES)

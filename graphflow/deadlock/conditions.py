@@ -17,10 +17,11 @@ import threading
 from collections import deque
 from collections.abc import Mapping, Sequence
 from enum import Enum
-from types import FrameType, MappingProxyType, ModuleType, NoneType
+from types import MappingProxyType, ModuleType, NoneType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.asyncio_frames import FUTURE
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.fresh import messages
 from graphflow.deadlock.source import ClassSource, Unknown
 from graphflow.deadlock.syntax import FunctionNode, walk
@@ -123,7 +124,7 @@ class _Scope(NamedTuple):
 class LoopConditions:
     """Which attributes of the node decide whether a loop ends."""
 
-    def __init__(self, loop: Loop, function: FunctionNode, frame: FrameType, source: ClassSource, node: object) -> None:
+    def __init__(self, loop: Loop, function: FunctionNode, frame: Frame, source: ClassSource, node: object) -> None:
         self._loop, self._source, self._node = loop, source, node
         self._found: set[str] = set()
         self.names: set[str] = set()

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
-from types import FrameType
 from typing import Any
 
 from graphflow.deadlock.asyncio_frames import is_inside, object_wait
 from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import ClassSource, Unknown, source_of
 from graphflow.deadlock.user_code import is_users, is_users_object
@@ -21,7 +21,7 @@ _MADE_BY = {"__init__", "__post_init__"}
 """Methods that make an object."""
 
 
-def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
+def setters(frames: list[Frame], waiter: Any, node: Subject, *, is_bounded: bool = False) -> Setters | None:
     """What can end a wait; None when that is not known.
 
     Args:
@@ -40,7 +40,7 @@ def setters(frames: list[FrameType], waiter: Any, node: Subject, *, is_bounded: 
         return None
 
 
-def _question(frames: list[FrameType], node: Subject) -> Question:
+def _question(frames: list[Frame], node: Subject) -> Question:
     """What ends a wait in a method of the node, or of an object that it holds and knows alone."""
     for frame in reversed(frames):
         innermost = frame.f_locals.get("self")
@@ -59,7 +59,7 @@ def _question(frames: list[FrameType], node: Subject) -> Question:
 class HeldQuestion(Question):
     """What ends a wait in an object that the node holds in one attribute, made by the node, and given to nobody."""
 
-    def __init__(self, frames: list[FrameType], node: Subject, owner: str, held: object) -> None:
+    def __init__(self, frames: list[Frame], node: Subject, owner: str, held: object) -> None:
         self.owner = owner
         super().__init__(frames, node, held)
         self._looked: set[str] = set()

@@ -13,13 +13,13 @@ import threading
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
-from types import FrameType
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.deadlock import asyncio_frames as aio
 from graphflow.deadlock.asyncio_frames import current_task, frames_of, waiter_of
 from graphflow.deadlock.closed_world import Setters, cancellers, entries_of, handler_in, handler_of, method_of
+from graphflow.deadlock.frames import Frame, stack_of
 from graphflow.deadlock.held import setters
 from graphflow.deadlock.openings import start_of, unopened
 from graphflow.deadlock.protocols import Subject, Surroundings
@@ -322,13 +322,13 @@ class _Look:
         conditions = tuple(self._of_future(f, way) for f in wait.tasks if not f.done())
         return All(conditions) if wait.wants == "all" else AnyOf(conditions)
 
-    def _frames_of(self, task: Any) -> list[FrameType]:
+    def _frames_of(self, task: Any) -> list[Frame]:
         """The frames of a task, the outermost first; of one that waits for a thread, the thread's too."""
         frames = frames_of(task)
         waiter = waiter_of(task)
         thread = self._ledger.threads.get(aio.shielded(waiter) or waiter)
         if thread is not None and thread.ident is not None:
-            frames += aio.stack_of(thread.ident)
+            frames += stack_of(thread.ident)
         return frames
 
     def _limit_of(self, task: Any) -> int | None:
@@ -454,7 +454,7 @@ class _Look:
         return self._add_blocker(node, runner, run, item)
 
     def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Any) -> str:
-        stack = aio.stack_of(self._ledger.thread)
+        stack = stack_of(self._ledger.thread)
         id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
         way = _Way(node, run, tuple(stack))
         self._pause = None
@@ -489,7 +489,7 @@ class _Way:
     node: Subject
     root: Any
     """The activity."""
-    frames: tuple[FrameType, ...] = ()
+    frames: tuple[Frame, ...] = ()
     """The frames of all of them, the outermost first."""
     tasks: frozenset[int] = frozenset()
     """The ids of those tasks."""

@@ -162,7 +162,7 @@ class ClassSource:
             self._others |= {item.name: item for item in syntax.module.body if isinstance(item, FunctionNode)}
         written = {function for function in map(_code_of, vars(cls).values()) if function is not None}
         if dataclasses.is_dataclass(cls):  # which makes methods that do what the fields say
-            written = {code for code in written if code.co_filename != "<string>"}
+            written = {code for code in written if code.co_filename not in ("<string>", dataclasses.__file__)}
         self._is_known &= not _INTERCEPTING & vars(cls).keys()
         self._is_known &= all(code.co_filename == file for code in written)  # none put there by other code
         self._is_known &= all(code.co_firstlineno in syntax.method_lines for code in written)

@@ -7,9 +7,10 @@ import sys
 import sysconfig
 from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePath
-from types import FrameType, TracebackType
+from types import TracebackType
 from typing import NamedTuple
 
+from graphflow.deadlock.frames import Frame
 from graphflow.errors import Place
 
 _OURS = str(Path(__file__).parents[1])
@@ -43,7 +44,7 @@ def is_ours(file: str) -> bool:
     return file.startswith(_OURS) and not file.startswith(_DEMOS)
 
 
-def innermost(frames: Iterable[FrameType]) -> FrameType | None:
+def innermost(frames: Iterable[Frame]) -> Frame | None:
     """The last of the frames that is the user's own code; the outermost comes first."""
     found = None
     for frame in frames:
@@ -55,7 +56,7 @@ def innermost(frames: Iterable[FrameType]) -> FrameType | None:
 class Pause(NamedTuple):
     """Where a loop that polls pauses. A thread that runs it may be seen anywhere in it, but is there nearly always."""
 
-    frame: FrameType
+    frame: Frame
     line: int
 
 
@@ -71,7 +72,7 @@ class Where(NamedTuple):
     """The line by which the node's method came to wait elsewhere: `drive.py:12 in tick`; empty if it waits itself."""
 
 
-def where(frames: Sequence[FrameType], instance: object, pause: Pause | None = None) -> Where:
+def where(frames: Sequence[Frame], instance: object, pause: Pause | None = None) -> Where:
     """Where code waits whose frames, the outermost first, these are.
 
     Args:
@@ -89,7 +90,7 @@ def where(frames: Sequence[FrameType], instance: object, pause: Pause | None = N
     return Where(place, frame.f_code.co_name, is_async, _called_in(frames, instance))
 
 
-def _called_in(frames: Iterable[FrameType], instance: object) -> str:
+def _called_in(frames: Iterable[Frame], instance: object) -> str:
     own = [frame for frame in frames if is_users(frame.f_code.co_filename)]
     of_it = [frame for frame in own if frame.f_locals.get("self") is instance]
     if not of_it or of_it[0] is own[-1]:

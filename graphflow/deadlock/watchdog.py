@@ -13,7 +13,7 @@ import time
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 
-from graphflow.deadlock.asyncio_frames import stack_of
+from graphflow.deadlock.frames import stack_of
 from graphflow.deadlock.user_code import is_ours, is_users
 
 logger = logging.getLogger("graphflow")

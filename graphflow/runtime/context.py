@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-import threading
 from collections.abc import Callable
+from contextlib import suppress
 from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -25,6 +25,7 @@ from graphflow.runtime.handover import Handover
 from graphflow.runtime.reasons import Reasons
 from graphflow.transport.base import Closable, Session
 from graphflow.transport.loop import in_thread
+from graphflow.transport.threads import THREADS
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, watch_key
 from graphflow.wire.profile import advice, wire_profile
@@ -37,6 +38,8 @@ T = TypeVar("T")
 
 logger = logging.getLogger("graphflow")
 
+OFFLOAD_LIMIT = 32
+"""Functions that `offload` runs in threads at a time; others wait for one of them to end."""
 LINK_GRACE = 3.0
 """Seconds that other machines have to answer before this one goes on without them."""
 
@@ -79,6 +82,7 @@ class Context:
         """What else runs callbacks of this process, for the search for deadlocks."""
         self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
+        self._offloads = asyncio.Semaphore(OFFLOAD_LIMIT)
         self.search = Search(self, deadlock)
         self._inspection = Inspection(self, self.search)
         self._ids = itertools.count()
@@ -185,20 +189,27 @@ class Context:
         future: asyncio.Future[T] = self.loop.create_future()
         context = copy_context()
 
-        def work() -> None:
-            try:
-                result, error = context.run(fn, *args), None
-            except BaseException as raised:
-                result, error = None, raised
-            if not self.loop.is_closed():
+        def done(result: T | None, error: BaseException | None) -> None:
+            with suppress(RuntimeError):  # the loop has been closed meanwhile
                 self.loop.call_soon_threadsafe(_settle, future, result, error)
 
-        thread = threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True)
+        name = f"graphflow-{getattr(fn, '__name__', 'thread')}"
+        thread = THREADS.run(lambda: context.run(fn, *args), done, name)
         with self.ledger.thread_work(future, thread):
-            thread.start()
             if stays:
                 await _seen_through(future)
             return await future
+
+    async def offload(self, fn: Callable[..., T], *args: Any) -> T:
+        """Run `fn(*args)` as `in_thread` does, when fewer than `OFFLOAD_LIMIT` others are running."""
+        if self._offloads.locked():
+            logger.warning(
+                "offload: %s waits, since %d offloaded functions are running",
+                getattr(fn, "__name__", fn),
+                OFFLOAD_LIMIT,
+            )
+        async with self._offloads:
+            return await self.in_thread(fn, *args)
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
         """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""

@@ -401,8 +401,11 @@ class Node(SpeaksRos):
         self.parameters.undeclare(name)
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
-        """Run `fn(*args)` in a worker thread, for work that would block the loop. It cannot be cancelled."""
-        return await self.context.in_thread(fn, *args)
+        """Run `fn(*args)` in a worker thread, for work that would block the loop. It cannot be cancelled.
+
+        At most 32 run at a time, those of all nodes of the process together; others wait their turn.
+        """
+        return await self.context.offload(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
         """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""

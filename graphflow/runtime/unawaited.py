@@ -6,10 +6,10 @@ import linecache
 import logging
 import sys
 import warnings
-from collections.abc import Coroutine, Iterator
-from types import FrameType
+from collections.abc import Coroutine
 from typing import Any
 
+from graphflow.deadlock.frames import stack_from
 from graphflow.deadlock.user_code import innermost, is_users
 
 logger = logging.getLogger("graphflow")
@@ -50,16 +50,9 @@ def _origin(coroutine: Any) -> tuple[str, str]:
         if is_users(file):
             return f"{file}:{line}", linecache.getline(file, line).strip()
     # A call whose result nobody keeps ends on the line on which it was made.
-    frame = innermost(reversed(list(_frames())))
+    frame = innermost(stack_from(sys._getframe(2)))
     if frame is None:
         return "", ""
     text = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
     name = getattr(coroutine, "__name__", "")
     return (f"{frame.f_code.co_filename}:{frame.f_lineno}", text) if f"{name}(" in text else ("", "")
-
-
-def _frames() -> Iterator[FrameType]:
-    frame: FrameType | None = sys._getframe(2)
-    while frame is not None:
-        yield frame
-        frame = frame.f_back

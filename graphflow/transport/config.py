@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
 import time
@@ -11,7 +12,9 @@ from functools import cache
 import zenoh
 
 from graphflow.errors import TransportError
+from graphflow.transport.threads import THREADS
 
+logger = logging.getLogger("graphflow")
 CONNECT_VARIABLE = "GRAPHFLOW_CONNECT"
 """Endpoints of routers on other machines, separated by spaces."""
 PROFILE_VARIABLE = "GRAPHFLOW_NET"
@@ -105,13 +108,22 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
         raise TransportError(str(error).partition(" at /")[0]) from None
 
 
-def close_session(session: zenoh.Session) -> None:
-    """Close a session; give up after `CLOSE_LIMIT` seconds, since a stuck peer can hold it."""
-    closer = threading.Thread(target=session.close, name="zenoh-close", daemon=True)
-    closer.start()
-    closer.join(CLOSE_LIMIT)
+def close_session(session: zenoh.Session) -> bool:
+    """Close a session, and say whether it is closed; give up after `CLOSE_LIMIT` s, since a stuck peer can hold it."""
+    ended = threading.Event()
+    errors: list[BaseException] = []
+
+    def done(_: None, error: BaseException | None) -> None:
+        errors.extend([error] if error is not None else [])
+        ended.set()
+
+    THREADS.run(session.close, done, "zenoh-close")
+    is_closed = ended.wait(CLOSE_LIMIT)
     if session in _to_close:
         _to_close.remove(session)
+    if errors:
+        logger.debug("closing a session: %s", errors[0])
+    return is_closed
 
 
 _to_close: list[zenoh.Session] = []
@@ -138,6 +150,7 @@ def before_closing_at_exit(what: Callable[[], None]) -> None:
 def _wait_for_main() -> None:
     global _closer
     if _closer is None:
+        THREADS.reserve()
         _closer = threading.Thread(target=_close_after_main, name="graphflow-exit", daemon=False)
         _closer.start()
 
@@ -148,8 +161,8 @@ def _close_after_main() -> None:
         _before_closing.pop()()
     while _to_close:
         session = _to_close.pop()
-        if not session.is_closed():
-            close_session(session)
+        if not session.is_closed() and not close_session(session):
+            break  # the process that ends takes the others with it
     limit = time.monotonic() + CALLBACK_LIMIT
     for thread in callback_threads():
         thread.join(max(limit - time.monotonic(), 0))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import os
-import threading
 from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
 from graphflow.system import is_portable
 from graphflow.transport.malloc import keep_freed_memory
+from graphflow.transport.threads import THREADS
 
 T = TypeVar("T")
 
@@ -40,21 +41,16 @@ def run(main: Coroutine[Any, Any, T]) -> T:
         return runner.run(main)
 
 
-async def in_thread(fn: Callable[[], None]) -> None:
+async def in_thread(fn: Callable[[], object]) -> None:
     """Run `fn()` in a thread of its own and wait for its end; also while the interpreter ends, when no pool works."""
     loop = asyncio.get_running_loop()
     ended: asyncio.Future[None] = loop.create_future()
 
-    def work() -> None:
-        error: BaseException | None = None
-        try:
-            fn()
-        except BaseException as raised:
-            error = raised
-        if not loop.is_closed():
+    def done(_: object, error: BaseException | None) -> None:
+        with suppress(RuntimeError):  # the loop has been closed meanwhile
             loop.call_soon_threadsafe(_settle, ended, error)
 
-    threading.Thread(target=work, name=f"graphflow-{getattr(fn, '__name__', 'thread')}", daemon=True).start()
+    THREADS.run(fn, done, f"graphflow-{getattr(fn, '__name__', 'thread')}")
     await ended
 
 

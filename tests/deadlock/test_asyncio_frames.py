@@ -16,12 +16,12 @@ import types
 from asyncio import FIRST_COMPLETED, FIRST_EXCEPTION
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from types import FrameType
 from typing import Any, NamedTuple
 
 import pytest
 
 from graphflow.deadlock import asyncio_frames as aio
+from graphflow.deadlock.frames import Frame, stack_of
 from graphflow.executor.activity import Activity
 from graphflow.testing.clock import settle
 
@@ -109,7 +109,7 @@ async def test_an_asynchronous_generator_ends_the_chain(graphflow_runner: asynci
 
 
 async def test_an_ended_coroutine_has_no_frame(graphflow_runner: asyncio.Runner) -> None:
-    """Nor has what is no coroutine."""
+    """There is nothing to read."""
 
     async def body() -> None:
         """Be quick."""
@@ -117,9 +117,7 @@ async def test_an_ended_coroutine_has_no_frame(graphflow_runner: asyncio.Runner)
     task = asyncio.create_task(body())
     await task
 
-    assert aio.frame_of(task.get_coro()) is None
     assert aio.frames_of(task) == []
-    assert aio.frame_of(asyncio.get_running_loop().create_future()) is None
 
 
 async def test_fut_waiter(graphflow_runner: asyncio.Runner) -> None:
@@ -606,7 +604,7 @@ def test_every_known_wait_is_tried() -> None:
     assert {"clear", *aio.FUTURE} < aio.ENDINGS
 
 
-def of_code(frames: list[FrameType], code: types.CodeType) -> Iterator[aio.ObjectWait]:
+def of_code(frames: list[Frame], code: types.CodeType) -> Iterator[aio.ObjectWait]:
     """What is waited for in those frames that run a code."""
     for frame in frames:
         if frame.f_code is code:
@@ -653,29 +651,10 @@ def test_a_primitive_of_threads(name: str, timeout: float | None) -> None:
 def seen_in(thread: threading.Thread, code: types.CodeType) -> list[aio.ObjectWait]:
     """What a thread waits for, as soon as it does."""
     assert thread.ident is not None
-    while not (frames := [f for f in aio.stack_of(thread.ident) if f.f_code is code]):
+    while not (frames := [f for f in stack_of(thread.ident) if f.f_code is code]):
         assert thread.is_alive()
         time.sleep(0)  # give it its turn
     return list(of_code(frames, code))
-
-
-def test_stack_of_a_thread() -> None:
-    """`sys._current_frames` and `f_back` lead from its innermost frame outwards; of a thread unknown there is none."""
-    gate = threading.Event()
-
-    def inner() -> None:
-        gate.wait()
-
-    thread = threading.Thread(target=inner)
-    thread.start()
-    seen_in(thread, threading.Event.wait.__code__)
-    assert thread.ident is not None
-    names = [frame.f_code.co_name for frame in aio.stack_of(thread.ident)]
-    gate.set()
-    thread.join()
-
-    assert names.index("run") < names.index("inner") < names.index("wait")
-    assert aio.stack_of(-1) == []
 
 
 async def test_an_awaited_future(graphflow_runner: asyncio.Runner) -> None:

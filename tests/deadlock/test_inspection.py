@@ -141,7 +141,7 @@ async def test_a_handler_that_is_moved(graph: Graph) -> None:
         (b"[]", "TypeError", ""),
         (b'{"node": "/arm"}', "KeyError", "handler"),
         (b"\xff", "UnicodeDecodeError", ""),
-        pytest.param(b"[" * 5_000, "RecursionError", "", id="too deep"),
+        pytest.param(b"[" * 5_000, "RecursionError|JSONDecodeError", "", id="too deep"),  # the latter since 3.13
         pytest.param(b"[" * 100_000, "InvalidName", "a request of 100000 bytes names no handler", id="too long"),
     ],
 )
@@ -153,7 +153,7 @@ async def test_what_cannot_be_done(graph: Graph, payload: bytes, kind: str, word
 
     assert answer.is_error
     error = RemoteError.from_payload(answer.payload, "")
-    assert error.type == kind
+    assert error.type in kind.split("|")
     assert words in str(error)
     assert groups_of(core_of(node)) == before
 

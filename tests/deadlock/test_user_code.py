@@ -16,6 +16,7 @@ import pytest
 
 import graphflow
 from graphflow import names
+from graphflow.deadlock.frames import Frame, running
 from graphflow.deadlock.user_code import Pause, innermost, is_users, place_in, users_part, where
 from graphflow.errors import Place
 
@@ -40,14 +41,14 @@ def test_whose_file_it_is(file: str, is_own: bool) -> None:
     assert is_users(file) is is_own
 
 
-def frames_inside() -> list[FrameType]:
+def frames_inside() -> list[Frame]:
     """The stack, the outermost first, of a function that the standard library calls."""
-    found: list[FrameType] = []
+    found: list[Frame] = []
 
     def called(_: object) -> str:
         frame: FrameType | None = sys._getframe()
         while frame is not None:
-            found.insert(0, frame)
+            found.insert(0, running(frame))
             frame = frame.f_back
         return ""
 
@@ -70,12 +71,12 @@ def test_the_innermost_line_of_the_users() -> None:
 class Driver:
     """Polls, and does something else in between."""
 
-    def drive(self) -> list[FrameType]:
+    def drive(self) -> list[Frame]:
         while not (frames := self.look()):
             time.sleep(0.1)
         return frames
 
-    def look(self) -> list[FrameType]:
+    def look(self) -> list[Frame]:
         return frames_inside()
 
 
@@ -88,7 +89,7 @@ def test_where_a_loop_that_polls_is() -> None:
 
     seen = where(frames, driver)
     assert (seen.place.file, seen.function) == (__file__, "called")
-    assert seen.called == f"test_user_code.py:{first + 3} in drive"  # where it is by now
+    assert seen.called == f"test_user_code.py:{first + 1} in drive"
 
     assert where(frames, driver, Pause(loop, first + 2)) == (Place(__file__, first + 2), "drive", False, "")
     assert where(frames[:3], driver, Pause(loop, first + 2)) == where(frames[:3], driver)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from typing import Any
 
@@ -15,7 +14,7 @@ class Account:
 
 
 class Bank:
-    """Each method yields its frame, inside of a lock and outside of it."""
+    """Each method pauses inside of a lock, and outside of it."""
 
     shared = threading.Lock()
 
@@ -27,32 +26,32 @@ class Bank:
 
     def enters(self) -> Any:
         with self.first:
-            yield sys._getframe()
-        yield sys._getframe()
+            yield
+        yield
 
     def enters_part(self) -> Any:
         account = self.account
         with account.lock:
-            yield sys._getframe()
-        yield sys._getframe()
+            yield
+        yield
 
     def enters_what_all_have(self) -> Any:
         with self.shared, WHOSE:
-            yield sys._getframe()
-        yield sys._getframe()
+            yield
+        yield
 
     def acquires(self) -> Any:
         self.first.acquire()
         try:
-            yield sys._getframe()
+            yield
         finally:
             self.first.release()
-        yield sys._getframe()
+        yield
 
     def lets_go_within(self) -> Any:
         with self.loose:
             self.loose.release()
-            yield sys._getframe()
+            yield
             self.loose.acquire()
 
     def shows(self) -> Any:
@@ -61,17 +60,17 @@ class Bank:
 
     def takes_signal(self) -> Any:
         self.signal.acquire()
-        yield sys._getframe()
+        yield
 
     def gives_signal(self) -> None:
         self.signal.release()
 
     def tries(self) -> Any:
         if self.first.acquire(timeout=1.0):
-            yield sys._getframe()
+            yield
             self.first.release()
 
     def is_inside_on_one_line(self) -> Any:
         # fmt: off
-        with self.first: yield sys._getframe()  # noqa: E701 - that is the case
+        with self.first: yield  # noqa: E701 - that is the case
         # fmt: on

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from typing import Any
 
@@ -11,7 +12,9 @@ from graphflow import DeclarationError, Node, ParameterError
 from graphflow.errors import InvalidName
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import Remap
+from graphflow.runtime.context import OFFLOAD_LIMIT
 from graphflow.testing import Graph
+from graphflow.testing.clock import settle
 from graphflow.wire.liveliness import Kind
 from tests.runtime.cast import Talker
 
@@ -138,3 +141,15 @@ async def test_work_in_a_thread(graph: Graph) -> None:
     assert await node.offload(threading.get_ident) != threading.get_ident()
     with pytest.raises(ZeroDivisionError):
         await node.offload(divmod, 1, 0)
+
+
+async def test_work_in_threads_is_limited(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Who waits for a thread is told so, and gets one when another has ended."""
+    node, gate = Talker(), threading.Event()
+    await graph.start(node)
+    async with asyncio.TaskGroup() as group:
+        works = [group.create_task(node.offload(gate.wait)) for _ in range(OFFLOAD_LIMIT + 1)]
+        await settle()
+        assert "offload: wait waits, since 32 offloaded functions are running" in caplog.text
+        gate.set()
+    assert [work.result() for work in works] == [True] * len(works)

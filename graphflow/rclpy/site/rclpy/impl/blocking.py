@@ -7,9 +7,9 @@ import concurrent.futures.thread
 import sys
 import threading
 from collections.abc import Iterator
-from types import FrameType
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.frames import Frame, stack_from
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import is_users
 from rclpy.action.client import ActionClient
@@ -88,18 +88,16 @@ def limit_of(level: Level) -> float | None:
 def _worker_of(future: concurrent.futures.Future[Any]) -> int | None:
     """The thread of a pool that works for a future."""
     for thread, innermost in sys._current_frames().items():
-        frame: FrameType | None = innermost
-        while frame is not None:
+        for frame in stack_from(innermost):
             if frame.f_code.co_filename == _POOL and getattr(frame.f_locals.get("self"), "future", None) is future:
                 return thread
-            frame = frame.f_back
     return None
 
 
 # a loop that asks a future whether it is done
 
 
-def _polled(frame: FrameType) -> Future[Any] | None:
+def _polled(frame: Frame) -> Future[Any] | None:
     """The future that the innermost loop around a line asks, if that is all that ends the loop."""
     try:
         function = function_of(frame)
@@ -139,7 +137,7 @@ def _leaves(body: list[ast.stmt]) -> bool:
     return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
 
 
-def _value(expression: ast.expr, frame: FrameType) -> Future[Any] | None:
+def _value(expression: ast.expr, frame: Frame) -> Future[Any] | None:
     """The future that a name, or an attribute of one, is."""
     found: Any = None
     match expression:

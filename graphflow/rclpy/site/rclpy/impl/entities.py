@@ -7,6 +7,7 @@ from functools import partial
 from types import CellType
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.frames import Frame, awaited, suspended
 from graphflow.deadlock.source import ANSWERED
 from graphflow.deadlock.user_code import is_ours
 from graphflow.errors import ClosedError
@@ -153,11 +154,6 @@ def served(run: Run) -> str:
     return "" if found is None else found.call
 
 
-def frames_of(run: Run) -> Iterator[Any]:
+def frames_of(run: Run) -> list[Frame]:
     """The frames of a suspended run, the outermost first."""
-    coroutine = run._coroutine
-    while coroutine is not None:
-        frame = getattr(coroutine, "cr_frame", None) or getattr(coroutine, "gi_frame", None)
-        if frame is not None:
-            yield frame
-        coroutine = getattr(coroutine, "cr_await", None) or getattr(coroutine, "gi_yieldfrom", None)
+    return [frame for frame in map(suspended, awaited(run._coroutine)) if frame is not None]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 import threading
 from collections.abc import Iterable, Iterator
-from types import FrameType
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.syntax import Syntax, first_line, syntax_of, walk
 from graphflow.deadlock.user_code import is_users
@@ -23,7 +23,7 @@ class Entering(NamedTuple):
     """As it is written: `self.account.lock`."""
 
 
-def entered_at(frame: FrameType) -> Entering | None:
+def entered_at(frame: Frame) -> Entering | None:
     """The lock that the line of a frame enters by `with`, or acquires without a limit; None for none, or several."""
     try:
         function = function_of(frame)
@@ -40,7 +40,7 @@ def entered_at(frame: FrameType) -> Entering | None:
     return locks[0] if len(locks) == 1 else None
 
 
-def is_inside(frame: FrameType, lock: object) -> bool:
+def is_inside(frame: Frame, lock: object) -> bool:
     """Whether the code of a frame holds a lock: within `with`, or between `acquire()` and `release()`."""
     if not is_users(frame.f_code.co_filename):
         return False
@@ -60,7 +60,7 @@ def is_inside(frame: FrameType, lock: object) -> bool:
     return bool(before) and max(before) in taken and any(line >= frame.f_lineno for line in given)
 
 
-def is_kept(entering: Entering, frames: Iterable[FrameType]) -> bool:
+def is_kept(entering: Entering, frames: Iterable[Frame]) -> bool:
     """Whether whoever acquires a lock releases it, as far as the files of some frames show.
 
     One that is released elsewhere, or given to other code, such as a `Condition`, may be free all the same.
@@ -110,7 +110,7 @@ def _last(expression: ast.expr) -> str:
     return ast.unparse(expression).rpartition(".")[2] if isinstance(expression, (ast.Name, ast.Attribute)) else ""
 
 
-def _value(expression: ast.expr, frame: FrameType) -> Any:
+def _value(expression: ast.expr, frame: Frame) -> Any:
     """What an expression is in a frame: a name, or an attribute that is stored; None for anything else."""
     match expression:
         case ast.Name(id=name):
@@ -122,7 +122,7 @@ def _value(expression: ast.expr, frame: FrameType) -> Any:
     return None
 
 
-def function_of(frame: FrameType) -> ast.AST:
+def function_of(frame: Frame) -> ast.AST:
     """The source of the function, or module, of a frame. Raises Unknown if there is none."""
     try:
         syntax = syntax_of(frame.f_code.co_filename)

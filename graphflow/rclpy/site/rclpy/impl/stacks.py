@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
+from graphflow.deadlock.frames import Frame, stack_from
 from graphflow.deadlock.user_code import is_ours, is_users
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.spinning import Run, Spinning
@@ -29,13 +30,13 @@ class Level:
     """A part of a thread's stack: a run of a callback and what it has called, or what comes before the first."""
 
     run: Run | None
-    frames: list[FrameType] = field(default_factory=list)
+    frames: list[Frame] = field(default_factory=list)
     """The outermost first."""
     waiting: Any = None
     """The executor that waits for something to do in it."""
 
     @property
-    def innermost(self) -> FrameType | None:
+    def innermost(self) -> Frame | None:
         """The last frame of the user's own code."""
         return next((f for f in reversed(self.frames) if is_users(f.f_code.co_filename)), None)
 
@@ -84,13 +85,8 @@ def stacks() -> Iterator[Stack]:
 
 
 def _read(thread: threading.Thread, innermost: FrameType) -> Stack:
-    frames: list[FrameType] = []
-    frame: FrameType | None = innermost
-    while frame is not None:
-        frames.append(frame)
-        frame = frame.f_back
     levels, spins, is_given = [Level(None)], list[Executor](), False
-    for frame in reversed(frames):
+    for frame in stack_from(innermost):
         if frame.f_code is _STEP:
             levels.append(Level(frame.f_locals["self"]))
         elif frame.f_code in _SPINS:

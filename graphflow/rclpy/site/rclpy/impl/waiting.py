@@ -324,7 +324,7 @@ class _Look:
 
     def _add_suspended(self, run: Run) -> None:
         """A run that no thread steps just now: it waits for a future, or for a thread."""
-        level = Level(run, list(frames_of(run)))
+        level = Level(run, frames_of(run))
         self._pause = None
         group = self._callback_group(run.group, run.node) if run.group is not None else ()
         future = run._awaits

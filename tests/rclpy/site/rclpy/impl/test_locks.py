@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-import sys
 import threading
-from types import FrameType
 from typing import Any
 
 import pytest
 
+from graphflow.deadlock.frames import Frame, stack_of, suspended
 from rclpy.impl.locks import Entering, entered_at, is_inside, is_kept
 from tests.rclpy.locking import WHOSE, Bank
+
+
+def after_a_step(steps: Any) -> Frame:
+    """The frame of a generator at its next `yield`."""
+    next(steps)
+    frame = suspended(steps)
+    assert frame is not None
+    return frame
 
 
 @pytest.mark.parametrize(
@@ -27,26 +34,25 @@ def test_who_is_inside(way: str, lock: Any) -> None:
     """From the first line to the last; another object's lock is another."""
     bank = Bank()
     steps = getattr(bank, way)()
-    frame = next(steps)
+    frame = after_a_step(steps)
     others = Bank().first
     assert is_inside(frame, lock(bank))
     assert not is_inside(frame, others)
-    assert next(steps) is frame
-    assert not is_inside(frame, lock(bank))
+    assert not is_inside(after_a_step(steps), lock(bank))
 
 
 @pytest.mark.parametrize("way", ["takes_signal", "tries"])
 def test_who_may_be_inside_or_not(way: str) -> None:
     """What is not released there, or was perhaps not acquired."""
     bank = Bank()
-    frame = next(getattr(bank, way)())
+    frame = after_a_step(getattr(bank, way)())
     for value in vars(bank).values():
         assert not is_inside(frame, value)
 
 
 def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
     """So it is nobody who waits."""
-    assert entered_at(next(Bank().is_inside_on_one_line())) is None
+    assert entered_at(after_a_step(Bank().is_inside_on_one_line())) is None
 
 
 @pytest.mark.parametrize(
@@ -62,7 +68,7 @@ def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
 )
 def test_locks_that_others_may_release(text: str, kept: bool) -> None:
     """By a method that has not acquired it, or since it is known elsewhere."""
-    frame = next(Bank().enters())
+    frame = after_a_step(Bank().enters())
     assert is_kept(Entering(object(), text), [frame]) is kept
 
 
@@ -78,15 +84,11 @@ def test_code_that_waits_is_where_it_enters(way: str) -> None:
         next(steps)
         steps.close()
 
-    def standing() -> FrameType:
-        frame: FrameType = sys._current_frames()[thread.ident or 0]
-        return frame
-
     with lock:
         thread = threading.Thread(target=enter)
         thread.start()
         assert seen.wait(10.0)
-        while (found := entered_at(standing())) is None:
+        while (found := entered_at(stack_of(thread.ident or 0)[-1])) is None:
             assert thread.is_alive()
     thread.join(10.0)
     assert found.lock is lock

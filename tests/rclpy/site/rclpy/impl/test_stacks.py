@@ -69,7 +69,7 @@ def test_a_callback_is_a_level_of_its_own(node: Node) -> None:
     assert inner.innermost is not None
     assert inner.innermost.f_code is tick.__code__
     assert not stack.is_idle
-    assert until(lambda: standing().get(thread.ident or 0))[0] == id(inner.innermost)
+    assert until(lambda: standing().get(thread.ident or 0))[0] == id(inner.innermost.original)
     release.set()
     rclpy.shutdown()
     thread.join(LIMIT)

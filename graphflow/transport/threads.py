@@ -1,0 +1,113 @@
+"""Daemon threads for work that blocks: used again, not waited for at exit, and there even while the interpreter ends.
+
+A pool of `concurrent.futures` is none of these: its threads keep the interpreter from ending until their work is done,
+and it takes no work from then on. From Python 3.12 on nobody can start a thread after the main thread has ended, so
+some are started before and kept for what must still be closed then.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from queue import SimpleQueue
+from typing import Any, NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+IDLE_LIMIT = 8
+"""Idle threads that wait for more work; the others end."""
+RESERVE = 4
+"""Threads kept for the end of the interpreter: closing a session takes two at a time."""
+
+
+class _Work(NamedTuple):
+    fn: Callable[[], Any]
+    done: Callable[[Any, BaseException | None], object]
+    name: str
+
+
+class _Worker(threading.Thread):
+    """A thread that does one piece of work after another."""
+
+    def __init__(self, pool: ThreadPool) -> None:
+        super().__init__(name="graphflow-idle", daemon=True)
+        self.work: SimpleQueue[_Work] = SimpleQueue()
+        self._pool = pool
+
+    def run(self) -> None:
+        stays = True
+        while stays:
+            fn, done, self.name = self.work.get()
+            result, error = None, None
+            try:
+                result = fn()
+            except BaseException as raised:  # whoever waits for the work is the one to handle it
+                error = raised
+            # Idle before its end is told: who asks again at once gets the same thread.
+            self.name = "graphflow-idle"
+            stays = self._pool.is_kept(self)
+            done(result, error)
+            del fn, done, result, error  # not kept alive until the next work
+
+
+class ThreadPool:
+    """Threads for one process. A forked child begins with none."""
+
+    def __init__(self) -> None:
+        self._forget()
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._forget)
+
+    def _forget(self) -> None:
+        self._lock = threading.Lock()
+        self._idle: list[_Worker] = []
+        self._reserve: list[_Worker] = []
+
+    def reserve(self) -> None:
+        """Start the threads that are kept for the end of the interpreter, if they have not been started."""
+        with self._lock:
+            while len(self._reserve) < RESERVE:
+                self._reserve.append(self._started())
+
+    def run(self, fn: Callable[[], T], done: Callable[[T | None, BaseException | None], object], name: str) -> _Worker:
+        """Call `fn()` in a thread, and then there `done(result, error)`, which must not raise.
+
+        Args:
+            name: What debuggers call the thread meanwhile.
+
+        Raises:
+            RuntimeError: No thread can be started.
+        """
+        with self._lock:
+            worker = self._idle.pop() if self._idle else None
+        if worker is None:
+            worker = self._new()
+        worker.work.put(_Work(fn, done, name))
+        return worker
+
+    def is_kept(self, worker: _Worker) -> bool:
+        """Whether a worker is to wait for more work."""
+        with self._lock:
+            if len(self._idle) >= IDLE_LIMIT:
+                return False
+            self._idle.append(worker)
+            return True
+
+    def _new(self) -> _Worker:
+        try:
+            return self._started()
+        except RuntimeError:
+            with self._lock:
+                if threading.main_thread().is_alive() or not self._reserve:
+                    raise
+                return self._reserve.pop()
+
+    def _started(self) -> _Worker:
+        worker = _Worker(self)
+        worker.start()
+        return worker
+
+
+THREADS = ThreadPool()
+"""The threads of this process."""
