@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -99,9 +100,14 @@ def open_session(settings: zenoh.Config) -> zenoh.Session:
     """Open a raw session.
 
     Raises:
-        TransportError: Zenoh refused.
+        TransportError: Zenoh refused, or Python runs without its global lock.
     """
     _quiet()
+    if not getattr(sys, "_is_gil_enabled", lambda: True)():
+        raise TransportError(
+            "this Python runs without its global interpreter lock, by which graphflow reads what waits: "
+            "unset PYTHON_GIL, or set it to 1"
+        )
     try:
         return zenoh.open(settings)
     except zenoh.ZError as error:

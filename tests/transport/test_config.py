@@ -9,7 +9,8 @@ import sys
 
 import pytest
 
-from graphflow.transport.config import config
+from graphflow.errors import TransportError
+from graphflow.transport.config import config, open_session
 
 
 @pytest.mark.parametrize("mode", ["peer", "client", "router"])
@@ -37,6 +38,13 @@ def test_zenoh_has_threads_for_what_may_wait_for_the_gil() -> None:
     for more, expected in (({}, "(net: (worker_threads: 8))"), ({"ZENOH_RUNTIME": own}, own)):
         said = subprocess.check_output([sys.executable, "-c", program], env=plain | more, text=True, timeout=60)
         assert said.strip() == expected
+
+
+def test_python_without_its_lock_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search reads frames of other threads, which only the lock holds still."""
+    monkeypatch.setattr(sys, "_is_gil_enabled", lambda: False, raising=False)
+    with pytest.raises(TransportError, match="unset PYTHON_GIL"):
+        open_session(config("peer"))
 
 
 ENDING = """
