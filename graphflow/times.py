@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import overload
+from typing import Any, Protocol, overload
 
 NANOSECONDS = 1_000_000_000
 """Nanoseconds in a second."""
@@ -24,6 +24,86 @@ def ago(seconds: float) -> str:
     return f"{whole // 3600}h{whole % 3600 // 60:02d}m"
 
 
+class HasFields(Protocol):
+    """A message of type builtin_interfaces/msg/Time or Duration, of whichever library."""
+
+    @property
+    def sec(self) -> int: ...
+    @property
+    def nanosec(self) -> int: ...
+
+
+def _nanoseconds(message: HasFields) -> int:
+    return message.sec * NANOSECONDS + message.nanosec
+
+
+class TimeFields:
+    """Arithmetic of the message class builtin_interfaces/msg/Time: as that of a `Time`, with which it mixes."""
+
+    __slots__ = ()
+    sec: int
+    nanosec: int
+
+    @overload
+    def __sub__(self, other: Time | TimeFields) -> Duration: ...
+    @overload
+    def __sub__(self, other: Duration | DurationFields) -> Time: ...
+    def __sub__(self, other: Any) -> Any:
+        return Time.from_msg(self).__sub__(other)
+
+    def __add__(self, other: Duration | DurationFields) -> Time:
+        return Time.from_msg(self).__add__(other)
+
+    def __lt__(self, other: Time | TimeFields) -> bool:
+        return Time.from_msg(self) < _time(other)
+
+    def __le__(self, other: Time | TimeFields) -> bool:
+        return Time.from_msg(self) <= _time(other)
+
+    def __gt__(self, other: Time | TimeFields) -> bool:
+        return Time.from_msg(self) > _time(other)
+
+    def __ge__(self, other: Time | TimeFields) -> bool:
+        return Time.from_msg(self) >= _time(other)
+
+
+class DurationFields:
+    """Arithmetic of the message class builtin_interfaces/msg/Duration: as that of a `Duration`, with which it mixes."""
+
+    __slots__ = ()
+    sec: int
+    nanosec: int
+
+    def __add__(self, other: Duration | DurationFields) -> Duration:
+        return Duration.from_msg(self).__add__(other)
+
+    def __sub__(self, other: Duration | DurationFields) -> Duration:
+        return Duration.from_msg(self).__sub__(other)
+
+    def __neg__(self) -> Duration:
+        return -Duration.from_msg(self)
+
+    def __lt__(self, other: Duration | DurationFields) -> bool:
+        return Duration.from_msg(self) < _duration(other)
+
+    def __le__(self, other: Duration | DurationFields) -> bool:
+        return Duration.from_msg(self) <= _duration(other)
+
+    def __gt__(self, other: Duration | DurationFields) -> bool:
+        return Duration.from_msg(self) > _duration(other)
+
+    def __ge__(self, other: Duration | DurationFields) -> bool:
+        return Duration.from_msg(self) >= _duration(other)
+
+
+def _time(value: Time | TimeFields) -> Time:
+    return Time.from_msg(value) if isinstance(value, TimeFields) else value
+
+
+def _duration(value: Duration | DurationFields) -> Duration:
+    return Duration.from_msg(value) if isinstance(value, DurationFields) else value
+
+
 @dataclass(frozen=True, order=True, slots=True)
 class Duration:
     """A span of time; may be negative. Fits builtin_interfaces/msg/Duration."""
@@ -34,6 +114,11 @@ class Duration:
     def of(cls, seconds: float) -> Duration:
         """A span of this many seconds."""
         return cls(to_ns(seconds))
+
+    @classmethod
+    def from_msg(cls, message: HasFields) -> Duration:
+        """The span in a message of type builtin_interfaces/msg/Duration."""
+        return cls(_nanoseconds(message))
 
     @property
     def seconds(self) -> float:
@@ -49,10 +134,12 @@ class Duration:
         """The rest, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
-    def __add__(self, other: Duration) -> Duration:
+    def __add__(self, other: Duration | DurationFields) -> Duration:
+        other = _duration(other)
         return Duration(self.nanoseconds + other.nanoseconds) if isinstance(other, Duration) else NotImplemented
 
-    def __sub__(self, other: Duration) -> Duration:
+    def __sub__(self, other: Duration | DurationFields) -> Duration:
+        other = _duration(other)
         return Duration(self.nanoseconds - other.nanoseconds) if isinstance(other, Duration) else NotImplemented
 
     def __neg__(self) -> Duration:
@@ -63,10 +150,16 @@ class Duration:
 class Time:
     """A point on a clock, in nanoseconds since its epoch. Fits builtin_interfaces/msg/Time.
 
-    `Time - Time` is a `Duration`; `Time + Duration` and `Time - Duration` are a `Time`.
+    `Time - Time` is a `Duration`; `Time + Duration` and `Time - Duration` are a `Time`. Messages may stand in place of
+    either, such as `header.stamp`.
     """
 
     nanoseconds: int
+
+    @classmethod
+    def from_msg(cls, message: HasFields) -> Time:
+        """The moment in a message of type builtin_interfaces/msg/Time, such as `header.stamp`."""
+        return cls(_nanoseconds(message))
 
     @property
     def seconds(self) -> float:
@@ -82,14 +175,17 @@ class Time:
         """The rest, 0 to 999,999,999, as the message field."""
         return self.nanoseconds % NANOSECONDS
 
-    def __add__(self, other: Duration) -> Time:
+    def __add__(self, other: Duration | DurationFields) -> Time:
+        other = _duration(other)
         return Time(self.nanoseconds + other.nanoseconds) if isinstance(other, Duration) else NotImplemented
 
     @overload
-    def __sub__(self, other: Time) -> Duration: ...
+    def __sub__(self, other: Time | TimeFields) -> Duration: ...
     @overload
-    def __sub__(self, other: Duration) -> Time: ...
-    def __sub__(self, other: Time | Duration) -> Time | Duration:
-        if isinstance(other, Time):
-            return Duration(self.nanoseconds - other.nanoseconds)
-        return Time(self.nanoseconds - other.nanoseconds) if isinstance(other, Duration) else NotImplemented
+    def __sub__(self, other: Duration | DurationFields) -> Time: ...
+    def __sub__(self, other: Any) -> Any:
+        if isinstance(other, (Time, TimeFields)):
+            return Duration(self.nanoseconds - _time(other).nanoseconds)
+        if isinstance(other, (Duration, DurationFields)):
+            return Time(self.nanoseconds - _duration(other).nanoseconds)
+        return NotImplemented

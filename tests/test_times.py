@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from graphflow.msgs.builtin_interfaces.msg import Duration as DurationMessage
+from graphflow.msgs.builtin_interfaces.msg import Time as TimeMessage
 from graphflow.times import NANOSECONDS, Duration, Time, ago, to_ns
 
 
@@ -92,3 +94,40 @@ def test_large_times_stay_exact() -> None:
 def test_spans_for_people(seconds: float, text: str) -> None:
     """In seconds, then minutes, then hours, and never less than none."""
     assert ago(seconds) == text
+
+
+@settings(derandomize=True, deadline=None)
+@given(st.integers(0, 2**60), st.integers(0, 2**60))
+def test_messages_stand_in_place_of_times(one: int, other: int) -> None:
+    """Whichever side they are on, and on both."""
+    a, b = Time(one), Time(other)
+    stamp_a, stamp_b = (TimeMessage(sec=t.sec, nanosec=t.nanosec) for t in (a, b))
+    assert a - stamp_b == stamp_a - b == stamp_a - stamp_b == a - b
+    assert (a < stamp_b) is (stamp_a < b) is (stamp_a < stamp_b) is (a < b)
+    assert (a >= stamp_b) is (stamp_a >= b) is (stamp_a >= stamp_b) is (a >= b)
+    assert Time.from_msg(stamp_a) == a
+
+
+@settings(derandomize=True, deadline=None)
+@given(st.integers(-(2**60), 2**60), st.integers(-(2**60), 2**60))
+def test_messages_stand_in_place_of_durations(one: int, other: int) -> None:
+    """They add to times as well."""
+    a, b = Duration(one), Duration(other)
+    fields_a, fields_b = (DurationMessage(sec=d.sec, nanosec=d.nanosec) for d in (a, b))
+    assert a + fields_b == fields_a + b == fields_a + fields_b == a + b
+    assert a - fields_b == fields_a - b == fields_a - fields_b == a - b
+    assert (a < fields_b) is (fields_a < b) is (fields_a < fields_b) is (a < b)
+    assert Time(5) + fields_a == Time(5) + a
+    assert Time(5) - fields_a == Time(5) - a
+    assert -fields_a == -a
+    assert Duration.from_msg(fields_a) == a
+
+
+def test_stamps_and_spans_do_not_mix() -> None:
+    """As times and durations do not."""
+    with pytest.raises(TypeError):
+        TimeMessage(sec=1) + TimeMessage(sec=2)  # type: ignore[operator]
+    with pytest.raises(TypeError):
+        Duration(1) - TimeMessage(sec=2)  # type: ignore[operator]
+    with pytest.raises(TypeError):
+        assert TimeMessage(sec=1) < DurationMessage(sec=2)  # type: ignore[operator]

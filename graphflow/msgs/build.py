@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from graphflow.msgs import base
 from graphflow.msgs.values import Nested, convert
 from graphflow.msgs.views import VIEWS
+from graphflow.times import DurationFields, TimeFields
 from graphflow.wire import schema
 from graphflow.wire.schema import INTEGER_RANGES, Field, Message
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 Classes = Callable[[str], type]
 """Finds the class of `package/kind/Name`."""
 
+ARITHMETIC = {"builtin_interfaces/msg/Time": (TimeFields,), "builtin_interfaces/msg/Duration": (DurationFields,)}
+"""Message types that can be added, subtracted and compared."""
 _EXACT = {"bool": bool, "float64": float, "string": str}
 """Types whose values need no further check when their Python type is exactly this and they have no bound."""
 
@@ -47,7 +50,7 @@ def message_class(message: Message, classes: Classes, codec: Callable[[], Codec]
     }
     if message.name in VIEWS:
         namespace["to_numpy"] = VIEWS[message.name]
-    return type(name, (base.Message,), namespace)
+    return type(name, (*ARITHMETIC.get(message.name, ()), base.Message), namespace)
 
 
 def service_class(service: schema.Service, classes: Classes) -> type[base.Service[Any, Any]]:

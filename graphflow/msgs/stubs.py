@@ -12,6 +12,7 @@ import re
 from pathlib import Path
 
 from graphflow.msgs import registry
+from graphflow.msgs.build import ARITHMETIC
 from graphflow.msgs.views import VIEWS
 from graphflow.wire.schema import INTEGER_RANGES, NUMERIC, STRINGS, Action, Field, FieldType, Message, Service
 
@@ -116,7 +117,8 @@ def _message(message: Message) -> str:
     methods = [_constructor(message.fields, module)]
     if message.name in VIEWS:
         methods.append("def to_numpy(self) -> npt.NDArray[Any]: ...")
-    return "\n    ".join([f"class {name}(base.Message):", *constants, *attributes, *methods])
+    bases = [*(f"times.{cls.__name__}" for cls in ARITHMETIC.get(message.name, ())), "base.Message"]
+    return "\n    ".join([f"class {name}({', '.join(bases)}):", *constants, *attributes, *methods])
 
 
 def _literal(value: bool | float | str) -> str:
