@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         TransitionRefused,
         TransportError,
         UnknownInterface,
+        WrongThread,
     )
     from graphflow.executor.clock import Clock
     from graphflow.executor.groups import HandlerGroup
@@ -116,6 +117,7 @@ _HOMES = {
         "TransitionRefused",
         "TransportError",
         "UnknownInterface",
+        "WrongThread",
     ),
     "graphflow.executor.clock": ("Clock",),
     "graphflow.executor.groups": ("HandlerGroup",),
@@ -238,6 +240,7 @@ __all__ = [
     "TransitionRefused",
     "TransportError",
     "UnknownInterface",
+    "WrongThread",
     "action",
     "run",
     "running",

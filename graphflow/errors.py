@@ -12,6 +12,7 @@ GraphflowError
 |-- TransportError            the network refused: port taken, silent rendezvous, another user's
 |-- BagError                  a bag cannot be read or written
 |-- ClosedError               you closed it and then used it
+|-- WrongThread               only the event loop's thread may do it
 |-- TooManyErrors             a node's handlers have failed too often; it ends
 |-- SupervisorError           a graph could not be started, or is not running
 |-- NoModule                  a node class is looked for in a module that is not there
@@ -85,6 +86,10 @@ class BagError(GraphflowError):
 
 class ClosedError(GraphflowError):
     """The node, session or endpoint was closed before this use."""
+
+
+class WrongThread(GraphflowError, RuntimeError):
+    """Something that belongs to a node's event loop was used from another thread."""
 
 
 class TooManyErrors(GraphflowError):

@@ -293,6 +293,9 @@ class GoalClient(MadeByNodes, Part, Generic[Goal, Result, Feedback]):
         """Send a goal that goes on whatever becomes of the caller. Arguments and errors as for `send`."""
         if goal.__class__ is not self._goal_class:
             raise EncodeError(f"{self.name} takes {self._goal_class.__qualname__}, not {goal!r}")
+        self.host.context.refuse_other_threads(
+            f"send of {self.name}", "node.spawn(fn, ...) runs a coroutine function there"
+        )
         sent = ClientGoalHandle(self, goal)
         self._goals[sent.goal_id] = sent  # before it is sent: news about it may come before the response
         request = self._send._request(goal_id={"uuid": list(sent.goal_id)}, goal=goal)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
+import threading
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import copy_context
@@ -14,7 +15,7 @@ from graphflow.deadlock.inspection import Inspection
 from graphflow.deadlock.protocols import Elsewhere, Subject
 from graphflow.deadlock.search import Search
 from graphflow.domain import domain_id
-from graphflow.errors import printable
+from graphflow.errors import WrongThread, printable
 from graphflow.executor.clock import Clock, WallClock
 from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
@@ -199,6 +200,17 @@ class Context:
             if stays:
                 await _seen_through(future)
             return await future
+
+    @property
+    def is_here(self) -> bool:
+        """Whether this is the thread of the event loop."""
+        return threading.get_ident() == self.ledger.thread
+
+    def refuse_other_threads(self, what: str, instead: str = "node.call_soon(fn, ...) calls fn there") -> None:
+        """Raise WrongThread unless this is the thread of the event loop."""
+        if not self.is_here:
+            name = threading.current_thread().name
+            raise WrongThread(f"{what} may not be used from the thread {name!r}, only on the event loop; {instead}")
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
         """Run `fn(*args)` as `in_thread` does, when fewer than `OFFLOAD_LIMIT` others are running."""

@@ -206,7 +206,13 @@ class NodeCore:
         self.add(ServiceServer(self, type_, resolved, qos, callback, name, is_inner=True))
 
     def add(self, part: P, *, late: bool = False) -> P:
-        """Add a part, and open it if the time has come: `late` ones wait for `on_start`."""
+        """Add a part, and open it if the time has come: `late` ones wait for `on_start`.
+
+        Raises:
+            WrongThread: The node runs, and this is not its event loop's thread.
+        """
+        if self._context is not None:
+            self._context.refuse_other_threads(f"create_... of node {self.full_name}")
         self.parts.append(part)
         if late and self._late is not None:
             self._late.append(part)
@@ -347,8 +353,10 @@ class NodeCore:
         return [*self.unused_remaps(), *self._clock.complaints()]
 
     def shutdown(self) -> None:
-        """End the node from within: the code that runs it will stop it."""
-        if self._ended is not None and not self._ended.done():
+        """End the node from within, from any thread: the code that runs it will stop it."""
+        if self._context is not None and not self._context.is_here:
+            self.call_soon(self.shutdown)
+        elif self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
 
     async def wait_ended(self) -> None:
@@ -416,6 +424,28 @@ class NodeCore:
             self.report_error(what, error)
 
     # tasks and errors
+
+    def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
+        """Call `fn(*args)` on the event loop, from any thread. An error in it is logged.
+
+        Raises:
+            ClosedError: The node does not run.
+            TypeError: `fn` is a coroutine function.
+        """
+        name = getattr(fn, "__name__", str(fn))
+        if inspect.iscoroutinefunction(fn):
+            raise TypeError(f"call_soon calls functions; {name} is a coroutine function: spawn({name}) runs it")
+
+        def call() -> None:
+            try:
+                fn(*args)
+            except Exception as error:
+                self.report_error(f"call_soon of {name}", error)
+
+        try:
+            self.context.loop.call_soon_threadsafe(call)
+        except RuntimeError:
+            raise ClosedError(f"call_soon of {name}: the event loop of node {self.full_name} has ended") from None
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
         """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""

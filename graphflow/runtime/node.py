@@ -408,8 +408,24 @@ class Node(SpeaksRos):
         return await self.context.offload(fn, *args)
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> None:
-        """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""
-        self._core.spawn(fn, *args)
+        """Run `fn(*args)` alongside everything else until the node stops; from any thread.
+
+        An error in it ends the node.
+        """
+        if self.context.is_here:
+            self._core.spawn(fn, *args)
+        else:
+            self._core.call_soon(self._core.spawn, fn, *args)
+
+    def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
+        """Call `fn(*args)` on the event loop: the way to it from another thread, such as that of a driver's callback.
+
+        An error in it is logged.
+
+        Raises:
+            ClosedError: The node does not run.
+        """
+        self._core.call_soon(fn, *args)
 
     async def on_start(self) -> None:
         """For subclasses: prepare. Publishers and clients work; no handler, timer or task runs before it returns.
@@ -427,7 +443,10 @@ class Node(SpeaksRos):
         return self._core.entered.enter_context(manager)
 
     def shutdown(self) -> None:
-        """End the node from within: the code that runs it will stop it, and a process with nothing else to run ends."""
+        """End the node from within: the code that runs it will stop it, and a process with nothing else to run ends.
+
+        From any thread.
+        """
         self._core.shutdown()
 
     async def wait_ended(self) -> None:

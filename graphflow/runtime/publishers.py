@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
-from graphflow.errors import EncodeError
+from graphflow.errors import ClosedError, EncodeError
 from graphflow.executor.runner import Runner
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
@@ -31,6 +32,8 @@ class TopicPublisher(Endpoint, Generic[M]):
         self.type = type_
         self.published = 0
         """Messages sent since the start; also the last sequence number."""
+        self._order = threading.RLock()
+        """Messages leave in the order of their numbers, whichever thread publishes them."""
         self._codec = registry.codec(self.type_name)
         self._sender: Sender = _NOT_OPEN
         self._gid = bytes(16)
@@ -67,7 +70,7 @@ class TopicPublisher(Endpoint, Generic[M]):
         return self._sender.is_wanted or bool(self._here)
 
     def publish(self, message: M) -> None:
-        """Send a message. Never waits: a subscriber that cannot keep up loses messages.
+        """Send a message, from any thread. Never waits: a subscriber that cannot keep up loses messages.
 
         Raises:
             EncodeError: A field does not fit its type, or the message is of another type. A message without
@@ -81,8 +84,9 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._hand_over(message, sender)
         elif sender.is_wanted:
             payload = self._codec.encode(message)
-            self.published += 1
-            sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
+            with self._order:
+                self.published += 1
+                self._put(sender, payload, pack(self.published, self._now_ns(), self._gid))
         elif self._paused is not None:
             self._complain(f"what is published on {self.name} is not sent: {self.idle_because}")
             return
@@ -99,13 +103,22 @@ class TopicPublisher(Endpoint, Generic[M]):
         clone, receivers = self._codec.clone, tuple(self._here)  # which may change: this may be another thread
         copy = clone(message)
         payload = self._codec.encode(copy) if sender.is_wanted else None
-        self.published += 1
-        fields = (self.published, self._now_ns(), self._gid)
-        handed = Handed(copy, fields, len(receivers), clone)
-        for receiver in receivers:
-            receiver.hand(handed)
-        if payload is not None:
-            sender.put(payload, attachment=pack(*fields))
+        with self._order:
+            self.published += 1
+            fields = (self.published, self._now_ns(), self._gid)
+            handed = Handed(copy, fields, len(receivers), clone)
+            for receiver in receivers:
+                receiver.hand(handed)
+            if payload is not None:
+                self._put(sender, payload, pack(*fields))
+
+    def _put(self, sender: Sender, payload: Payload, attachment: bytes) -> None:
+        try:
+            sender.put(payload, attachment=attachment)
+        except Exception:  # the transport's own, if another thread closes the network
+            if self.host.is_running:
+                raise
+            raise ClosedError(f"{self.name}: node {self.host.full_name} has ended") from None
 
     def assert_liveliness(self) -> None:
         """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.

@@ -175,9 +175,13 @@ class ServiceClient(Endpoint, Generic[Request, Response]):
             RemoteError: The handler raised.
             EncodeError: The request does not fit its type.
             DecodeError: The response is malformed.
+            WrongThread: This is not the event loop's thread.
         """
         if request.__class__ is not self._request:
             raise EncodeError(f"{self.name} takes {self._request.__qualname__}, not {request!r}")
+        self.host.context.refuse_other_threads(
+            f"call of {self.name}", "in a thread, call_sync(request) waits for the response"
+        )
         payload = self._requests.encode(request)
         if timeout is ...:
             timeout = self.host.context.call_timeout

@@ -105,6 +105,7 @@ class Timer(Part):
     def _arm(self, when_ns: int) -> None:
         if self.runner is None or self.runner.closed:
             return
+        self.host.context.refuse_other_threads(f"{self.title}: reset")
         if self._handle is not None:
             self._handle.cancel()
         self._next_ns = when_ns
@@ -141,6 +142,7 @@ class Timer(Part):
     def cancel(self) -> None:
         """Stop the timer; `reset` starts it again."""
         if self._handle is not None:
+            self.host.context.refuse_other_threads(f"{self.title}: cancel")
             self._handle.cancel()
             self._handle = None
 

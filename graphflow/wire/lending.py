@@ -41,7 +41,7 @@ def lend(message: Any, name: str, base: str) -> ndarray[Any, Any]:
     if array.__class__ is not ndarray or array.dtype != DTYPES[base] or not array.flags.c_contiguous:
         array = as_array(array, base)
     elif array.nbytes > SMALL and hasattr(type(message), LENT):
-        holders = _holders(array)
+        holders = _holders(message, name)
         if _is_held_once(array, holders):
             _freeze(array)
             return _set_aside(message, name, array)
@@ -78,8 +78,12 @@ def _freeze(array: ndarray[Any, Any]) -> None:
     array.flags.writeable = False
 
 
-def _holders(array: ndarray[Any, Any]) -> tuple[int, int]:
-    """How many references there are to an array, and to the one whose memory it shares."""
+def _holders(message: Any, name: str) -> tuple[int, int]:
+    """How many references there are to an array in a message, and to the one whose memory it shares.
+
+    It reads the array itself: since 3.14 what a caller passes on counts in some functions and not in others.
+    """
+    array = object.__getattribute__(message, name)
     base = array.base
     return sys.getrefcount(array), 0 if base is None else sys.getrefcount(base)
 
@@ -95,10 +99,7 @@ def _is_held_once(array: ndarray[Any, Any], holders: tuple[int, int]) -> bool:
 
 def _holders_in_a_message(array: ndarray[Any, Any]) -> tuple[int, int]:
     """What `_holders` finds, as `lend` calls it, where only a message holds the array."""
-    message = SimpleNamespace(data=array)
-    del array
-    array = object.__getattribute__(message, "data")
-    return _holders(array)
+    return _holders(SimpleNamespace(data=array), "data")
 
 
 _OWNER_ALONE = _holders_in_a_message(np.zeros(1))
