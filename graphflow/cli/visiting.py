@@ -11,8 +11,8 @@ from typing import Any
 from graphflow.cli import output
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.ending import catch_signals
 from graphflow.runtime.node import Node
-from graphflow.runtime.run import catch_signals
 from graphflow.transport import loop
 
 

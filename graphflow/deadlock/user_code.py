@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 import sys
 import sysconfig
@@ -51,6 +52,12 @@ def innermost(frames: Iterable[Frame]) -> Frame | None:
         if is_users(frame.f_code.co_filename):
             found = frame
     return found
+
+
+def called_by_loop(frames: Sequence[Frame]) -> Sequence[Frame]:
+    """The part of a stack that an event loop has called; all of it where there is none."""
+    begun = [i for i, frame in enumerate(frames) if frame.f_code is asyncio.Runner.run.__code__]
+    return frames[begun[-1] + 1 :] if begun else frames
 
 
 class Pause(NamedTuple):

@@ -14,7 +14,7 @@ from asyncio import AbstractEventLoop
 from collections.abc import Callable
 
 from graphflow.deadlock.frames import stack_of
-from graphflow.deadlock.user_code import is_ours, is_users
+from graphflow.deadlock.user_code import called_by_loop, is_ours, is_users
 
 logger = logging.getLogger("graphflow")
 
@@ -103,7 +103,7 @@ class Watchdog:
             logger.warning("the event loop runs again after %.1f s", took)
 
     def _stack(self) -> str:
-        frames = stack_of(self._loop_thread)
+        frames = called_by_loop(stack_of(self._loop_thread))
         files = [frame.f_code.co_filename for frame in frames]
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
         begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # before it is what has started graphflow

@@ -33,6 +33,7 @@ from graphflow.runtime.host import Part
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node_clock import NodeClock
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
+from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.parameter_services import ParameterEvents, ParameterServices
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.rosout import Rosout
@@ -206,11 +207,7 @@ class NodeCore:
         self.add(ServiceServer(self, type_, resolved, qos, callback, name, is_inner=True))
 
     def add(self, part: P, *, late: bool = False) -> P:
-        """Add a part, and open it if the time has come: `late` ones wait for `on_start`.
-
-        Raises:
-            WrongThread: The node runs, and this is not its event loop's thread.
-        """
+        """Add a part, and open it if the time has come: `late` ones wait for `on_start`. May raise WrongThread."""
         if self._context is not None:
             self._context.refuse_other_threads(f"create_... of node {self.full_name}")
         self.parts.append(part)
@@ -355,7 +352,7 @@ class NodeCore:
     def shutdown(self) -> None:
         """End the node from within, from any thread: the code that runs it will stop it."""
         if self._context is not None and not self._context.is_here:
-            self.call_soon(self.shutdown)
+            call_soon(self, self.shutdown, ())
         elif self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
 
@@ -422,30 +419,6 @@ class NodeCore:
             self.log.warning("%s took more than %.0f s and was cancelled", what, STOP_LIMIT)
         except Exception as error:
             self.report_error(what, error)
-
-    # tasks and errors
-
-    def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
-        """Call `fn(*args)` on the event loop, from any thread. An error in it is logged.
-
-        Raises:
-            ClosedError: The node does not run.
-            TypeError: `fn` is a coroutine function.
-        """
-        name = getattr(fn, "__name__", str(fn))
-        if inspect.iscoroutinefunction(fn):
-            raise TypeError(f"call_soon calls functions; {name} is a coroutine function: spawn({name}) runs it")
-
-        def call() -> None:
-            try:
-                fn(*args)
-            except Exception as error:
-                self.report_error(f"call_soon of {name}", error)
-
-        try:
-            self.context.loop.call_soon_threadsafe(call)
-        except RuntimeError:
-            raise ClosedError(f"call_soon of {name}: the event loop of node {self.full_name} has ended") from None
 
     def spawn(self, fn: Callable[..., Coroutine[Any, Any, Any]], *args: Any) -> asyncio.Task[Any]:
         """Run `fn(*args)` alongside everything else until the node stops. An error in it ends the node."""

@@ -36,6 +36,7 @@ from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.failures import ErrorBudget
 from graphflow.runtime.made import with_made
+from graphflow.runtime.other_threads import call_soon
 from graphflow.runtime.place import here
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import ServiceClient
@@ -415,7 +416,7 @@ class Node(SpeaksRos):
         if self.context.is_here:
             self._core.spawn(fn, *args)
         else:
-            self._core.call_soon(self._core.spawn, fn, *args)
+            call_soon(self._core, self._core.spawn, (fn, *args))
 
     def call_soon(self, fn: Callable[..., object], *args: Any) -> None:
         """Call `fn(*args)` on the event loop: the way to it from another thread, such as that of a driver's callback.
@@ -425,7 +426,7 @@ class Node(SpeaksRos):
         Raises:
             ClosedError: The node does not run.
         """
-        self._core.call_soon(fn, *args)
+        call_soon(self._core, fn, args)
 
     async def on_start(self) -> None:
         """For subclasses: prepare. Publishers and clients work; no handler, timer or task runs before it returns.

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
-import signal
 import sys
-import threading
-import time
-from collections.abc import AsyncGenerator, Callable, Iterator, Sequence
+from collections.abc import AsyncGenerator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 
 from graphflow.deadlock.user_code import place_in, users_part
@@ -18,6 +14,7 @@ from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.ending import catch_signals
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
@@ -25,11 +22,6 @@ from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.transport import loop
 
 logger = logging.getLogger("graphflow")
-
-SAME_SIGNAL = 0.1
-"""Seconds within which a second signal counts as the first."""
-REMIND_AFTER = 1.0
-"""Seconds after a signal at which nodes that are still stopping say so."""
 
 
 @asynccontextmanager
@@ -71,50 +63,6 @@ async def serve(nodes: Sequence[Node], context: Context, stop: asyncio.Event) ->
         Exception: What ended a node.
     """
     await Company(context, stop).run(nodes)
-
-
-def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
-    """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second one ends the process at once, even when the loop is blocked.
-
-    Signals that come together count as one: a signal to a process and then to its group is meant once.
-
-    Returns:
-        A function that restores the former handlers.
-    """
-    loop = asyncio.get_running_loop()
-    first = 0.0
-    reminder = threading.Timer(REMIND_AFTER, os.write, (2, b"still stopping; Ctrl-C again ends it without cleanup\n"))
-    reminder.daemon = True
-
-    def caught(*_: object) -> None:
-        nonlocal first
-        now, is_first = time.monotonic(), not first
-        first = first or now
-        if now - first > SAME_SIGNAL:
-            os.write(2, b"ended without cleanup: it was asked twice\n")
-            os._exit(1)
-        if not loop.is_closed():
-            loop.call_soon_threadsafe(stop.set)
-        if is_first and not reminder.finished.is_set():  # another may come while it is being started
-            reminder.start()
-
-    # Not the loop's own handlers, which would wait for a handler that does not return.
-    former = {number: signal.signal(number, caught) for number in _stop_signals()}
-
-    def restore() -> None:
-        reminder.cancel()
-        for number, handler in former.items():
-            signal.signal(number, handler)
-
-    return restore
-
-
-def _stop_signals() -> Iterator[signal.Signals]:
-    yield signal.SIGINT
-    yield signal.SIGTERM
-    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; under `nohup` that is ignored
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
-        yield hang_up
 
 
 def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:

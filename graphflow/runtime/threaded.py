@@ -32,10 +32,6 @@ from graphflow.wire.liveliness import Kind
 class ThreadedPublisher(TopicPublisher[Any]):
     """A publisher of serialized messages, for any thread."""
 
-    def __init__(self, host: Host, type_: Any, name: str, qos: Qos, on_event: OnEvent | None = None) -> None:
-        super().__init__(host, type_, name, qos, on_event)
-        self._lock = threading.Lock()
-
     def put(self, payload: bytes) -> None:
         """Send a message. Never waits.
 
@@ -43,7 +39,7 @@ class ThreadedPublisher(TopicPublisher[Any]):
             DecodeError: Subscriptions of this process are to get it, and it is no message of the type.
             ClosedError: The node is not running.
         """
-        with self._lock:  # so that numbers are taken, and messages sent, in one order
+        with self._order:
             sender, here = self._sender, tuple(self._here)
             if not (here or sender.is_wanted):
                 self._announced()
@@ -55,7 +51,7 @@ class ThreadedPublisher(TopicPublisher[Any]):
                 for receiver in here:
                     receiver.hand(message)
             if sender.is_wanted:
-                sender.put(payload, attachment=attachment.pack(*fields))
+                self._put(sender, payload, attachment.pack(*fields))
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.touch()

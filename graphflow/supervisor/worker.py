@@ -27,11 +27,11 @@ from graphflow.names import did_you_mean
 from graphflow.runtime.company import Company
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
+from graphflow.runtime.ending import catch_signals
 from graphflow.runtime.logger import node_logger
 from graphflow.runtime.managed import ManagedCore
 from graphflow.runtime.node import Node
 from graphflow.runtime.rosout import log_level, setup_console
-from graphflow.runtime.run import catch_signals
 from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.supervisor import debugging, family, logfile
 from graphflow.supervisor.classes import add_root, import_class

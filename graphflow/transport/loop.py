@@ -9,9 +9,10 @@ from contextlib import suppress
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
+from graphflow.errors import UsageFault
 from graphflow.system import is_portable
 from graphflow.transport.malloc import keep_freed_memory
-from graphflow.transport.threads import THREADS
+from graphflow.transport.threads import THREADS, DaemonExecutor
 
 T = TypeVar("T")
 
@@ -20,8 +21,18 @@ LOOP_VARIABLE = "GRAPHFLOW_LOOP"
 
 
 def new_event_loop() -> asyncio.AbstractEventLoop:
-    """An event loop of the best kind available."""
+    """An event loop of the best kind available. Its end does not wait for `asyncio.to_thread`."""
+    loop = _loop_of_the_best_kind()
+    loop.set_default_executor(DaemonExecutor())
+    return loop
+
+
+def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
     chosen = os.environ.get(LOOP_VARIABLE, "")
+    if chosen not in ("", "asyncio", "uvloop"):
+        raise UsageFault(f"{LOOP_VARIABLE} is {chosen!r}; it may be 'asyncio' or 'uvloop'")
+    if chosen == "uvloop" and find_spec("uvloop") is None:
+        raise UsageFault(f"{LOOP_VARIABLE} is 'uvloop', which is not installed: pip install uvloop")
     if chosen == "uvloop" or (not chosen and find_spec("uvloop") is not None):
         import uvloop
 

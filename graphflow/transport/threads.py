@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import os
 import threading
+from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from queue import SimpleQueue
 from typing import Any, NamedTuple, TypeVar
 
@@ -111,3 +113,51 @@ class ThreadPool:
 
 THREADS = ThreadPool()
 """The threads of this process."""
+
+
+class DaemonExecutor(ThreadPoolExecutor):
+    """What `asyncio.to_thread` and `run_in_executor(None, ...)` use: asyncio's limit, but on threads of this module.
+
+    The end of the loop does not wait for functions that still run, nor does that of the interpreter.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._order = threading.Lock()
+        self._free = self._max_workers
+        self._waiting: deque[Callable[[], object]] = deque()
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        future: Future[T] = Future()
+
+        def work() -> None:
+            if not future.set_running_or_notify_cancel():
+                return
+            try:
+                result = fn(*args, **kwargs)
+            except BaseException as error:  # whoever waits for the future is the one to handle it
+                future.set_exception(error)
+            else:
+                future.set_result(result)
+
+        with self._order:
+            if not self._free:
+                self._waiting.append(work)
+                return future
+            self._free -= 1
+        THREADS.run(lambda: self._work_off(work), lambda *_: None, f"graphflow-{getattr(fn, '__name__', 'thread')}")
+        return future
+
+    def _work_off(self, work: Callable[[], object]) -> None:
+        while True:
+            work()
+            with self._order:
+                if not self._waiting:
+                    self._free += 1
+                    return
+                work = self._waiting.popleft()
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Forget what has not begun."""
+        with self._order:
+            self._waiting.clear()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.runtime.run import SAME_SIGNAL
+from graphflow.runtime.ending import SAME_SIGNAL
 from tests.cases import sample, slow
 from tests.conftest import PROGRAMS, Machine
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import signal
-import threading
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,11 +12,9 @@ from graphflow.errors import ClosedError
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.company import Company
-from graphflow.runtime.run import _stop_signals, catch_signals, make, run, running, serve
+from graphflow.runtime.run import make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
-from tests.cases import slow
-from tests.conftest import Machine
 
 
 class Talker(Node):
@@ -263,37 +258,6 @@ async def test_serve_two_that_cannot_start(graphflow_runner: asyncio.Runner) -> 
         await serve([Talker("one", rat=1), Talker("two", rate="x")], context_of(), asyncio.Event())
 
 
-# signals
-
-LINGERING = """
-import asyncio, graphflow
-
-class Lingering(graphflow.Node):
-    async def on_start(self):
-        print("up", flush=True)
-
-    async def on_shutdown(self):
-        await asyncio.sleep(60)
-
-graphflow.run(Lingering)
-"""
-
-
-@slow
-@pytest.mark.real
-def test_a_node_that_takes_long_to_stop_says_so(machine: Machine, tmp_path: Path) -> None:
-    """After a second, and a second Ctrl-C ends it."""
-    file = tmp_path / "lingering.py"
-    file.write_text(LINGERING)
-    program = machine.start_python(str(file))
-    program.wait_for("up")
-    program.process.send_signal(signal.SIGINT)
-    program.wait_for("still stopping; Ctrl-C again ends it without cleanup")
-    program.process.send_signal(signal.SIGINT)
-    assert program.wait() == 1
-    assert "ended without cleanup" in program.text
-
-
 # make
 
 
@@ -325,36 +289,3 @@ def test_run_says_what_is_wrong_with_its_words(
 
     assert caught.value.code == code
     assert text in capsys.readouterr().err
-
-
-def test_a_hangup_that_is_ignored() -> None:
-    """As under `nohup`, stays ignored."""
-    former = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        assert signal.SIGHUP not in list(_stop_signals())
-        signal.signal(signal.SIGHUP, signal.SIG_DFL)
-        assert signal.SIGHUP in list(_stop_signals())
-    finally:
-        signal.signal(signal.SIGHUP, former)
-
-
-def test_signals_that_come_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As when a process and its group are signalled: the second, while the first is being handled, starts nothing."""
-    started: list[threading.Timer] = []
-
-    def start(reminder: threading.Timer) -> None:
-        started.append(reminder)
-        if len(started) == 1:
-            signal.raise_signal(signal.SIGTERM)
-
-    async def be_asked() -> None:
-        restore = catch_signals(stop := asyncio.Event())
-        try:
-            signal.raise_signal(signal.SIGTERM)
-            await asyncio.wait_for(stop.wait(), 5.0)
-        finally:
-            restore()
-
-    monkeypatch.setattr(threading.Timer, "start", start)
-    asyncio.run(be_asked())
-    assert len(started) == 1

@@ -9,7 +9,7 @@ import threading
 
 import pytest
 
-from graphflow.transport.threads import IDLE_LIMIT, ThreadPool
+from graphflow.transport.threads import IDLE_LIMIT, DaemonExecutor, ThreadPool
 
 
 def test_the_same_thread_is_used_again() -> None:
@@ -97,3 +97,52 @@ def test_there_are_threads_while_the_interpreter_ends() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
     assert (run.stdout, run.stderr) == ("True\n", "")
+
+
+def test_the_executor_of_a_loop_has_a_limit() -> None:
+    """As asyncio's has; what waits is done as threads become free, and errors reach who waits."""
+    executor, inside, most, lock = DaemonExecutor(), 0, 0, threading.Lock()
+    gate = threading.Event()
+
+    def work(number: int) -> int:
+        nonlocal inside, most
+        with lock:
+            inside += 1
+            most = max(most, inside)
+        gate.wait()
+        with lock:
+            inside -= 1
+        return 10 // number
+
+    futures = [executor.submit(work, number) for number in range(3 * executor._max_workers)]
+    gate.set()
+    assert [future.result(10.0) for future in futures[1:]] == [10 // number for number in range(1, len(futures))]
+    assert isinstance(futures[0].exception(10.0), ZeroDivisionError)
+    assert most <= executor._max_workers
+
+
+def test_what_is_cancelled_while_it_waits_is_not_done() -> None:
+    """Nor is what waits at the end."""
+    executor, gate, done = DaemonExecutor(), threading.Event(), list[int]()
+    busy = [executor.submit(gate.wait) for _ in range(executor._max_workers)]
+    cancelled, left = executor.submit(done.append, 1), executor.submit(done.append, 2)
+    assert cancelled.cancel()
+    executor.shutdown()
+    gate.set()
+    assert all(future.result(10.0) for future in busy)
+    assert done == []
+    assert not left.done()
+
+
+def test_the_end_of_a_loop_waits_for_no_thread() -> None:
+    """Neither does that of the interpreter."""
+    program = (
+        "import asyncio, threading\n"
+        "from graphflow.transport import loop\n"
+        "async def main():\n"
+        "    asyncio.get_running_loop().run_in_executor(None, threading.Event().wait)\n"
+        "    await asyncio.to_thread(print, 'done')\n"
+        "loop.run(main())\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=30)
+    assert (run.stdout, run.stderr) == ("done\n", "")

@@ -1,0 +1,125 @@
+"""How a program that runs nodes is ended: by signals that stop them in order; and what stands in the way of that."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from types import FunctionType, MethodType
+from typing import Any
+
+from graphflow.deadlock.frames import stack_of
+from graphflow.deadlock.user_code import called_by_loop, innermost
+
+logger = logging.getLogger("graphflow")
+
+SAME_SIGNAL = 0.1
+"""Seconds within which a second signal counts as the first."""
+REMIND_AFTER = 1.0
+"""Seconds after a signal at which a program that is still stopping says so, and what it waits for."""
+LOOK_EVERY = 1.0
+"""Seconds between two looks at whether the handlers are still in place."""
+_MANAGER = "_ExecutorManagerThread"
+"""The class of the thread that keeps the interpreter until the work of a `ProcessPoolExecutor` is done."""
+
+
+def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
+    """Set `stop` on SIGINT, SIGTERM or SIGHUP; a second one ends the process at once, even when the loop is blocked.
+
+    Signals that come together count as one: a signal to a process and then to its group is meant once. A library that
+    replaces one of the handlers keeps nodes from stopping in order; that is logged, with its name.
+
+    Returns:
+        A function that restores the former handlers.
+    """
+    loop = asyncio.get_running_loop()
+    first = 0.0
+    reminder = threading.Timer(REMIND_AFTER, _remind)
+    reminder.daemon = True
+
+    own = os.getpid()
+
+    def caught(number: int, _: object) -> None:
+        nonlocal first
+        if os.getpid() != own:  # a child that was forked, as those of process pools are
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+        now, is_first = time.monotonic(), not first
+        first = first or now
+        if now - first > SAME_SIGNAL:
+            os.write(2, b"ended without cleanup: it was asked twice\n")
+            os._exit(1)
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(stop.set)
+        if is_first and not reminder.finished.is_set():  # another may come while it is being started
+            reminder.start()
+
+    # Not the loop's own handlers, which would wait for a handler that does not return.
+    former = {number: signal.signal(number, caught) for number in _stop_signals()}
+    watch = loop.call_later(LOOK_EVERY, lambda: None)
+
+    def look() -> None:
+        nonlocal watch
+        others = {number: found for number in former if (found := signal.getsignal(number)) is not caught}
+        for number, found in others.items():
+            logger.warning(
+                "%s has taken the signal %s: it no longer stops the nodes, and their on_shutdown will not run. "
+                "Have it call what was there before (signal.getsignal), or keep it from handling signals",
+                _name(found),
+                number.name,
+            )
+        if not others:
+            watch = loop.call_later(LOOK_EVERY, look)
+
+    watch.cancel()
+    look()
+
+    def restore() -> None:
+        watch.cancel()
+        reminder.cancel()
+        for number, handler in former.items():
+            signal.signal(number, handler)
+
+    return restore
+
+
+def _stop_signals() -> Iterator[signal.Signals]:
+    yield signal.SIGINT
+    yield signal.SIGTERM
+    hang_up = getattr(signal, "SIGHUP", None)  # the terminal was closed; under `nohup` that is ignored
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        yield hang_up
+
+
+def _name(handler: Any) -> str:
+    """Who has set a handler: its function with its place, or what is known."""
+    function = handler.__func__ if isinstance(handler, MethodType) else handler
+    if isinstance(function, FunctionType):
+        code = function.__code__
+        return f"{function.__module__}.{function.__qualname__} ({code.co_filename}:{code.co_firstlineno})"
+    if handler is None:
+        return "code outside of Python"
+    return f"code that chose {handler}"
+
+
+def _remind() -> None:
+    told = [*hindrances()]
+    waits = f" (it waits for {'; '.join(told)})" if told else ""
+    os.write(2, f"still stopping{waits}; Ctrl-C again ends it without cleanup\n".encode())
+
+
+def hindrances() -> Iterator[str]:
+    """What keeps this process from ending: lines of the user's code, by thread, and work in process pools."""
+    for thread in threading.enumerate():
+        if thread.daemon or thread.ident is None:
+            continue
+        if type(thread).__name__ == _MANAGER:
+            workers = ", ".join(str(child.pid) for child in multiprocessing.active_children())
+            yield f"the work of a process pool, processes {workers}"
+        elif (frame := innermost(called_by_loop(stack_of(thread.ident)))) is not None:
+            yield f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}, thread {thread.name!r}"
