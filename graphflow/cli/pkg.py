@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.creating import create
 from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
@@ -107,35 +108,4 @@ def xml(package: str, tag: str | None) -> int:
     return exits.OK
 
 
-@pkg.command()
-@click.argument("name")
-@click.option("--destination-directory", type=click.Path(path_type=Path), default=Path(), help="Where to make it. [.]")
-@click.option("--node-name", help="For ROS 2's commands: the project has a first node.")
-@click.option("--build-type", help="For ROS 2's commands: nothing is built.")
-@click.option("--dependencies", multiple=True, help="For ROS 2's commands: what is installed can be imported.")
-@click.option("--library-name", help="For ROS 2's commands: nothing is built.")
-@click.option("--package-format", help="For ROS 2's commands.")
-@click.option("--description", help="For ROS 2's commands.")
-@click.option("--license", "license_", help="For ROS 2's commands.")
-@click.option("--maintainer-email", help="For ROS 2's commands.")
-@click.option("--maintainer-name", help="For ROS 2's commands.")
-@click.argument("more", nargs=-1)
-def create(name: str, destination_directory: Path, **unused: object) -> None:
-    """Write a starter project, as `graphflow init NAME` does; ROS 2's options are taken, and not needed."""
-    from graphflow.cli.init import check_new, written
-
-    folder = destination_directory / name
-    check_new(folder)
-    output.data("going to create a new package")
-    output.data(f"package name: {name}")
-    output.data(f"destination directory: {destination_directory.resolve()}")
-    output.data(f"creating folder {_dotted(folder)}")
-    output.lines(f"creating {_dotted(file)}" for file in written(folder))
-    if any(unused.values()):
-        output.talk("note: there is no build type and no list of dependencies; nothing is built")
-    output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{name}.yaml")
-
-
-def _dotted(path: Path) -> str:
-    """A path as ROS 2 tells it: `./my_package`."""
-    return str(path) if path.is_absolute() else f"./{path}"
+pkg.add_command(create)

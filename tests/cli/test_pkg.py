@@ -54,22 +54,6 @@ def test_xml(machine: Machine, robot: Path) -> None:
     assert "turtlesim: no package.xml was found" in machine.look("pkg", "xml", "turtlesim", code=1)
 
 
-def test_create(machine: Machine, tmp_path: Path) -> None:
-    """As it stands on the slides."""
-    words = ["my_pkg", "--build-type", "ament_python", "--node-name", "first", "--destination-directory", "src"]
-    text = machine.look("pkg", "create", *words, cwd=tmp_path)
-    assert "note: there is no build type" in text
-    assert (tmp_path / "src" / "my_pkg" / "nodes").is_dir()
-
-
-def test_the_slides_order(machine: Machine, tmp_path: Path) -> None:
-    """The list of dependencies may swallow nothing."""
-    words = ["my_pkg", "--build-type", "ament_python", "--dependencies", "rclpy", "std_msgs", "geometry_msgs"]
-    machine.look("pkg", "create", *words, cwd=tmp_path)
-    assert (tmp_path / "my_pkg").is_dir()
-    assert not (tmp_path / "std_msgs").exists()
-
-
 @slow
 @pytest.mark.real
 def test_the_executables_run(machine: Machine) -> None:
