@@ -11,6 +11,7 @@ from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
 from graphflow.graph.executables import find, with_graphflow
 from graphflow.graph.project import demos_root, project_root
+from graphflow.graph.unfound import owners, why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
@@ -42,7 +43,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
             module, _, name = what.rpartition(".")
             raise UsageFault(f"{what!r}: write MODULE:CLASS, {module or f'nodes.{name.lower()}'}:{name}")
         else:
-            cls = _only(what) if "." in what else _named(what, root)
+            cls = _only(what) if "." in what else _named(what, root, words)
     except GraphflowError as error:
         raise UsageFault(str(error)) from None
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
@@ -55,20 +56,36 @@ def _executables_of(package: str) -> list[str]:
     return [name for known, name in with_graphflow() if known == package]
 
 
-def _named(what: str, root: Path) -> type[Node]:
+def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     """The node of a module in `nodes/`, of the project or of graphflow."""
     try:
         return _only(f"nodes.{what}")
     except NoModule:
-        known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
-        workspace = find_workspace(Path.cwd()).packages
-        if what in workspace and not workspace[what].executables:
-            compiled = sorted(workspace[what].compiled)
-            verb = "is" if len(compiled) == 1 else "are"
-            why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
-            raise UsageFault(f"the package {what!r} has no executable that graphflow can run{why}") from None
-        known |= {*(package for package, _ in with_graphflow()), *workspace}
-        raise UsageFault(f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}") from None
+        raise UsageFault(_why_none(what, root, words)) from None
+
+
+def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
+    """What to say where there is neither a node nor a package of that name."""
+    workspace = find_workspace(Path.cwd())
+    packages = workspace.packages
+    if what in packages and not packages[what].executables:
+        compiled = sorted(packages[what].compiled)
+        verb = "is" if len(compiled) == 1 else "are"
+        why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
+        return f"the package {what!r} has no executable that graphflow can run{why}"
+    why_none = why_no_package(what, workspace)
+    if why_none is not None:
+        return why_none
+    has = owners(what, workspace)
+    if has:
+        return f"{what!r} is an executable of {' and of '.join(has)}: graphflow run {has[0]} {what}"
+    known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
+    if words and not words[0].startswith("-"):  # ROS's PKG EXE
+        meant = did_you_mean(what, (), hidden=[*packages, *(package for package, _ in with_graphflow())])
+        there = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
+        return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or there}"
+    known |= {*(package for package, _ in with_graphflow()), *packages}
+    return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
 
 
 def _module_of(file: Path, root: Path) -> str:

@@ -66,13 +66,18 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     """
     from graphflow.graph.executables import package_share
     from graphflow.graph.project import project_root
+    from graphflow.graph.unfound import why_no_package
+    from graphflow.graph.workspace import find_workspace
 
     first, *rest = words
     if not rest or ":=" in rest[0] or Path(first).is_file():
         return first, rest
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
-        raise UsageFault(f"Package {first!r} not found; a file is started by: graphflow launch FILE")
+        why = why_no_package(first, find_workspace(Path.cwd()))
+        raise UsageFault(
+            f"Package {first!r} not found{f': {why}' if why else '; to start a file: graphflow launch FILE'}"
+        )
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:

@@ -14,7 +14,7 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
-from graphflow.cli.verbs import NOT_YET, Verbs
+from graphflow.cli.verbs import HABITS, NOT_YET, Verbs
 from graphflow.errors import GraphflowError, UsageFault
 from graphflow.names import nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
@@ -84,7 +84,9 @@ class _Verbs(Verbs):
         return command
 
     def unknown(self, ctx: click.Context, word: str) -> str:
-        meant = "" if word in NOT_YET else _OTHER_WORDS.get(nearest(word, [*_OTHER_WORDS, *_VERBS]) or "")
+        meant = (
+            "" if word in NOT_YET or word in HABITS else _OTHER_WORDS.get(nearest(word, [*_OTHER_WORDS, *_VERBS]) or "")
+        )
         return f"no such command {word!r}; did you mean {meant!r}?" if meant else super().unknown(ctx, word)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -36,6 +36,16 @@ def _known() -> list[str]:
     return sorted({package for package, _ in with_graphflow()} | {*project_packages(_root()), *registry.packages()})
 
 
+def _hint(package: str) -> str:
+    """Why there is no package of a name: the state of the folder that has it, or else the name that is meant."""
+    from graphflow.graph.unfound import why_no_package
+    from graphflow.graph.workspace import find_workspace
+
+    known = _known()
+    why = None if package in known else why_no_package(package, find_workspace(Path.cwd()))
+    return did_you_mean(package, known) if why is None else f": {why}"
+
+
 @pkg.command("list")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(as_json: bool) -> None:
@@ -56,7 +66,7 @@ def executables(package: str, full_path: bool, as_json: bool) -> int:
         output.talk(f"the package {package!r} has no executable that graphflow can run")
         return exits.OK
     if not rows:
-        output.error(f"Package '{package}' not found{did_you_mean(package, _known())}")
+        output.error(f"Package '{package}' not found{_hint(package)}")
         return exits.FAILED
     if as_json:
         output.as_json([{"package": r.package, "name": r.name, "class": r.class_path} for r in rows])
@@ -79,7 +89,7 @@ def prefix(package: str, share: bool) -> int:
     if found is None and any(package == known for known, _ in EXECUTABLES):
         found = demos_root()
     if found is None:
-        output.error(f"Package not found{did_you_mean(package, _known())}")
+        output.error(f"Package not found{_hint(package)}")
         return exits.FAILED
     output.data(str(found))
     return exits.OK
@@ -95,7 +105,7 @@ def xml(package: str, tag: str | None) -> int:
     folder = package_share(package, _root(), os.environ)
     file = folder / "package.xml" if folder is not None else None
     if file is None or not file.is_file():
-        output.error(f"{package}: no package.xml was found{did_you_mean(package, _known())}")
+        output.error(f"{package}: no package.xml was found{_hint(package)}")
         return exits.FAILED
     text = file.read_text(encoding="utf-8", errors="replace")
     if tag is None:

@@ -12,6 +12,13 @@ NOT_YET = {
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
 """What `ros2` has and graphflow has not yet, and what to use meanwhile."""
+_NOT_BUILT = "nothing has to be built or sourced: what you edit is what runs; graphflow ws shows the packages"
+HABITS = {
+    **dict.fromkeys(("colcon", "build", "source", "catkin", "catkin_make"), _NOT_BUILT),
+    "rosdep": "Python packages are installed by pip; packages of ROS 2's lie in the workspace, as source",
+    "install": "nothing has to be installed for a package to run; graphflow ws shows the packages",
+}
+"""What a workspace of ROS 2 needs there and not here: the word, and what to say of it."""
 
 
 class Verbs(click.Group):
@@ -29,5 +36,7 @@ class Verbs(click.Group):
         path = word if ctx.parent is None else f"{ctx.info_name} {word}"
         if path in NOT_YET:
             return f"graphflow has no {path!r} yet; meanwhile: {NOT_YET[path]}".replace("`", "")
+        if ctx.parent is None and word in HABITS:
+            return f"no such command {word!r}: {HABITS[word]}"
         hint = did_you_mean(word, self.list_commands(ctx))
         return f"no such command {word!r}{hint or f'; graphflow {path.removesuffix(word)}--help lists them'}"

@@ -8,32 +8,47 @@ import click
 
 from graphflow.cli import exits, output
 
+_HABITS = {
+    "init": "A workspace needs no initialization: it is a folder that has packages in src/.",
+    **dict.fromkeys(("build", "source", "clean"), "Nothing has to be built or sourced: what you edit is what runs."),
+    "test": "Nothing has to be built; a package's tests are run by: python -m pytest src/PACKAGE",
+}
+"""Words out of habit, and what is said of them."""
 SHOWN = 4
 """Names that a cell of the table holds."""
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.argument("habit", nargs=-1, type=click.UNPROCESSED, metavar="[build|test|source]...")
+@click.argument("habit", nargs=-1, type=click.UNPROCESSED, metavar="[init|build|test|source]...")
 def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     """Show the packages of a ROS 2 workspace; nothing has to be built.
 
     The workspace is the one that the current folder is in. What is wrong in its packages is told, and the exit code is
     then 1.
     """
-    from graphflow.errors import InterfaceError, UnknownInterface
+    from graphflow.errors import InterfaceError, UnknownInterface, UsageFault
+    from graphflow.graph.unfound import no_packages, outer_workspace
     from graphflow.graph.workspace import KINDS, find_workspace
     from graphflow.msgs import registry
+    from graphflow.names import did_you_mean
 
+    if habit and habit[0] not in _HABITS:
+        raise UsageFault(f"ws shows the packages, and takes no {habit[0]!r}{did_you_mean(habit[0], _HABITS)}")
+    if habit and not as_json:
+        output.talk(_HABITS[habit[0]])
     found = find_workspace(Path.cwd())
+    lacking = no_packages(found)
     if not found.packages:
-        output.error(
-            "there is no package here: go to a folder that has packages in src/; graphflow pkg create NAME makes one"
-        )
+        for fault in lacking:
+            output.error(fault)
+        if not lacking:
+            new = "in src/, graphflow pkg create --build-type ament_python NAME makes one"
+            output.error(f"there is no package in {found.root}: go to a folder that has packages in src/; {new}")
         return exits.FAILED
     for name, folder in found.interfaces.items():
         registry.add_package(name, folder)
-    faults = [fault for package in found.packages.values() for fault in package.faults]
+    faults = lacking + [fault for package in found.packages.values() for fault in package.faults]
     faults += [
         f"{double.folder}: another package is called {double.name!r}, too, and is the one that counts: "
         f"{found.packages[double.name].folder}"
@@ -58,8 +73,9 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
         ]
         output.as_json({"root": str(found.root), "packages": known, "faults": faults})
     else:
-        if habit:
-            output.talk("Nothing has to be built or sourced: what you edit is what runs.")
+        around = outer_workspace(found)
+        if around is not None:
+            output.talk(f"This workspace lies in another one, whose packages are not seen from here: {around.root}")
         heads = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
         body = [
             (p.name, _some(p.executables), _some(shown), str(p.folder.relative_to(found.root))) for p, shown in rows

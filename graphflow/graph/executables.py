@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
+from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.names import did_you_mean, nearest
 from graphflow.system import ROS2
@@ -154,6 +155,9 @@ def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Wor
     if with_us:
         text = f"graphflow has no executable {name!r} of the package {package!r}{did_you_mean(name, with_us)}"
         return NoExecutable(text, is_slip=nearest(name, with_us) is not None)
+    why = why_no_package(package, workspace)
+    if why is not None:
+        return NoExecutable(why, is_slip=True)
     known = [*workspace.packages, *(package for package, _ in with_graphflow())]
     near = did_you_mean(package, (), hidden=known)
     text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"

@@ -19,6 +19,8 @@ from typing import Any, NamedTuple
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
 from graphflow.graph.source import scalar
+from graphflow.graph.unfound import why_no_package
+from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
 
 MAX_DEPTH = 20
@@ -184,15 +186,15 @@ class Substitutions:
 
     def _share(self, text: str) -> str:
         [package] = _words(text, 1, "find-pkg-share PACKAGE")
-        return _found(package_share(package, self._root, self._env), f"find-pkg-share {text}")
+        return _found(package_share(package, self._root, self._env), package, f"find-pkg-share {text}", self._root)
 
     def _prefix(self, text: str) -> str:
         [package] = _words(text, 1, "find-pkg-prefix PACKAGE")
-        return _found(package_prefix(package, self._root, self._env), f"find-pkg-prefix {text}")
+        return _found(package_prefix(package, self._root, self._env), package, f"find-pkg-prefix {text}", self._root)
 
     def _program(self, text: str) -> str:
         program, package = _words(text, 2, "exec-in-pkg EXECUTABLE PACKAGE")
-        _found(package_share(package, self._root, self._env), f"exec-in-pkg {text}")
+        _found(package_share(package, self._root, self._env), package, f"exec-in-pkg {text}", self._root)
         found = package_program(program, package, self._root, self._env)
         if found is None:
             raise SubstitutionError(
@@ -272,10 +274,11 @@ def _text(value: Any) -> str:
     return str(value)
 
 
-def _found(folder: Path | None, written: str) -> str:
+def _found(folder: Path | None, package: str, written: str, root: Path) -> str:
     if folder is None:
-        hint = "; it is on PyPI: pip install xacro" if written.endswith(" xacro") else ""
-        raise SubstitutionError(f"$({written}): no package of that name is installed{hint}")
+        why = why_no_package(package, find_workspace(root)) or "no package of that name is installed"
+        hint = "; it is on PyPI: pip install xacro" if package == "xacro" else ""
+        raise SubstitutionError(f"$({written}): {why}{hint}")
     return str(folder)
 
 

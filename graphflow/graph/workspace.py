@@ -17,6 +17,8 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
+from graphflow.names import did_you_mean
+
 DEPTH = 5
 """Folders below a workspace in which packages are looked for."""
 FOLDERS_BOUND = 5000
@@ -116,8 +118,11 @@ class Package:
         if entry is None:
             return None
         file, place = self.file_of(entry), self.folder / "setup.py"
-        said = f"{place}: {executable} is {entry.module}:{entry.function}, and there is no {file}"
-        return None if file.is_file() else said
+        if file.is_file():
+            return None
+        near = did_you_mean(file.stem, (), hidden=[one.stem for one in file.parent.glob("*.py")])
+        next_step = near or "; write that module, or name another one there"
+        return f"{place}: {executable} is {entry.module}:{entry.function}, and there is no {file}{next_step}"
 
     def file_of(self, entry: EntryPoint) -> Path:
         """Where the module of an executable has to be."""
@@ -201,21 +206,41 @@ def read_workspace(root: Path, source: Path) -> Workspace:
     return Workspace(root, packages, tuple(doubles))
 
 
+class Folder(NamedTuple):
+    """A folder in which packages are looked for."""
+
+    path: Path
+    files: set[str]
+    """The names of its files."""
+    package: str | None
+    """The name in its `package.xml`; None if it is no package."""
+
+    @property
+    def mark(self) -> str | None:
+        """The file that leaves it, and all below, out of the workspace."""
+        return next((mark for mark in _MARKS if mark in self.files), None)
+
+
 def _walk(source: Path) -> Iterator[Package]:
-    """The packages in the nearest folders first; there may be any number of folders that are none."""
+    return (Package(found.package, found.path) for found in folders(source) if found.package is not None)
+
+
+def folders(source: Path) -> Iterator[Folder]:
+    """The folders of packages and those above, the nearest first; there may be any number that are no packages."""
     waiting = deque([(source, 0)])
     for _ in range(FOLDERS_BOUND):
         if not waiting:
             return
-        folder, depth = waiting.popleft()
-        inside, files = _listing(folder)
-        if not files.isdisjoint(_MARKS):
+        path, depth = waiting.popleft()
+        inside, files = _listing(path)
+        name = _NAME.search(_text(path / "package.xml")) if "package.xml" in files else None
+        found = Folder(path, files, None if name is None else name[1])
+        if found.mark is not None:
+            yield found._replace(package=None)
             continue
-        name = _NAME.search(_text(folder / "package.xml")) if "package.xml" in files else None
-        if name is not None:  # packages lie side by side
-            yield Package(name[1], folder)
-        elif depth < DEPTH:
-            waiting.extend((folder / f, depth + 1) for f in inside if not f.startswith(".") and f not in _LEFT_OUT)
+        yield found
+        if name is None and depth < DEPTH:  # packages lie side by side
+            waiting.extend((path / f, depth + 1) for f in inside if not f.startswith(".") and f not in _LEFT_OUT)
 
 
 def _listing(folder: Path) -> tuple[list[str], set[str]]:

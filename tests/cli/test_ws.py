@@ -62,9 +62,30 @@ def test_what_is_wrong(machine: Machine, workspace: Path) -> None:
     assert "did you mean 'LampLight'?" in shown
 
 
+def test_words_out_of_habit(machine: Machine, workspace: Path) -> None:
+    """Each has its answer; another word is a mistake."""
+    assert "needs no initialization" in machine.look("ws", "init", cwd=workspace)
+    assert "python -m pytest src/PACKAGE" in machine.look("ws", "test", cwd=workspace)
+    assert "did you mean 'build'?" in machine.look("ws", "biuld", cwd=workspace, code=2)
+    for word in ("build", "colcon", "source"):
+        assert "nothing has to be built or sourced" in machine.look(word, "x", cwd=workspace, code=2)
+
+
+def test_a_workspace_in_a_workspace(machine: Machine, workspace: Path) -> None:
+    """It is told that the outer one's packages are not seen."""
+    inner = workspace / "src/inner"
+    (inner / "src/deep").mkdir(parents=True)
+    (inner / "src/deep/package.xml").write_text("<package><name>deep</name></package>")
+    assert f"whose packages are not seen from here: {workspace}\n" in machine.look("ws", cwd=inner)
+
+
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
-    """It is said where one would be."""
+    """It is said where one would be, or what a folder lacks to be a package."""
     assert "go to a folder that has packages in src/" in machine.look("ws", cwd=tmp_path, code=1)
+    (tmp_path / "src/dark/resource").mkdir(parents=True)
+    (tmp_path / "src/dark/resource/dark").touch()
+    (tmp_path / "src/dark/setup.py").touch()
+    assert "error: src/dark has setup.py but no package.xml" in machine.look("ws", cwd=tmp_path, code=1)
 
 
 def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
@@ -83,3 +104,21 @@ def test_a_package_without_executables(machine: Machine, workspace: Path) -> Non
     assert "the package 'lamp_interfaces' has no executable that graphflow can run; one, two are C++" in said
     said = machine.look("pkg", "executables", "lamp_interfaces", cwd=workspace)
     assert "has no executable that graphflow can run" in said
+
+
+def test_what_is_no_package(machine: Machine, workspace: Path) -> None:
+    """Every verb that is given its name tells its state; an executable's name alone is told whose it is."""
+    (workspace / "src/dark").mkdir()
+    (workspace / "src/dark/setup.py").write_text(SETUP)
+    (workspace / "g.yaml").write_text("nodes:\n  /a: {pkg: dark, exec: lamp}\n")
+    told = "src/dark has setup.py but no package.xml"
+    for words in (["run", "dark", "x"], ["launch", "dark", "x.launch.py"], ["check", "g.yaml"]):
+        assert told in machine.look(*words, cwd=workspace, code=2)
+    for verb in ("executables", "prefix", "xml"):
+        assert told in machine.look("pkg", verb, "dark", cwd=workspace, code=1)
+    (workspace / "src/lamp/setup.py").write_text(SETUP.replace("'lamp =", "'shine ="))
+    assert "graphflow run lamp shine" in machine.look("run", "shine", cwd=workspace, code=2)
+    said = machine.look("run", "position_contoler", "shine", cwd=workspace, code=2)
+    assert said.endswith(
+        "or with graphflow; /WORKSPACE has lamp, lamp_interfaces\n".replace("/WORKSPACE", str(workspace))
+    )

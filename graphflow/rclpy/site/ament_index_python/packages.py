@@ -11,6 +11,7 @@ from pathlib import Path
 
 from graphflow.graph.executables import package_prefix, package_share
 from graphflow.graph.share import share_folder
+from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import Workspace, find_workspace
 from graphflow.names import did_you_mean
 
@@ -30,8 +31,9 @@ def _workspace() -> Workspace:
 
 
 def _missing(package_name: str, known: Workspace) -> PackageNotFoundError:
-    near = did_you_mean(package_name, list(known.packages))
-    return PackageNotFoundError(f"package '{package_name}' not found, searching: ['{known.root}']{near}")
+    why = why_no_package(package_name, known)
+    more = did_you_mean(package_name, list(known.packages)) if why is None else f"; {why}"
+    return PackageNotFoundError(f"package '{package_name}' not found, searching: ['{known.root}']{more}")
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:

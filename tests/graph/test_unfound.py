@@ -1,0 +1,98 @@
+"""Why a package is not found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from graphflow.graph.unfound import no_packages, outer_workspace, owners, why_no_package
+from graphflow.graph.workspace import Workspace, find_workspace
+
+SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['shine = lamp.node:main']})\n"
+
+
+def manifest(name: str) -> str:
+    return f"<package><name>{name}</name></package>"
+
+
+def write(folder: Path, **files: str) -> Path:
+    folder.mkdir(parents=True)
+    for name, text in files.items():
+        (folder / name.replace("_", ".", 1)).write_text(text)
+    return folder
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    """A workspace with one package, and folders that are none."""
+    source = tmp_path / "ws" / "src"
+    write(source / "lamp", package_xml=manifest("lamp"), setup_py=SETUP)
+    write(source / "dark", setup_py=SETUP)
+    (source / "dark" / "resource").mkdir()
+    (source / "dark" / "resource" / "dark").touch()
+    write(source / "vendored", setup_py="")
+    write(source / "cut", package_xml="<package")
+    write(source / "folder", package_xml=manifest("other"))
+    write(source / "ignored", package_xml=manifest("ignored"), setup_py=SETUP)
+    (source / "ignored" / "COLCON_IGNORE").touch()
+    write(source / "project", pyproject_toml="")
+    (source / "project" / "nodes").mkdir()
+    monkeypatch.chdir(tmp_path / "ws")
+    return find_workspace(tmp_path / "ws")
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("dark", "src/dark has setup.py but no package.xml; to make it a package, write in it: <package"),
+        ("vendored", "src/vendored has setup.py but no package.xml"),
+        ("cut", "src/cut/package.xml has no <name>"),
+        ("folder", "src/folder is the package 'other', by the name in its package.xml"),
+        ("ignored", "src/ignored is left out of the workspace, as it has a file COLCON_IGNORE"),
+        ("project", "src/project is a project of graphflow's, not a package of ROS 2's; to use it: cd src/project"),
+    ],
+)
+def test_a_folder_of_that_name(workspace: Workspace, name: str, why: str) -> None:
+    """Its state is told."""
+    said = why_no_package(name, workspace)
+    assert said is not None
+    assert said.startswith(why)
+
+
+def test_the_folder_that_the_user_is_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also from within, where there is no workspace."""
+    inner = write(tmp_path / "dark" / "dark")
+    (tmp_path / "dark" / "setup.py").touch()
+    monkeypatch.chdir(inner)
+    assert "has setup.py but no package.xml" in str(why_no_package("dark", find_workspace(inner)))
+
+
+def test_nothing_of_that_name(workspace: Workspace) -> None:
+    """There is nothing to say of it, nor of a package that is there."""
+    assert why_no_package("nowhere", workspace) is None
+    assert why_no_package("lamp", workspace) is None
+
+
+def test_a_workspace_in_a_workspace(workspace: Workspace) -> None:
+    """The packages around it are told of, and where they are."""
+    root = workspace.root
+    write(root / "src" / "inner" / "src" / "deep", package_xml=manifest("deep"))
+    inner = find_workspace(root / "src" / "inner")
+    assert list(inner.packages) == ["deep"]
+    around = outer_workspace(inner)
+    assert around is not None
+    assert around.root == root
+    assert str(why_no_package("lamp", inner)).endswith(f": cd {root}")
+    assert outer_workspace(workspace) is None
+
+
+def test_folders_that_were_meant(workspace: Workspace) -> None:
+    """A `package.xml` or the marker of ament says so; other code may have a `setup.py`, too."""
+    assert [said.split()[0] for said in no_packages(workspace)] == ["src/cut/package.xml", "src/dark"]
+
+
+def test_an_executable(workspace: Workspace) -> None:
+    """The packages that have it."""
+    assert owners("shine", workspace) == ["lamp"]
+    assert owners("lamp", workspace) == []
