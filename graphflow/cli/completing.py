@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import click
 
@@ -13,6 +14,8 @@ _PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
 NAMES = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION")
 LIVE = (*NAMES, "TYPE", "PARAMETER", "PARAMETERS")
 """Places for which the graph is asked."""
+PACKAGED = ("executables", "prefix", "xml")
+"""Verbs of `pkg` that are for one package."""
 ANSWER_LIMIT = 1.0
 """Seconds that a node has to tell its parameters."""
 
@@ -32,6 +35,8 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
     if partial.startswith("-"):
         return sorted(option for option in _options(command) if option.startswith(partial))
     what, given = _expected(command, rest)
+    if (command.name, len(given)) in (("run", 0), ("run", 1)) or (what == "PACKAGE" and command.name in PACKAGED):
+        return sorted(name for name in _started_by(given) if name.startswith(partial))
     mark = partial[:1] if partial[:1] in ("'", '"') else ""
     try:
         found = _named(what, given, mark or "'")
@@ -119,6 +124,15 @@ def _named(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
     # They come from other processes, and a shell runs what it is given: what it might obey is not offered.
     plain = [name for name in found if _PLAIN.fullmatch(name)]
     return _types() if word == "TYPE" and not plain else plain
+
+
+def _started_by(given: Sequence[str]) -> set[str]:
+    """The packages that have executables, or the executables of the one that was named."""
+    from graphflow.graph.executables import all_executables
+    from graphflow.graph.project import project_root
+
+    rows = all_executables(project_root(Path.cwd()))
+    return {row.name for row in rows if row.package == given[0]} if given else {row.package for row in rows}
 
 
 def _types() -> list[str]:

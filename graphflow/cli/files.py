@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def find_graph(text: str) -> Path:
-    """The file that `up NAME` means: a path, or the name of a graph that comes with graphflow.
+    """The file that `up NAME` means: a path, or the name of a graph that is installed or comes with graphflow.
 
     Raises:
         UsageFault: `text` is neither.
@@ -27,17 +27,21 @@ def find_graph(text: str) -> Path:
     path = Path(text)
     if path.is_file():
         return path
+    from graphflow.graph import installed
     from graphflow.graph.project import bundled_graphs
 
-    bundled = bundled_graphs()
-    if text.removesuffix(".yaml") in bundled:
-        found = bundled[text.removesuffix(".yaml")]
-        output.talk(f"{text}: using the one that comes with graphflow, {found}")
-        return found
+    name, bundled, others = text.removesuffix(".yaml"), bundled_graphs(), installed.graphs()
+    found = others.get(name) or ([bundled[name]] if name in bundled else [])
+    if len(found) == 1:
+        source = "an installed package" if name in others else "graphflow"
+        output.talk(f"{text}: using the one that comes with {source}, {found[0]}")
+        return found[0]
+    if found:
+        raise UsageFault(f"several packages have a graph {name!r}; name its file: {', '.join(map(str, found))}")
     folder = path if path.is_dir() else path.parent
     near = [str(p) for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))]
     what = "is a folder" if path.is_dir() else "there is no such file"
-    raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled])}")
+    raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled, *others])}")
 
 
 _graph = click.argument("graph", metavar="GRAPH.yaml")

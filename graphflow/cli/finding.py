@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
-from graphflow.graph.executables import find, with_graphflow
+from graphflow.graph.executables import SLIP, find, with_graphflow
+from graphflow.graph.installed import installed, package_of, packages_with
 from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.unfound import owners, why_no_package
 from graphflow.graph.workspace import find_workspace
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 from graphflow.supervisor.classes import add_root, import_class, import_module_of, node_classes
 
 if TYPE_CHECKING:
@@ -52,12 +53,20 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
 
 
 def _executables_of(package: str) -> list[str]:
-    """Those of a package of ROS's that come with graphflow."""
-    return [name for known, name in with_graphflow() if known == package]
+    """Those of a package that come with graphflow or are installed."""
+    own = package_of(package)
+    names = [name for known, name in with_graphflow() if known == package]
+    return names + (own.executables if own is not None else [])
 
 
 def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
-    """The node of a module in `nodes/`, of the project or of graphflow."""
+    """The node of a module in `nodes/` of the project, of an installed distribution, or of graphflow."""
+    having = [one for one in packages_with(what) if what in one.nodes]
+    if having and not (root / "nodes" / f"{what}.py").is_file():
+        if len(having) > 1:
+            choices = ", ".join(f"{one.name} {what}" for one in having)
+            raise UsageFault(f"several packages have a node {what!r}; run one of {choices}")
+        return import_class(having[0].nodes[what])
     try:
         return _only(f"nodes.{what}")
     except NoModule:
@@ -81,10 +90,12 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         return f"{what!r} is an executable of {' and of '.join(has)}: graphflow run {has[0]} {what}"
     known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
-        meant = did_you_mean(what, (), hidden=[*packages, *(package for package, _ in with_graphflow())])
+        near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
+        meant = f"; did you mean {near!r}?" if near is not None else ""
         there = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
         return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or there}"
-    known |= {*(package for package, _ in with_graphflow()), *packages}
+    known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}
+    known |= {name for one in installed().values() for name in one.nodes}
     return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
 
 

@@ -30,10 +30,13 @@ def _root() -> Path:
 def _known() -> list[str]:
     """Packages of nodes that come with graphflow, of the project, and those that have types."""
     from graphflow.graph.executables import project_packages, with_graphflow
+    from graphflow.graph.installed import installed
     from graphflow.msgs import registry
 
     use_project()
-    return sorted({package for package, _ in with_graphflow()} | {*project_packages(_root()), *registry.packages()})
+    return sorted(
+        {package for package, _ in with_graphflow()} | {*project_packages(_root()), *installed(), *registry.packages()}
+    )
 
 
 def _hint(package: str) -> str:
@@ -73,7 +76,7 @@ def executables(package: str, full_path: bool, as_json: bool) -> int:
         return exits.OK
     for row in rows:
         where = row.class_path.partition(":")[0].replace(".", "/")
-        output.data(f"{where}.py" if full_path else f"{row.package} {row.name}" if not package else row.name)
+        output.data(f"{where}.py" if full_path else f"{row.package} {row.name}")
     return exits.OK
 
 

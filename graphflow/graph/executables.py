@@ -13,6 +13,7 @@ from importlib import util
 from pathlib import Path
 from typing import NamedTuple
 
+from graphflow.graph.installed import Installed, installed, package_of
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.unfound import why_no_package
@@ -62,7 +63,8 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
 
     Args:
         root: The folder of the project: a module `nodes/EXECUTABLE.py` with one class is an executable of the package
-            that is called as the project, and so is what a `setup.py` has among its `console_scripts`.
+            that is called as the project, and so is what a `setup.py` has among its `console_scripts`. The nodes of
+            installed distributions come after those.
     """
     if (package, executable) in EXECUTABLES:
         return Executable(EXECUTABLES[package, executable], _NAMES.get(executable, executable))
@@ -71,7 +73,10 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
         module = f"nodes.{executable}"
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
     classes = _classes(file) if file is not None and file.is_file() and not uses_ros(file) else []
-    return Executable(f"{module}:{classes[0]}", executable) if len(classes) == 1 else None
+    if len(classes) == 1:
+        return Executable(f"{module}:{classes[0]}", executable)
+    own = package_of(package)
+    return None if own is None or executable not in own.nodes else Executable(own.nodes[executable], executable)
 
 
 def as_class(node: Item, root: Path) -> Item:
@@ -118,12 +123,16 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         NoExecutable: Nobody here has one of that name; the text says which there are.
     """
     own = workspace.packages.get(package)
+    outside = package_of(package) if own is None else None
+    if outside is not None and name in outside.programs:
+        return ("graphflow", "run", package, name)
     if own is None and is_ros_sourced(env):
         return ("ros2", "run", package, name)
     if own is None:
         own = bundled().packages.get(package)
         with_us = [name for at, name in with_graphflow() if at == package]
         if own is None or own.known_as(name) is None:
+            with_us += outside.executables if outside is not None else []
             raise _not_with_us(package, name, with_us, workspace)
     known = own.known_as(name)
     if known is None:
@@ -153,7 +162,7 @@ def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Wor
         with_us: Those of its package that come with graphflow.
     """
     if with_us:
-        text = f"graphflow has no executable {name!r} of the package {package!r}{did_you_mean(name, with_us)}"
+        text = f"the package {package!r} has no executable {name!r} here{did_you_mean(name, with_us)}"
         return NoExecutable(text, is_slip=nearest(name, with_us) is not None)
     why = why_no_package(package, workspace)
     if why is not None:
@@ -196,7 +205,13 @@ def all_executables(root: Path) -> list[Listed]:
         for name in own.executables:
             if (own.name, name) not in known:
                 rows.append(Listed(own.name, name, own.path_of(name, root)))
+    rows += [row for one in installed().values() for row in _rows_of(one) if row[:2] not in known]
     return sorted(set(rows))
+
+
+def _rows_of(one: Installed) -> list[Listed]:
+    rows = [Listed(one.name, name, class_path) for name, class_path in one.nodes.items()]
+    return rows + [Listed(one.name, name, f"{e.module}:{e.function}") for name, (_, e) in one.programs.items()]
 
 
 def project_packages(root: Path) -> list[str]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from graphflow.graph import installed
+from graphflow.graph.installed import SITE_FOLDERS
 from graphflow.graph.workspace import find_workspace
 from graphflow.msgs import registry
 from graphflow.names import nearest
@@ -24,6 +26,8 @@ def project_root(path: Path) -> Path:
     if start.is_relative_to(INSTALLED_DEMOS):
         return INSTALLED_DEMOS
     for folder in [start, *start.parents]:
+        if folder.name in SITE_FOLDERS:  # of a virtual environment, which may lie in another project
+            break
         if (folder / "pyproject.toml").is_file() and ((folder / "graphs").is_dir() or (folder / "nodes").is_dir()):
             return folder
     folder = start if start.is_dir() else start.parent
@@ -35,6 +39,7 @@ def add_interfaces(root: Path) -> None:
     folder = root / "interfaces"
     if folder.is_dir():
         registry.add_root(folder)
+    registry.add_later(installed.interfaces)
     registry.add_later(lambda: find_workspace(root).interfaces)
 
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
 from graphflow.graph.executables import SLIP
+from graphflow.graph.installed import package_of
 from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
@@ -59,7 +60,10 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     if package is None and what in bundled().packages and enabling.elsewhere() is None:
         package, workspace = bundled().packages[what], bundled()
     if package is None:
-        return None
+        outside = package_of(what)
+        if outside is None or not words or words[0] not in outside.programs:
+            return None
+        return Program(*outside.programs[words[0]], find_workspace(here), list(words[1:]))
     if not words:
         if not package.executables or (workspace.root / "nodes" / f"{what}.py").is_file():  # a node of that name
             return None

@@ -34,6 +34,9 @@ TWIST = "{linear: {x: 0.0, y: 0.0, z: 0.0}, angular: {x: 0.0, y: 0.0, z: 0.0}}"
         ("topic pub /a no_such", "", []),
         ("topic echo --timeout", "", []),
         ("bag info", "", []),
+        ("run", "turtles", ["turtlesim"]),
+        ("run turtlesim", "turtle_", ["turtle_teleop_key"]),
+        ("pkg executables", "demo_nodes_p", ["demo_nodes_py"]),
     ],
 )
 def test_without_a_graph(machine: Machine, words: str, partial: str, found: list[str]) -> None:

@@ -30,8 +30,9 @@ def test_list(machine: Machine, robot: Path) -> None:
 
 
 def test_executables(machine: Machine, robot: Path) -> None:
-    """Of all packages, or of one; and where they are."""
-    assert machine.look("pkg", "executables", "turtlesim") == "draw_square\nmimic\nturtle_teleop_key\nturtlesim_node\n"
+    """Of all packages, or of one, each with its package as in ROS 2; and where they are."""
+    names = ("draw_square", "mimic", "turtle_teleop_key", "turtlesim_node")
+    assert machine.look("pkg", "executables", "turtlesim").splitlines() == [f"turtlesim {name}" for name in names]
     rows = machine.look("pkg", "executables", cwd=robot).splitlines()
     assert {"my_robot arm", "demo_nodes_cpp add_two_ints_server"} <= {*rows}
     assert machine.look("pkg", "executables", "my_robot", "--full-path", cwd=robot) == "nodes/arm.py\n"

@@ -619,7 +619,7 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
         ("{pkg: lamp, exec: b}", "WORKSPACE/src/lamp/setup.py: b is lamp.b:f, and there is no WORKSPACE/src/lamp/"),
         (
             "{pkg: turtlesim, exec: turtlesim_nod}",
-            "graphflow has no executable 'turtlesim_nod' of the package 'turtlesim'; did",
+            "the package 'turtlesim' has no executable 'turtlesim_nod' here; did you mean 'turtlesim_node'?",
         ),
         ("{pkg: lamp, exec: shine, params_file: q.yaml}", "there is no file "),
         ("{pkg: lamp, exec: shine, remap: {__ns: /x}}", "'__ns' cannot be remapped"),
