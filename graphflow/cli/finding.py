@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.errors import GraphflowError, NoModule, UsageFault
-from graphflow.graph.executables import SLIP, find, with_graphflow
+from graphflow.graph.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.graph.installed import installed, package_of, packages_with
 from graphflow.graph.project import demos_root, project_root
 from graphflow.graph.unfound import owners, why_no_package
@@ -61,6 +61,9 @@ def _executables_of(package: str) -> list[str]:
 
 def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     """The node of a module in `nodes/` of the project, of an installed distribution, or of graphflow."""
+    own = project_nodes(root)
+    if what in own:
+        return import_class(own[what])
     having = [one for one in packages_with(what) if what in one.nodes]
     if having and not (root / "nodes" / f"{what}.py").is_file():
         if len(having) > 1:
@@ -88,7 +91,9 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     has = owners(what, workspace)
     if has:
         return f"{what!r} is an executable of {' and of '.join(has)}: graphflow run {has[0]} {what}"
-    known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")}
+    known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {
+        *project_nodes(root)
+    }
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
         near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
         meant = f"; did you mean {near!r}?" if near is not None else ""

@@ -23,12 +23,19 @@ dependencies = ["graphflow-zenoh"]
 [project.optional-dependencies]
 dev = ["pytest"]
 
-[build-system]
-requires = ["setuptools>=68"]
-build-backend = "setuptools.build_meta"
+[project.entry-points."graphflow.nodes"] # what `graphflow run NAME` starts, here and where this is installed
+greeter = "@name.greeter:Greeter"
 
-[tool.setuptools]
-packages = ["nodes"]
+[build-system]
+requires = ["hatchling>=1.26"]
+build-backend = "hatchling.build"
+
+[tool.hatch.build.targets.wheel]
+packages = ["@name"]
+
+[tool.hatch.build.targets.wheel.force-include]
+graphs = "@name/graphs"
+interfaces = "@name/interfaces"
 
 [tool.pytest.ini_options]
 testpaths = ["tests"]
@@ -42,19 +49,21 @@ mypy_path = "typings" # where `graphflow interface stubs` writes what editors re
 
     pip install -e '.[dev]'              once: what it needs
     graphflow up graphs/@name.yaml       run it, until Ctrl-C
-    python nodes/greeter.py              run the one node
+    graphflow run greeter                run the one node
     graphflow topic echo /greeting       in a second terminal: what it says
     graphflow param set /greeter rate 5  change it while it runs
     python -m pytest                     test it, with no network and no waiting
 
-`nodes/` has the nodes, `graphs/` says which of them run together, `interfaces/` has message and service types of your
-own: save a file there and import it.
+`@name/` has the nodes, `graphs/` says which of them run together, `interfaces/` has message and service types of your
+own: save a file there and import it. A node that `pyproject.toml` names in `graphflow.nodes` is run by its name, also
+where the wheel of this project is installed: `graphflow run greeter`, `graphflow up @name`.
 """,
     "interfaces/@name_interfaces/msg/Greeting.msg": """\
 string text
 uint32 count
 """,
-    "nodes/greeter.py": '''\
+    "@name/__init__.py": "",
+    "@name/greeter.py": '''\
 """A node: what it holds and what it does."""
 
 import graphflow
@@ -87,14 +96,14 @@ args:
 
 nodes:
   /greeter:
-    class: nodes.greeter:Greeter
+    class: @name.greeter:Greeter
     params: {text: $(var text), rate: 2.0}
 """,
     "tests/test_greeter.py": """\
 from graphflow.msgs.@name_interfaces.msg import Greeting
 from graphflow.testing import Graph
 
-from nodes.greeter import Greeter
+from @name.greeter import Greeter
 
 
 async def test_it_greets_twice_a_second(graph: Graph) -> None:

@@ -11,9 +11,9 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import util
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from graphflow.graph.installed import Installed, installed, package_of
+from graphflow.graph.installed import GROUP, Installed, installed, package_of
 from graphflow.graph.share import share_folder
 from graphflow.graph.tree import Item
 from graphflow.graph.unfound import why_no_package
@@ -75,8 +75,11 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     classes = _classes(file) if file is not None and file.is_file() and not uses_ros(file) else []
     if len(classes) == 1:
         return Executable(f"{module}:{classes[0]}", executable)
-    own = package_of(package)
-    return None if own is None or executable not in own.nodes else Executable(own.nodes[executable], executable)
+    outside = package_of(package)
+    nodes = dict(outside.nodes) if outside is not None else {}
+    if package in (root.name, _project_name(root)):
+        nodes |= project_nodes(root)
+    return Executable(nodes[executable], executable) if executable in nodes else None
 
 
 def as_class(node: Item, root: Path) -> Item:
@@ -198,6 +201,7 @@ def all_executables(root: Path) -> list[Listed]:
     rows = [Listed(package, name, path) for (package, name), path in EXECUTABLES.items()]
     for package in project_packages(root):
         names = {f.stem for f in (root / "nodes").glob("*.py")} | _scripts(package, root).keys()
+        names |= project_nodes(root).keys()
         found = {name: find(package, name, root) for name in names}
         rows += [Listed(package, name, one.class_path) for name, one in found.items() if one is not None]
     known = {row[:2] for row in rows}
@@ -218,7 +222,7 @@ def project_packages(root: Path) -> list[str]:
     """The packages of a project: those with a `package.xml`, and the project itself where it has nodes."""
     own = _project_name(root) or root.name
     found = [name for name, _ in _described_packages(root)]
-    return sorted({*found, *([own] if (root / "nodes").is_dir() else [])})
+    return sorted({*found, *([own] if (root / "nodes").is_dir() or project_nodes(root) else [])})
 
 
 def package_folder(package: str, root: Path) -> Path | None:
@@ -312,11 +316,23 @@ def _scripts(package: str, root: Path) -> dict[str, str]:
     return found
 
 
+def project_nodes(root: Path) -> dict[str, str]:
+    """The class paths of a project's nodes that its `pyproject.toml` names as entry points, by executable."""
+    points = _project(root).get("entry-points", {})
+    nodes = points.get(GROUP, {}) if isinstance(points, dict) else {}
+    return {str(name): str(path) for name, path in nodes.items()} if isinstance(nodes, dict) else {}
+
+
 def _project_name(root: Path) -> str:
+    return str(_project(root).get("name", ""))
+
+
+def _project(root: Path) -> dict[str, Any]:
     try:
-        return str(tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["name"])
-    except (OSError, ValueError, KeyError, TypeError):
-        return ""
+        found = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8")).get("project")
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def _classes(file: Path) -> list[str]:

@@ -42,7 +42,7 @@ class Installed:
     @property
     def graphs(self) -> dict[str, Path]:
         """Its graph files, by name: `robot`, `arms/left`."""
-        tops = [folder / "graphs" for folder in self.folders]
+        tops = [top / "graphs" for folder in self.folders for top in _tops(folder)]
         return {f.relative_to(top).with_suffix("").as_posix(): f for top in tops for f in sorted(top.rglob("*.yaml"))}
 
 
@@ -76,8 +76,13 @@ def graphs() -> dict[str, list[Path]]:
 
 def interfaces() -> dict[str, Path]:
     """The folders of packages with messages, services or actions that distributions bring, by name."""
-    tops = [folder / "interfaces" for one in installed().values() for folder in one.folders]
+    tops = [top / "interfaces" for one in installed().values() for folder in one.folders for top in _tops(folder)]
     return {folder.name: folder for top in tops if top.is_dir() for folder in top.iterdir() if folder.is_dir()}
+
+
+def _tops(folder: Path) -> list[Path]:
+    """The folders with a package's `graphs/`: its own, and its project's where that is installed to be edited."""
+    return [folder, *([folder.parent] if (folder.parent / "pyproject.toml").is_file() else [])]
 
 
 def _read(distribution: Distribution) -> Installed | None:
@@ -105,13 +110,8 @@ def _program(distribution: Distribution, module: str, function: str) -> tuple[Pa
 
 
 def _located(distribution: Distribution, module: str) -> Path:
-    """The path of a module without an ending: where it was installed, or else where Python finds its package."""
+    """The path of a module without an ending: where it was installed, or its project if that is to be edited."""
     path = Path(*module.split("."))
-    there = Path(str(distribution.locate_file(path)))
-    found = (Path(entry) / path for entry in sys.path if entry and (Path(entry) / path.parts[0]).is_dir())
-    return there if Path(str(distribution.locate_file(path.parts[0]))).is_dir() else next(found, there)
-
-
-def is_installed(path: Path) -> bool:
-    """Whether a path is in a folder of installed distributions."""
-    return any(part in SITE_FOLDERS for part in path.parts)
+    there = Path(str(distribution.locate_file("")))
+    tops = (top for top in (there, *map(Path, sys.path)) if (top / path.parts[0] / "__init__.py").is_file())
+    return next(tops, there) / path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -23,7 +24,7 @@ def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path
     project = tmp_path / "mylab"
     assert "no problems" in machine.run("check", "graphs/mylab.yaml", cwd=project)
     up = machine.start("up", "graphs/mylab.yaml", "text:=moin", cwd=project)
-    up.wait_for("nodes/greeter.py")
+    up.wait_for("mylab/greeter.py")
     up.wait_for("moin, time 2")
     assert "text: moin" in machine.run("topic", "echo", "/greeting", "--once", cwd=project)
     assert up.end() == 0
@@ -32,7 +33,7 @@ def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path
     assert tests.returncode == 0, tests.stdout
     assert "1 passed" in tests.stdout
     alone = subprocess.Popen(
-        [sys.executable, "nodes/greeter.py"], cwd=project, env=machine.env, stderr=subprocess.PIPE, text=True
+        [sys.executable, "mylab/greeter.py"], cwd=project, env=machine.env, stderr=subprocess.PIPE, text=True
     )
     try:
         assert alone.stderr is not None
@@ -46,9 +47,24 @@ def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) 
     """A node that is called like one that comes with graphflow is the project's own."""
     machine.run("init", "mylab", cwd=tmp_path)
     project = tmp_path / "mylab"
-    shutil.copy(PROGRAMS / "run" / "talker.py", project / "nodes")
+    shutil.copytree(PROGRAMS / "run", project / "nodes", ignore=lambda _, names: {*names} - {"talker.py"})
     node = machine.start("run", "nodes.talker:Talker", cwd=project)
     node.wait_for("this is mine")
+    assert node.end() == 0
+
+
+def test_its_nodes_have_names(machine: Machine, tmp_path: Path) -> None:
+    """As its `pyproject.toml` says, before it is installed, too; no package of its wheel is called `nodes`."""
+    machine.look("init", "mylab", cwd=tmp_path)
+    project = tmp_path / "mylab"
+    assert machine.look("pkg", "executables", "mylab", cwd=project) == "mylab greeter\n"
+    wheel = tomllib.loads((project / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert wheel == {
+        "packages": ["mylab"],
+        "force-include": {"graphs": "mylab/graphs", "interfaces": "mylab/interfaces"},
+    }
+    node = machine.start("run", "greeter", cwd=project)
+    node.wait_for("hello, time 1")
     assert node.end() == 0
 
 

@@ -93,6 +93,20 @@ def test_a_virtual_environment_is_not_its_projects(site: Path) -> None:
     assert project_root(site / "my_robot/graphs/robot.yaml") == site / "my_robot/graphs"
 
 
+def test_installed_to_be_edited(site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The files are the project's, though a copy of its graphs was installed, too."""
+    (site / "my_robot").rename(tmp_path / "my_robot")
+    (site / "my_robot/graphs").mkdir(parents=True)
+    (tmp_path / "my_robot/graphs").rename(tmp_path / "graphs")
+    (site / "my_robot/graphs/robot.yaml").touch()
+    monkeypatch.syspath_prepend(str(tmp_path))
+    installed.installed.cache_clear()
+    own = installed.package_of("my_robot")
+    assert own is not None
+    assert own.graphs == {"robot": tmp_path / "graphs/robot.yaml"}
+    assert own.programs["beeper"][0] == tmp_path / "my_robot/beeper.py"
+
+
 def test_graphs_by_name(site: Path) -> None:
     """With their package or without; a name that several have has several files."""
     install(site, "other_robot")
