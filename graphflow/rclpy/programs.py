@@ -13,14 +13,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
 
-from graphflow.deadlock.user_code import is_users
 from graphflow.errors import UsageFault
 from graphflow.graph.executables import SLIP
 from graphflow.graph.installed import package_of
 from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
-from graphflow.rclpy import enabling, finder
+from graphflow.rclpy import enabling, finder, tracebacks
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
 
@@ -111,7 +110,7 @@ def run(program: Program) -> None:
         UsageFault: It has not the function that it is said to be.
     """
     make_importable(program.workspace)
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts jobs; rclpy ends all the same
+    if signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, signal.SIG_DFL):  # as a shell starts jobs, or until now
         signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     sys.argv = [str(program.file), *program.words]
@@ -141,13 +140,10 @@ def _begin(program: Program) -> None:
     sys.exit(called())
 
 
-def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Show an error that ends a program: from the first line of its own on, and with what may help."""
-    own = trace
-    while own is not None and not is_users(own.tb_frame.f_code.co_filename):
-        own = own.tb_next
-    begun = None if isinstance(error, SyntaxError) else own or trace
-    sys.__excepthook__(kind, error.with_traceback(begun), begun)
+def _tell(workspace: Workspace, kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
+    """Show an error that ends a program: in the program's own code, and with what may help."""
+    tracebacks.shorten(error)
+    sys.__excepthook__(kind, error, error.__traceback__)
     if isinstance(error, ModuleNotFoundError) and error.name is not None:
         sys.stderr.write(f"note: {_where_to_have(error.name, workspace)}\n")
     if isinstance(error, AssertionError) and " field must be " in str(error):

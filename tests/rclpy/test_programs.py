@@ -134,6 +134,33 @@ def test_it_runs_as_it_stands(workspace: Path, words: tuple[str, ...]) -> None:
     assert len(lines) == 2
 
 
+@pytest.mark.real
+def test_an_interrupted_program_shows_its_own_lines(workspace: Path) -> None:
+    """Not those by which its callbacks are run."""
+    program = workspace / "busy.py"
+    busy = NODE.replace("except KeyboardInterrupt:\n        pass\n    ", "").replace(
+        "once=True)", "once=True)\n        rclpy.spin(self)"
+    )
+    program.write_text(busy)
+    process = start(workspace, "busy.py")
+    assert process.stdout is not None
+    try:
+        for line in process.stdout:
+            if "shines: 1" in line:
+                process.send_signal(signal.SIGINT)
+                break
+        shown = process.stdout.read()
+        assert process.wait(20) == -signal.SIGINT
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+    files = [line.strip() for line in shown.splitlines() if line.startswith("  File")]
+    assert files
+    assert all(line.startswith(f'File "{program}"') for line in files)
+    assert shown.splitlines()[-1] == "KeyboardInterrupt"
+
+
 def test_programs_that_come_with_graphflow(workspace: Path) -> None:
     """They are found anywhere, unless the workspace has a package of that name."""
     found = find_program("tf2_ros", ["tf2_echo", "map", "base"], workspace)

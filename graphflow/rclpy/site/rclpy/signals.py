@@ -11,6 +11,7 @@ from types import FrameType
 from typing import Any
 from weakref import WeakSet
 
+from graphflow.rclpy import tracebacks
 from rclpy._rclpy_pybind11 import SignalHandlerOptions
 from rclpy.context import Context
 
@@ -103,4 +104,5 @@ def _caught(number: int, frame: FrameType | None) -> None:
     former = _former.get(number)
     is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for the network to be left
     if callable(former) and not is_ending:
+        tracebacks.install()
         former(number, frame)
