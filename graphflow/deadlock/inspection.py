@@ -63,7 +63,8 @@ class Inspection:
             return self._last_waits
         search, watchdog = self._search, self._search.watchdog
         nodes = {node.full_name: groups_of(node) for node in list(self._process.nodes)}
-        for other in list(self._process.elsewhere):
+        others = list(self._process.elsewhere)
+        for other in others:
             nodes |= other.groups()
         reports = dict(search.reports)
         told = {
@@ -71,7 +72,7 @@ class Inspection:
             "reports": [report.text for report in reports.values()],
             "rings": [list(ring) for ring in reports],
             "process": self._process.session.zid,
-            "stalls": search.stalls.texts,
+            "stalls": [*search.stalls.texts, *(text for other in others for text in other.stalls())],
             "nodes": nodes,
             "blocked_for": watchdog.blocked_for if watchdog.is_blocked else 0.0,
             "late": watchdog.late,

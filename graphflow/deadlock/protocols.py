@@ -81,6 +81,9 @@ class Elsewhere(Protocol):
     def groups(self) -> dict[str, list[dict[str, Any]]]:
         """What they are in, by node, as plain data. Called on any thread."""
 
+    def stalls(self) -> list[str]:
+        """What keeps others waiting for long among them, as it was told. Called on any thread."""
+
 
 class Surroundings(Protocol):
     """What the nodes of one process share, as far as the search needs it."""

@@ -185,6 +185,11 @@ class Search:
         times = self._count((service, *_lines(found)))
         return text if times == 1 else again(text.partition("\n")[0], times)
 
+    def tells_of(self, activity: str, title: str) -> bool:
+        """Whether an activity of this process is in a deadlock that was reported, or was said to wait behind one."""
+        is_in_one = any(activity in ring for ring in (*self.reports, *self._foreign))
+        return is_in_one or any(title in behind for behind in list(self._behind.values()))
+
     def close(self) -> None:
         """Stop looking."""
         self._is_closed = True

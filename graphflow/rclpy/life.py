@@ -7,6 +7,7 @@ import logging
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from typing import Any
 
 from graphflow.domain import domain_id
 from graphflow.errors import TransportError
@@ -65,6 +66,8 @@ class Life:
         self._wakes: dict[Wake, None] = {}
         self.nodes: dict[object, Callable[[], None]] = {}
         """What closes each of its nodes, by node."""
+        self.on_leaving: list[Callable[[Any], None]] = []
+        """Called with each node that leaves, or that the end finds."""
 
     def network(self) -> Context:
         """The network, joined now if it was not before. Raises TransportError."""
@@ -100,6 +103,12 @@ class Life:
         """Wake it no more."""
         self._wakes.pop(wake, None)
 
+    def leave(self, node: object) -> None:
+        """A node is destroyed, or all have ended. Twice is harmless."""
+        if self.nodes.pop(node, None) is not None:
+            for told in self.on_leaving:
+                told(node)
+
     def end(self) -> bool:
         """Say that it is over, and wake all who wait; whether it was not over before. For signal handlers too."""
         was_ok, self.is_ok = self.is_ok, False
@@ -120,6 +129,8 @@ class Life:
     def close(self) -> None:
         """Leave the network; where another thread does so already, wait until it has."""
         self.end()
+        for node in list(self.nodes):
+            self.leave(node)
         with self._lock:
             context, self._context = self._context, None
             if context is None:

@@ -437,7 +437,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             return
         if self.executor is not None:
             self.executor.remove_node(self)
-        inner.life.nodes.pop(self, None)
+        inner.life.leave(self)
         if inner.time_source is not None:
             inner.time_source.detach_node()
         inner.events = None

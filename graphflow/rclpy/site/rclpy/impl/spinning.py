@@ -142,6 +142,8 @@ class Spinning:
         self._tasks_were_last = False
         self._asking: list[tuple[Any, Any, Any]] = []
         """With what each thread that waits has asked for the next thing to do."""
+        self.turns = 0
+        """How often the next thing to do was asked for."""
         self._looking = threading.Lock()
         self.has_room: Callable[[], bool] = lambda: True
         self.has_failed: Callable[[], bool] = lambda: False
@@ -152,6 +154,11 @@ class Spinning:
         executor = self._executor()
         assert executor is not None
         return executor
+
+    @property
+    def is_spun(self) -> bool:
+        """Whether some thread waits for something to do, or does something."""
+        return bool(self._asking) or any(run.thread for run in list(self.running))
 
     # tasks
 
@@ -182,6 +189,7 @@ class Spinning:
             ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: As they say.
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
+        self.turns += 1
         asked = (timeout, nodes, condition)
         if asked in self._asking:
             raise ValueError("generator already executing")

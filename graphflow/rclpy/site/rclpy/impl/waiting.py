@@ -55,6 +55,7 @@ from rclpy.impl.entities import (
     served,
 )
 from rclpy.impl.groups import ATTEMPTS, called, executors, is_exclusive, threads_of
+from rclpy.impl.held_up import HeldUp
 from rclpy.impl.locks import Entering, is_inside, is_kept
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
@@ -87,6 +88,7 @@ class Waiting:
         """Where each thread stands, and since when."""
         self._known: dict[tuple[int, int], float] = {}
         """When what stands still was last looked into: a frame and a line, or a run and its step."""
+        self._held_up = HeldUp(life, self._is_told)
         LOOP.soon(self._look)
 
     def number_of(self, thing: Any) -> int:
@@ -99,6 +101,14 @@ class Waiting:
     def stands_since(self, thread: int) -> float:
         """Since when a thread has been in the innermost function of users' that it is in, by the monotonic clock."""
         return self._stood.get(thread, (0, time.monotonic()))[1]
+
+    def _is_told(self, thing: Any, prefix: str, title: str) -> bool:
+        """Whether a run or thread is in a deadlock that was reported, or waits behind one."""
+        return self.context.search.tells_of(f"{self.context.session.zid}:{prefix}{self.number_of(thing)}", title)
+
+    def stalls(self) -> list[str]:
+        """The callbacks that keep others waiting, and the nodes that nobody spins, as they were told."""
+        return self._held_up.texts
 
     def waits(self) -> WaitGraph:
         """Who waits for whom. What is seen differently by a second look goes on."""
@@ -127,6 +137,7 @@ class Waiting:
             return
         clock = self.context.clock
         clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
+        self._held_up.look()
         now, places = time.monotonic(), standing()
         self._stood = {
             thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
