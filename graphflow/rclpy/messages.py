@@ -65,8 +65,9 @@ class StrictMessage(metaclass=_Generated):
 
 class _NoInstances(_Generated):
     def __call__(cls, *_: object, **__: object) -> NoReturn:
-        kind = "Action" if hasattr(cls, "Goal") else "Service"
-        raise NotImplementedError(f"{kind} classes can not be instantiated")
+        kind, part = ("Action", "Goal") if hasattr(cls, "Goal") else ("Service", "Request")
+        way = f"a {part.lower()} is made by {cls.__name__}.{part}()"
+        raise NotImplementedError(f"{kind} classes can not be instantiated: {way}")
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -87,7 +87,8 @@ class Client(ServiceEnd):
         A request without a server is never answered: `wait_for_service` before. Errors as for `call`.
         """
         if not isinstance(request, self.srv_type.Request):
-            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
+            made = f"{self.srv_type.__name__}.Request()"
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: a request is made by {made}")
         with self._handle, self._lock:
             future: Future[Any] = Future()
             payload = messages.encode(request)

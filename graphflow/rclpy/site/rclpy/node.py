@@ -6,7 +6,7 @@ import weakref
 from collections.abc import Callable
 from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from graphflow.errors import GraphflowError
 from graphflow.msgs import registry
@@ -27,6 +27,7 @@ from rclpy.executors import Executor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.handle import Handle
+from rclpy.impl.arguments import explained
 from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.inner import Holdings, Inner, Known, none
@@ -54,9 +55,6 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 from rclpy.validate_topic_name import validate_topic_name
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]
 
@@ -216,6 +214,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
 
     # making and destroying
 
+    @explained
     def create_publisher(
         self,
         msg_type: Any,
@@ -257,6 +256,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
             self.add_waitable(handler)
         return made
 
+    @explained
     def create_subscription(
         self,
         msg_type: Any,
@@ -316,6 +316,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         life = self._graphflow.life
         return Handle(partial(_remove, life, endpoint))
 
+    @explained
     def create_client(
         self,
         srv_type: Any,
@@ -356,6 +357,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         inner.clients.append(made)
         return made
 
+    @explained
     def create_service(
         self,
         srv_type: Any,
@@ -383,6 +385,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, Holdings):
         mark()
         return made
 
+    @explained
     def create_timer(
         self,
         timer_period_sec: float,

@@ -11,6 +11,7 @@ from graphflow.errors import DecodeError
 from graphflow.rclpy import messages
 from graphflow.runtime.service_events import ServiceEvent
 from rclpy.handle import Handle
+from rclpy.impl.arguments import must_return
 from rclpy.impl.passing import passed_on
 from rclpy.impl.service_end import ServiceEnd
 
@@ -88,12 +89,17 @@ class Service(ServiceEnd):
     def _do(self, asked: Asked) -> None:
         request = self._request(asked)
         if request is not None:
-            self.send_response(self.callback(request, self.srv_type.Response()), RequestHeader(asked))
+            self._answer(self.callback(request, self.srv_type.Response()), asked)
 
     async def _do_async(self, asked: Asked) -> None:
         request = self._request(asked)
         if request is not None:
-            self.send_response(await self.callback(request, self.srv_type.Response()), RequestHeader(asked))
+            self._answer(await self.callback(request, self.srv_type.Response()), asked)
+
+    def _answer(self, response: Any, asked: Asked) -> None:
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(must_return(self.callback, "its response", response))
+        self.send_response(response, RequestHeader(asked))
 
     def _take_request(self, request_type: Any) -> tuple[Any, RequestHeader | None]:
         asked = self._endpoint.take()

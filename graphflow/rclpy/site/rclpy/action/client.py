@@ -16,6 +16,7 @@ from graphflow.rclpy.wake import Wake
 from graphflow.runtime.threaded import ThreadedClient, ThreadedSubscription
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import sending
+from rclpy.impl.arguments import explained
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -86,6 +87,7 @@ class ClientGoalHandle:
 class ActionClient(Waitable):
     """A client of an action."""
 
+    @explained
     def __init__(
         self,
         node: Any,

@@ -22,6 +22,7 @@ from graphflow.runtime.threaded import Asked, ThreadedPublisher, ThreadedService
 from rclpy._rclpy_pybind11 import GoalEvent, RCLError
 from rclpy.executors import await_or_execute
 from rclpy.handle import sending
+from rclpy.impl.arguments import explained, must_return
 from rclpy.impl.passing import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default, to_graphflow
 from rclpy.task import Future
@@ -167,6 +168,7 @@ class ActionServer(Waitable):
         TypeError: `execute_callback` cannot be called.
     """
 
+    @explained
     def __init__(
         self,
         node: Any,
@@ -310,6 +312,8 @@ class ActionServer(Waitable):
             result = self._action_type.Result()
             self._logger.error(f"Error raised in execute callback: {error}")
             traceback.print_exc()
+        if not isinstance(result, self._action_type.Result):
+            raise AssertionError(must_return(execute_callback, f"a {self._action_type.__name__}.Result()", result))
         if goal_handle.is_active:
             shown = bytes(goal_handle.goal_id.uuid).hex()
             self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {shown}")

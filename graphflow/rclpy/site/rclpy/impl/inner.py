@@ -13,6 +13,7 @@ from rclpy.client import Client
 from rclpy.clock import ROSClock
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl.arguments import Unmade
 from rclpy.impl.parameters import NodeParameters
 from rclpy.logging import get_logger
 from rclpy.publisher import Publisher
@@ -67,7 +68,7 @@ def none() -> None:
 class Holdings:
     """What a node has, to be looked at; for `Node` to derive from."""
 
-    _graphflow: Inner
+    _graphflow: Inner = Unmade()  # type: ignore[assignment]
 
     @property
     def publishers(self) -> Iterator[Publisher]:

@@ -19,6 +19,7 @@ from rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from rclpy.impl.arguments import must_return
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 from rclpy.validate_parameter_name import validate_parameter_name
 
@@ -236,6 +237,8 @@ class NodeParameters:
                 return SetParametersResult(successful=False, reason=reason)
         for check in list(self.checks):
             result = check(parameters)
+            if not hasattr(result, "successful"):
+                raise AttributeError(must_return(check, "SetParametersResult(successful=True)", result))
             if not result.successful:
                 return SetParametersResult(successful=result.successful, reason=result.reason)
         former: dict[str, Parameter[Any]] = {}

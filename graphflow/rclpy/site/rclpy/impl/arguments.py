@@ -1,0 +1,144 @@
+"""Arguments that do not fit: said in words of the call itself, where ROS 2 tells what it came upon later.
+
+An error stays of the class that ROS 2 raises.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+import sys
+from collections.abc import Callable, Mapping
+from functools import wraps
+from itertools import combinations, permutations
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
+
+from graphflow.deadlock.user_code import is_users
+from graphflow.errors import Place
+from rclpy.qos import QoSProfile
+
+P = ParamSpec("P")
+T = TypeVar("T")
+logger = logging.getLogger("graphflow")
+
+
+def _is_callback(value: object) -> bool:
+    return callable(value) and not isinstance(value, type)
+
+
+def _is_interface(*parts: str) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, type) and all(hasattr(value, part) for part in parts)
+
+
+_PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
+    "node": ("a node", lambda value: hasattr(value, "default_callback_group")),
+    "msg_type": ("a message class", _is_interface("SCHEMA")),
+    "srv_type": ("a service class", _is_interface("Request")),
+    "action_type": ("an action class", _is_interface("Goal")),
+    "qos_profile": ("a QoSProfile or a depth", lambda value: isinstance(value, (QoSProfile, int))),
+    "timer_period_sec": ("a number of seconds", lambda value: isinstance(value, (int, float))),
+    **dict.fromkeys(("topic", "srv_name", "action_name"), ("a name", lambda value: isinstance(value, str))),
+    **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
+}
+"""What the parameters of calls take, by their names."""
+
+
+def explained(call: Callable[P, T]) -> Callable[P, T]:
+    """Have the errors of a call say which of its arguments does not fit, and how it is written."""
+    signature = inspect.signature(call)
+    name = call.__qualname__.partition(".")[0] if call.__name__ == "__init__" else call.__name__
+    needed = [p.name for p in list(signature.parameters.values())[1:] if p.default is p.empty]
+
+    @wraps(call)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            made = call(*args, **kwargs)
+        except (TypeError, AttributeError, RuntimeError) as error:
+            try:
+                given = signature.bind_partial(*args, **kwargs).arguments
+            except TypeError:
+                raise error from None
+            fault = _fault(name, {word: given[word] for word in needed if word in given}, needed)
+            if not fault:
+                raise
+            kind = next(kind for kind in (TypeError, AttributeError, RuntimeError) if isinstance(error, kind))
+            raise kind(fault) from None
+        if "callback" in needed and signature.bind(*args, **kwargs).arguments["callback"] is None:
+            _warn(name)
+        return made
+
+    return checked
+
+
+def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
+    """What is wrong with the arguments of a call; empty if they are of the right kinds."""
+    for words in combinations(needed, len(given)) if len(given) < len(needed) else ():
+        if all(map(_fits, words, given.values())):
+            values = dict(zip(words, map(_shown, given.values()), strict=True))
+            missing = " and ".join(word for word in needed if word not in words)
+            return f"{name} needs {missing}, too: {name}({', '.join(values.get(word, word) for word in needed)})"
+    wrong = [word for word, value in given.items() if not _fits(word, value)]
+    if not wrong:
+        return ""
+    for order in permutations(given.values()) if len(given) == len(needed) else ():
+        if all(map(_fits, needed, order)):
+            return f"the arguments of {name} are in another order: {name}({', '.join(map(_shown, order))})"
+    if any("callback" in word for word in wrong):
+        return _no_callback(name, next(given[word] for word in wrong if "callback" in word))
+    word = wrong[0]
+    expected = f"{name}({', '.join(needed)})"
+    return f"{word} of {name} must be {_PARAMETERS[word][0]}, got {_shown(given[word])}: write {expected}"
+
+
+def _no_callback(name: str, value: object) -> str:
+    given = "None" if value is None else _shown(value)
+    return (
+        f"{name} was given {given} as its callback: give it the method itself, without parentheses, as in self.method; "
+        "self.method() calls it at once, and gives what it returns"
+    )
+
+
+def _fits(word: str, value: object) -> bool:
+    return word not in _PARAMETERS or _PARAMETERS[word][1](value)
+
+
+def _shown(value: object) -> str:
+    """A value as one would write it."""
+    if inspect.ismethod(value):
+        return f"self.{value.__name__}"
+    if isinstance(value, type) or inspect.isfunction(value):
+        return value.__name__
+    if isinstance(value, (str, int, float)):
+        return repr(value)
+    return "qos_profile" if isinstance(value, QoSProfile) else "self" if _fits("node", value) else type(value).__name__
+
+
+def _warn(name: str) -> None:
+    """Tell that a call was given None as its callback, which ROS 2 takes; not where graphflow itself does that."""
+    frame = sys._getframe(2)
+    if is_users(frame.f_code.co_filename):
+        place = Place(Path(frame.f_code.co_filename).name, frame.f_lineno)
+        logger.warning("%s (%s)", _no_callback(name, None), place)
+
+
+class Unmade:
+    """Stands in a node's class for its workings, which `Node.__init__` makes."""
+
+    def __get__(self, node: Any, owner: type) -> Any:
+        if node is None:
+            return self
+        code = getattr(owner.__init__, "__code__", None)  # type: ignore[misc]  # which class it is does not matter
+        place = f" ({Place(Path(code.co_filename).name, code.co_firstlineno)})" if code is not None else ""
+        name = owner.__name__
+        raise AttributeError(
+            f"{name} is no node yet: {name}.__init__{place} must call super().__init__('node_name') before all else"
+        )
+
+
+def must_return(callback: Any, what: str, value: object) -> str:
+    """The sentence for a callback that has returned something else than `what`."""
+    code = getattr(callback, "__code__", None)
+    place = f" ({Place(Path(code.co_filename).name, code.co_firstlineno)})" if code is not None else ""
+    name = getattr(callback, "__name__", type(callback).__name__)
+    return f"{name}{place} must return {what}, and returned {'None' if value is None else type(value).__name__}"
