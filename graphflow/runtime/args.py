@@ -13,7 +13,7 @@ from typing import Any
 
 from graphflow.errors import GraphFileError, GraphflowError, InvalidName
 from graphflow.interface import Interface
-from graphflow.names import Remap, Resolver, did_you_mean
+from graphflow.names import Remap, Resolver, did_you_mean, nearest
 
 logger = logging.getLogger("graphflow")
 
@@ -25,6 +25,7 @@ _FLAGS = {
     for verb in ("enable", "disable")
     for what in ("rosout", "stdout", "external-lib")
 }
+_DASHES = ("-", "\N{EN DASH}", "\N{EM DASH}", "\N{MINUS SIGN}")
 _OPTIONS = (*_VALUED, *_LEFT_OUT, *_FLAGS, "--ros-args", "--")
 
 
@@ -75,7 +76,7 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
     """Read a node's arguments. A bare `from:=to`, which ROS 2 would silently ignore, is taken as a remap.
 
     Args:
-        refuses_unknown: Whether a word that is no argument of ROS's is an error.
+        refuses_unknown: Whether a word that is no argument of ROS's is an error; if not, `from:=to` is such a word.
 
     Raises:
         GraphflowError: A rule or an option is wrong.
@@ -94,19 +95,62 @@ def parse_ros_args(words: Sequence[str], *, refuses_unknown: bool = True) -> Ros
                 result.has_rosout = _FLAGS[word]
             elif "stdout" in word:
                 result.has_stdout = _FLAGS[word]
-        elif word in _VALUED or (in_ros and word in (*_LEFT_OUT, "-params-file")):
+        elif word in _VALUED or (in_ros and word in _LEFT_OUT):
             if not todo:
                 raise GraphflowError(f"{word} needs a value after it, such as pose:=/turtle1/pose")
             _option(result, word, todo.pop(0))
-        elif ":=" in word and not word.startswith("-"):
+        elif ":=" in word and not word.startswith("-") and refuses_unknown:
             _remap(result, word)
         elif in_ros and not refuses_unknown:
             result.unknown.append(word)
-        elif in_ros:
-            raise GraphflowError(f"{word!r} is not a ROS argument{did_you_mean(word, _OPTIONS)}")
+        elif in_ros or _is_slip(word):
+            raise GraphflowError(f"{word!r} is not a ROS argument{meant(word)}")
         else:
             result.rest.append(word)
     return result
+
+
+def meant(word: str) -> str:
+    """A sentence that says how a word is written that ROS does not know; empty where that cannot be told."""
+    if ":=" in word and not word.startswith(_DASHES):
+        match, _, replacement = word.partition(":=")
+        key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
+        return f"; write --ros-args -r {key or match}:={replacement}"
+    if _is_slip(word):
+        return f"; write --{_bare(word)}"
+    return did_you_mean(word, _OPTIONS)
+
+
+def missed(words: Sequence[str]) -> str:
+    """What is wrong with words outside of `--ros-args` that seem to be meant for ROS; empty if there are none.
+
+    ROS 2 leaves them to the program, without a word. Programs may have options of their own, so only what is hardly one
+    is taken for a mistake.
+    """
+    in_ros = False
+    for place, word in enumerate(words):
+        if word == "--ros-args":
+            in_ros = True
+        elif word == "--":
+            in_ros = False
+        elif not in_ros and _is_slip(word):
+            rest, option = " ".join(words[place + 1 :]), f"--{_bare(word)}"
+            way = option if option == "--ros-args" else f"--ros-args {option}"
+            return f"{word!r} means nothing to ROS, nor does what follows{f' ({rest})' if rest else ''}; write {way}"
+        elif not in_ros and ":=" in word:
+            before = words[place - 1] if place else ""
+            way = f"; write --ros-args {before} {word}" if before in _VALUED else meant(word)
+            return f"{word!r} means nothing to ROS before --ros-args{way}"
+    return ""
+
+
+def _is_slip(word: str) -> bool:
+    """Whether a word is an option of ROS's but for its dashes: `-ros-args`, `-params-file`, or with a long dash."""
+    return f"--{_bare(word)}" in ("--ros-args", "--params-file") and not word.startswith("--") and word != _bare(word)
+
+
+def _bare(word: str) -> str:
+    return word.lstrip("".join(_DASHES))
 
 
 def _option(result: RosArgs, option: str, value: str) -> None:
@@ -118,7 +162,7 @@ def _option(result: RosArgs, option: str, value: str) -> None:
             result.log_levels[name] = word
         else:
             result.log_level = value
-    elif option in ("--params-file", "-params-file"):  # with one dash, as some slides have it
+    elif option == "--params-file":
         result.params_files.append(value)
     elif option in _LEFT_OUT:
         logger.warning("%s means nothing to graphflow, and is left out", option)

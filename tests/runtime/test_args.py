@@ -8,7 +8,7 @@ import pytest
 
 from graphflow import GraphflowError, Node, Param
 from graphflow.names import Remap
-from graphflow.runtime.args import parse_ros_args
+from graphflow.runtime.args import meant, missed, parse_ros_args
 
 
 class TurtleSim(Node):
@@ -107,10 +107,48 @@ def test_what_is_wrong_is_said(words: list[str], text: str) -> None:
     assert text in str(caught.value)
 
 
-def test_the_slides_dash() -> None:
-    """`-params-file` has one dash on some slides, and means what it says."""
-    assert parse_ros_args(["--ros-args", "-params-file", "a.yaml"]).params_files == ["a.yaml"]
-    assert parse_ros_args(["-params-file", "a.yaml"]).rest == ["-params-file", "a.yaml"]
+@pytest.mark.parametrize("word", ["-params-file", "-ros-args", "\N{EN DASH}ros-args"])
+def test_a_dash_too_few(word: str) -> None:
+    """An option of ROS's with other dashes, as slides have it, is refused as ROS 2 refuses it, wherever it stands."""
+    for words in ([word, "a.yaml"], ["--ros-args", word, "a.yaml"]):
+        with pytest.raises(GraphflowError, match=f"is not a ROS argument; write --{word[1:]}$"):
+            parse_ros_args(words)
+    assert parse_ros_args(["ros-args", "--rate"]).rest == ["ros-args", "--rate"]
+
+
+def test_a_bare_rule_where_ros_knows_none() -> None:
+    """It is unknown, as in ROS 2, where what is unknown is not refused."""
+    parsed = parse_ros_args(["--ros-args", "a:=b", "-r", "c:=d"], refuses_unknown=False)
+    assert (parsed.unknown, [str(rule) for rule in parsed.remaps]) == (["a:=b"], ["c:=d"])
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("- -ros-args -p a:=1", "'-ros-args' means nothing to ROS, nor does what follows (-p a:=1); write --ros-args"),
+        ("___ns:=/a", "'___ns:=/a' means nothing to ROS before --ros-args; write --ros-args -r __ns:=/a"),
+        ("-p a:=1", "'a:=1' means nothing to ROS before --ros-args; write --ros-args -p a:=1"),
+        ("a:=b --ros-args", "'a:=b' means nothing to ROS before --ros-args; write --ros-args -r a:=b"),
+        ("--ros-args -p a:=1 -- b:=c", "'b:=c' means nothing to ROS before --ros-args; write --ros-args -r b:=c"),
+        (
+            "-params-file x.yaml",
+            "'-params-file' means nothing to ROS, nor does what follows (x.yaml); write --ros-args --params-file",
+        ),
+        ("--ros-args -p a:=1 -r b:=c", ""),
+        ("-p 8080 -r --params-file x.yaml --log-level debug", ""),
+    ],
+)
+def test_words_that_miss_ros(line: str, text: str) -> None:
+    """What is hardly a program's own is told with how it is written."""
+    assert missed(line.split()) == text
+
+
+def test_how_an_unknown_word_is_written() -> None:
+    """A rule with its option, an option with its dashes, and the nearest of all."""
+    assert meant("___node:=a") == "; write --ros-args -r __node:=a"
+    assert meant("-params-file") == "; write --params-file"
+    assert meant("--remp") == "; did you mean '--remap'?"
+    assert meant("what") == ""
 
 
 def test_logs() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 import threading
 import warnings
@@ -14,12 +15,14 @@ from weakref import WeakMethod, ref
 
 from graphflow.errors import GraphflowError
 from graphflow.rclpy.life import Life
+from graphflow.runtime.args import meant, missed
 from graphflow.runtime.rosout import log_level, setup_console
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.handle import Handle
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
+logger = logging.getLogger("graphflow")
 _ALREADY = "failed to shutdown: rcl_shutdown already called on the given context"
 
 
@@ -64,7 +67,8 @@ class Context(AbstractContextManager["Context"]):
             try:
                 life = Life(words, domain_id)
                 if life.args.unknown:
-                    raise UnknownROSArgsError(f"Found unknown ROS arguments: {life.args.unknown}")
+                    unknown = life.args.unknown
+                    raise UnknownROSArgsError(f"Found unknown ROS arguments: {unknown}{meant(unknown[0])}")
                 if initialize_logging:
                     setup_console(is_quiet=not life.args.has_stdout)
                     level = log_level(life.args.log_level)
@@ -72,6 +76,8 @@ class Context(AbstractContextManager["Context"]):
                         RcutilsLogger().set_level(level)
                     for name, word in life.args.log_levels.items():
                         RcutilsLogger(name.replace("/", ".")).set_level(log_level(word))
+                    if text := missed(words):
+                        logger.warning("%s", text)
             except GraphflowError as error:
                 raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
             self._life = life

@@ -29,7 +29,9 @@ def test_it_begins_and_ends_once() -> None:
 @pytest.mark.parametrize(
     ("args", "error", "text"),
     [
-        (["--ros-args", "unknown"], UnknownROSArgsError, r"\['unknown'\]"),
+        (["--ros-args", "unknown"], UnknownROSArgsError, r"\['unknown'\]$"),
+        (["--ros-args", "-params-file", "a"], UnknownROSArgsError, r"\['-params-file', 'a'\]; write --params-file$"),
+        (["--ros-args", "a:=b"], UnknownROSArgsError, r"\['a:=b'\]; write --ros-args -r a:=b$"),
         (["--ros-args", "-r", "no-rule"], RuntimeError, "no-rule"),
         (["--ros-args", "--log-level", "loud"], RuntimeError, "loud"),
         (["name\udcc3"], UnicodeEncodeError, "surrogates"),
@@ -69,3 +71,12 @@ def test_its_end_is_told() -> None:
     context.on_shutdown(told.end)
     assert Told.count == 2
     context.destroy()
+
+
+def test_words_that_miss_ros_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    """ROS 2 leaves them to the program."""
+    context = Context()
+    context.init(["me.py", "-ros-args", "-p", "a:=1"])
+    context.shutdown()
+    [text] = [record.getMessage() for record in caplog.records]
+    assert text.startswith("'-ros-args' means nothing to ROS")

@@ -60,6 +60,7 @@ from rclpy.impl.locks import Entering, is_inside, is_kept
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
 from rclpy.impl.subjects import Subject
+from rclpy.impl.unused import Unused
 from rclpy.task import Future
 from rclpy.timer import Timer
 
@@ -88,7 +89,7 @@ class Waiting:
         """Where each thread stands, and since when."""
         self._known: dict[tuple[int, int], float] = {}
         """When what stands still was last looked into: a frame and a line, or a run and its step."""
-        self._held_up = HeldUp(life, self._is_told)
+        self._held_up, self._unused = HeldUp(life, self._is_told), Unused(life)
         LOOP.soon(self._look)
 
     def number_of(self, thing: Any) -> int:
@@ -138,6 +139,7 @@ class Waiting:
         clock = self.context.clock
         clock.call_at(clock.monotonic_ns() + to_ns(LOOK_EVERY), self._look)
         self._held_up.look()
+        self._unused.look()
         now, places = time.monotonic(), standing()
         self._stood = {
             thread: known if (known := self._stood.get(thread)) is not None and known[0] == frame else (frame, now)
