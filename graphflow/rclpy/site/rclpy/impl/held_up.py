@@ -11,9 +11,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.user_code import is_users, where
 from graphflow.errors import Place
 from graphflow.rclpy.wake import Wake
@@ -207,7 +207,7 @@ def _words(kept: list[str]) -> str:
     return " and ".join(shown) if rest <= 0 else f"{', '.join(shown[:SHOWN])} and {rest} more"
 
 
-def _is_init(frame: FrameType, node: Any) -> bool:
+def _is_init(frame: Frame, node: Any) -> bool:
     """Whether a frame is that of the node's own `__init__`."""
     code = frame.f_code
     return code.co_name == "__init__" and is_users(code.co_filename) and frame.f_locals.get("self") is node
