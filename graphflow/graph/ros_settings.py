@@ -5,6 +5,7 @@ from __future__ import annotations
 from graphflow.graph.ros_attributes import items, says
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, typed
+from graphflow.graph.substitution_words import as_word
 from graphflow.graph.tree import Item
 
 _OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
@@ -42,14 +43,9 @@ def conditional(item: Item, value: Item) -> Item:
     for key in ("if", "unless"):
         if key in item.entries:
             ways = [str(value.value), f"$(var {name} '')"]
-            chosen = " ".join(map(_quoted, [str(item.entries[key].value), *(ways if key == "if" else ways[::-1])]))
+            chosen = " ".join(map(as_word, [str(item.entries[key].value), *(ways if key == "if" else ways[::-1])]))
             value = value._replace(value=f"$(if {chosen})")
     return value
-
-
-def _quoted(text: str) -> str:
-    """A text as one word, whatever its substitutions stand for; it may have quotes of one kind."""
-    return f'"{text}"' if "'" in text else f"'{text}'"
 
 
 def pair(item: Item, key: str, value: str, complain: Complain, *, is_typed: bool = False) -> Item:

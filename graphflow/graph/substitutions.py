@@ -8,7 +8,6 @@ Source: launch frontends, "Substitutions".
 from __future__ import annotations
 
 import os
-import re
 import shlex
 import shutil
 import zlib
@@ -19,6 +18,7 @@ from typing import Any, NamedTuple
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
 from graphflow.graph.source import scalar
+from graphflow.graph.substitution_words import UnclosedError, Word, quoted, spans, words
 from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
@@ -28,8 +28,6 @@ MAX_TEXT = 100_000
 """Characters of a text, and bytes of a file that `$(file-content ...)` takes in, or that `$(command ...)` prints."""
 ON_STDERR = ("fail", "ignore", "warn", "capture")
 """What may be done with what a program of `$(command ...)` writes to its error output."""
-_QUOTED = re.compile(r"""(?P<quote>['"])(?P<inside>(?:(?!(?P=quote))[^\\]|\\.)+)(?P=quote)""", re.DOTALL)
-"""A text in quotes, in which a backslash makes the next character one like any other."""
 
 
 class SubstitutionError(ValueError):
@@ -103,38 +101,44 @@ class Substitutions:
             raise SubstitutionError(f"the text has more than {MAX_TEXT:,} characters")
         return "".join(texts)
 
-    def _parts(self, text: str, depth: int) -> list[Any]:
+    def _parts(self, text: str, depth: int, *, is_word: bool = False) -> list[Any]:
         if depth > MAX_DEPTH:
             raise SubstitutionError(f"substitutions nested more than {MAX_DEPTH} deep")
-        parts: list[Any] = []
-        position = 0
-        while (start := text.find("$(", position)) >= 0:
-            if start > position:
-                parts.append(text[position:start])
-            end = _closing(text, start)
-            parts.append(self._evaluate(text[start + 2 : end], depth))
-            position = end + 1
-        if position < len(text):
-            parts.append(text[position:])
-        return parts
+        try:
+            parts = list(spans(text, is_word=is_word))
+        except UnclosedError as error:
+            raise SubstitutionError(f"{str(error)!r} has no closing )") from None
+        return [self._evaluate(part, depth) if is_inside else part for part, is_inside in parts]
 
     def _evaluate(self, inside: str, depth: int) -> Any:
-        text = "".join(_text(part) for part in self._parts(inside, depth + 1))
-        name, _, rest = text.strip().partition(" ")
+        name, _, rest = inside.strip().partition(" ")
         function = _FUNCTIONS.get(name)
         if function is None:
             raise SubstitutionError(f"$({inside}): unknown substitution {name!r}{did_you_mean(name, _FUNCTIONS)}")
-        return function(self, rest.strip())
+        try:
+            written = words(rest)
+        except UnclosedError as error:
+            if name != "eval":
+                text = f"$({inside}): the quote in {str(error)!r} is not closed, or no space follows it"
+                raise SubstitutionError(text) from None
+            written = []
+        if name == "eval" and not (len(written) in (1, 2) and written[0].is_quoted):
+            # Other quotes than those around the whole are the expression's own.
+            return self._eval([Word(self._joined(rest.strip(), depth + 1), is_quoted=False)])
+        return function(self, [w._replace(text=self._joined(w.text, depth + 1, is_word=True)) for w in written])
 
-    def _var(self, text: str) -> Any:
-        word, _, default = text.strip().partition(" ")
-        if not word:
+    def _joined(self, text: str, depth: int, *, is_word: bool = False) -> str:
+        return "".join(map(_text, self._parts(text, depth, is_word=is_word)))
+
+    def _var(self, given: list[Word]) -> Any:
+        if not given:
             raise SubstitutionError("write $(var NAME), or $(var NAME DEFAULT)")
+        word, default = given[0].text, given[1:]
         name, *parts = word.split(".")
         if word in self._args:
             name, parts = word, []
         if name not in self._args and default:
-            return _default(default.strip())
+            return _default(default)
         if name not in self._args:
             help_ = did_you_mean(name, self._args) or "; declare it, under args: or by DeclareLaunchArgument"
             raise SubstitutionError(f"there is no argument {name!r}{help_}")
@@ -146,76 +150,76 @@ class Substitutions:
             value = value[part]
         return value
 
-    def _eval(self, text: str) -> Any:
-        quoted = _QUOTED.fullmatch(text)
-        if quoted:  # as ROS's files write it
-            text = re.sub(r"\\(.)", r"\1", quoted["inside"])
+    def _eval(self, given: list[Word]) -> Any:
+        text = given[0].text
         try:
             values = {name: arg.value if isinstance(arg, Written) else arg for name, arg in self._args.items()}
             return evaluate(text, values)
         except ExpressionError as error:
             raise SubstitutionError(f"$(eval {text[:60]}): {error}") from None
 
-    def _environment(self, text: str) -> str:
-        words = text.split(None, 1)
-        if not words:
+    def _environment(self, given: list[Word]) -> str:
+        if not given:
             raise SubstitutionError("write $(env NAME) or $(env NAME default)")
-        if words[0] in self._env:
-            return self._env[words[0]]
-        if len(words) == 1:
+        name, *default = given
+        if name.text not in self._env and not default:
             raise SubstitutionError(
-                f"the environment variable {words[0]} is not set; give a default: $(env NAME default)"
+                f"the environment variable {name.text} is not set; give a default: $(env NAME default)"
             )
-        return words[1]
+        return self._env.get(name.text, _joined(default))
 
-    def _optional_environment(self, text: str) -> str:
-        name, _, default = text.partition(" ")
-        return self._env.get(name, default.strip())
+    def _optional_environment(self, given: list[Word]) -> str:
+        return self._env.get(_joined(given[:1]), _joined(given[1:]))
 
-    def _dirname(self, text: str) -> str:
-        _words(text, 0, "dirname")
+    def _dirname(self, given: list[Word]) -> str:
+        _words(given, 0, "dirname")
         return str(self._file.parent)
 
-    def _filename(self, text: str) -> str:
-        _words(text, 0, "filename")
+    def _filename(self, given: list[Word]) -> str:
+        _words(given, 0, "filename")
         return str(self._file)
 
-    def _log_folder(self, text: str) -> str:
-        _words(text, 0, "log_dir")
+    def _log_folder(self, given: list[Word]) -> str:
+        _words(given, 0, "log_dir")
         return str(self._logs)
 
-    def _share(self, text: str) -> str:
-        [package] = _words(text, 1, "find-pkg-share PACKAGE")
-        return _found(package_share(package, self._root, self._env), package, f"find-pkg-share {text}", self._root)
+    def _share(self, given: list[Word]) -> str:
+        [package] = _words(given, 1, "find-pkg-share PACKAGE")
+        return _found(package_share(package, self._root, self._env), package, f"find-pkg-share {package}", self._root)
 
-    def _prefix(self, text: str) -> str:
-        [package] = _words(text, 1, "find-pkg-prefix PACKAGE")
-        return _found(package_prefix(package, self._root, self._env), package, f"find-pkg-prefix {text}", self._root)
+    def _prefix(self, given: list[Word]) -> str:
+        [package] = _words(given, 1, "find-pkg-prefix PACKAGE")
+        return _found(package_prefix(package, self._root, self._env), package, f"find-pkg-prefix {package}", self._root)
 
-    def _program(self, text: str) -> str:
-        program, package = _words(text, 2, "exec-in-pkg EXECUTABLE PACKAGE")
-        _found(package_share(package, self._root, self._env), package, f"exec-in-pkg {text}", self._root)
+    def _program(self, given: list[Word]) -> str:
+        program, package = _words(given, 2, "exec-in-pkg EXECUTABLE PACKAGE")
+        written = f"exec-in-pkg {program} {package}"
+        _found(package_share(package, self._root, self._env), package, written, self._root)
         found = package_program(program, package, self._root, self._env)
         if found is None:
             raise SubstitutionError(
-                f"$(exec-in-pkg {text}): there is no such program in the package; for a node write pkg: and exec:"
+                f"$({written}): there is no such program in the package; for a node write pkg: and exec:"
             )
         return str(found)
 
-    def _param(self, text: str) -> Any:
-        [name] = _words(text, 1, "param NAME")
+    def _param(self, given: list[Word]) -> Any:
+        name, *default = _words(given, (1, 2), "param NAME DEFAULT")
+        if name not in self._params and default:
+            return _default(given[1:])
         if name not in self._params:
             near = did_you_mean(name, self._params)
             raise SubstitutionError(f"no group around this gives a parameter {name!r} to its nodes{near}")
         return self._params[name]
 
-    def _executable(self, text: str) -> str:
+    def _executable(self, given: list[Word]) -> str:
+        text = _joined(given)
         found = shutil.which(text, path=self._env.get("PATH"))
         if found is None:
             raise SubstitutionError(f"$(find-exec {text}): there is no program of that name on the PATH")
         return found
 
-    def _content(self, text: str) -> str:
+    def _content(self, given: list[Word]) -> str:
+        text = _joined(given)
         path = self._file.parent / text
         try:
             with path.open("rb") as file:
@@ -227,43 +231,42 @@ class Substitutions:
             raise SubstitutionError(f"$(file-content {text}): the file is larger than {MAX_TEXT:,} bytes")
         return content
 
-    def _anonymous(self, text: str) -> str:
+    def _anonymous(self, given: list[Word]) -> str:
+        text = _joined(given)
         # The same word for the same name in a file: its nodes can be referred to.
         return f"{text}_{zlib.crc32(f'{self._file.parent} {os.getpid()} {text}'.encode()):08x}"
 
-    def _command(self, text: str) -> str:
+    def _command(self, given: list[Word]) -> str:
         """What a program prints. In quotes it may be followed by a word on its error output, as in ROS's files."""
+        texts = [word.text for word in given]
+        on_stderr = texts.pop() if len(texts) == 2 and texts[1] in ON_STDERR else "fail"
         try:
-            words = shlex.split(text)
-            on_stderr = words.pop() if len(words) == 2 and words[1] in ON_STDERR else "fail"
-            words = shlex.split(words[0]) if len(words) == 1 else words
+            words = shlex.split(texts[0]) if len(texts) == 1 else texts
         except ValueError:  # a quotation that does not end
             words = []
         if not words:
             raise SubstitutionError(f"write $(command 'PROGRAM ...') or $(command 'PROGRAM ...' {'|'.join(ON_STDERR)})")
-        return f"$(command {text})" if self._run is None else self._run(words, on_stderr, self._file.parent, self._env)
+        if self._run is None:
+            return f"$(command {' '.join(quoted(word.text) for word in given)})"
+        return self._run(words, on_stderr, self._file.parent, self._env)
 
-    def _chosen(self, text: str) -> str:
-        condition, yes, *no = _words(text, (2, 3), "if CONDITION A B")
+    def _chosen(self, given: list[Word]) -> str:
+        condition, yes, *no = _words(given, (2, 3), "if CONDITION A B")
         return yes if truth(condition) else "".join(no)
 
 
-def _default(text: str) -> Any:
+def _default(given: list[Word]) -> Any:
     """What stands behind a name: text in quotes, or a value as YAML has it."""
+    text = _joined(given)
     try:
-        return "".join(shlex.split(text)) if text[:1] in ("'", '"') else scalar(text)
-    except ValueError:  # a quotation that does not end, or a number that is none
+        return text if given[0].is_quoted else scalar(text)
+    except ValueError:  # a number with too many digits
         return text
 
 
-def _closing(text: str, start: int) -> int:
-    """The index of the parenthesis that closes the one at `start + 1`."""
-    depth = 0
-    for i in range(start + 1, len(text)):
-        depth += {"(": 1, ")": -1}.get(text[i], 0)
-        if depth == 0:
-            return i
-    raise SubstitutionError(f"{text[start : start + 40]!r} has no closing )")
+def _joined(given: Sequence[Word]) -> str:
+    """Words as the text that they are without quotes."""
+    return " ".join(word.text for word in given)
 
 
 def _text(value: Any) -> str:
@@ -296,19 +299,15 @@ def truth(value: Any) -> bool:
     raise SubstitutionError(f"expected true or false, got {value!r}")
 
 
-def _words(text: str, counts: int | Sequence[int] | None, form: str) -> list[str]:
-    """The words of a text, as a shell takes them; as many as it may have, or at least one."""
-    try:
-        words = shlex.split(text)
-    except ValueError:
-        raise SubstitutionError(f"write $({form})") from None
+def _words(given: Sequence[Word], counts: int | Sequence[int] | None, form: str) -> list[str]:
+    """The texts of words, of which there may be so many, or at least one."""
     allowed = (counts,) if isinstance(counts, int) else counts
-    if not words if allowed is None else len(words) not in allowed:
+    if not given if allowed is None else len(given) not in allowed:
         raise SubstitutionError(f"write $({form})")
-    return words
+    return [word.text for word in given]
 
 
-_FUNCTIONS: dict[str, Callable[[Substitutions, str], Any]] = {
+_FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
     "var": Substitutions._var,
     "env": Substitutions._environment,
     "optenv": Substitutions._optional_environment,
@@ -326,12 +325,12 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, str], Any]] = {
     "eval": Substitutions._eval,
     "command": Substitutions._command,
     "if": Substitutions._chosen,
-    "not": lambda _, text: not truth(text),
-    "and": lambda _, text: all(map(truth, _words(text, 2, "and A B"))),
-    "or": lambda _, text: any(map(truth, _words(text, 2, "or A B"))),
-    "all": lambda _, text: all(map(truth, _words(text, None, "all A B ..."))),
-    "any": lambda _, text: any(map(truth, _words(text, None, "any A B ..."))),
-    "equals": lambda _, text: len(set(_words(text, 2, "equals A B"))) == 1,
-    "not-equals": lambda _, text: len(set(_words(text, 2, "not-equals A B"))) == 2,
+    "not": lambda _, given: not truth(_joined(given)),
+    "and": lambda _, given: all(map(truth, _words(given, 2, "and A B"))),
+    "or": lambda _, given: any(map(truth, _words(given, 2, "or A B"))),
+    "all": lambda _, given: all(map(truth, _words(given, None, "all A B ..."))),
+    "any": lambda _, given: any(map(truth, _words(given, None, "any A B ..."))),
+    "equals": lambda _, given: len(set(_words(given, 2, "equals A B"))) == 1,
+    "not-equals": lambda _, given: len(set(_words(given, 2, "not-equals A B"))) == 2,
 }
 """What may stand behind `$(`, and how the rest is read."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import logging
 import os
-import shlex
 import sys
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -24,6 +23,7 @@ from typing import Any
 from graphflow.folders import newest_logs
 from graphflow.graph.executables import package_prefix, package_share
 from graphflow.graph.project import project_root
+from graphflow.graph.substitution_words import QUOTES, as_word
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
 from graphflow.supervisor.launch_names import NAMES
 from graphflow.supervisor.printed import printed
@@ -203,18 +203,19 @@ def _written(value: Said) -> str:
     match value.name:
         case "LaunchConfiguration":
             default = value.get("default", 1)
-            return f"$(var {text(first)}{'' if default is None else f' {_quoted(default)}'})"
+            return f"$(var {_word(first)}{'' if default is None else f' {_word(default)}'})"
         case "EnvironmentVariable":
             default = value.get("default_value", 1)
-            return f"$(env {text(first)}{'' if default is None else f' {text(default)}'})"
+            return f"$(env {_word(first)}{'' if default is None else f' {_word(default)}'})"
         case "FindPackageShare" | "FindPackagePrefix":
-            return f"$(find-pkg-{value.name[11:].lower()} {text(first)})"
+            return f"$(find-pkg-{value.name[11:].lower()} {_word(first)})"
         case "ExecutableInPackage":
-            return f"$(exec-in-pkg {text(value.get('executable', 0))} {text(value.get('package', 1))})"
+            return f"$(exec-in-pkg {_word(value.get('executable', 0))} {_word(value.get('package', 1))})"
         case "PathJoinSubstitution":
             return "/".join(text(part).strip("/") if i else text(part) for i, part in enumerate(first))
         case "PythonExpression":
-            return f"$(eval {text(first)})"
+            expression = text(first)
+            return f"$(eval {as_word(expression) if expression[:1] in QUOTES else expression})"
         case "ThisLaunchFileDir":
             return "$(dirname)"
         case "ThisLaunchFile":
@@ -222,25 +223,25 @@ def _written(value: Said) -> str:
         case "LaunchLogDir" | "LogDir":
             return "$(log_dir)"
         case "Parameter":
-            return f"$(param {text(first)})"
+            return f"$(param {_word(first)})"
         case "IfElseSubstitution":
-            return f"$(if {' '.join(map(_quoted, (*value.args, *value.kwargs.values())))})"
+            return f"$(if {' '.join(map(_word, (*value.args, *value.kwargs.values())))})"
         case "AnySubstitution" | "AllSubstitution":
-            return f"$({value.name[:3].lower()} {' '.join(map(_quoted, value.args))})"
+            return f"$({value.name[:3].lower()} {' '.join(map(_word, value.args))})"
         case "Command":
             on_stderr = value.get("on_stderr", 1)
-            return f"$(command {_quoted(first)}{'' if on_stderr is None else f' {text(on_stderr)}'})"
+            return f"$(command {_word(first)}{'' if on_stderr is None else f' {_word(on_stderr)}'})"
         case "FileContent":
-            return f"$(file-content {text(first)})"
+            return f"$(file-content {_word(first)})"
         case "FindExecutable":
-            return f"$(find-exec {text(first)})"
+            return f"$(find-exec {_word(first)})"
         case "AnonName":
-            return f"$(anon {text(first)})"
+            return f"$(anon {_word(first)})"
         case "NotSubstitution":
-            return f"$(not {text(first)})"
+            return f"$(not {_word(first)})"
         case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
             word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.name[:-12]]
-            return f"$({word} {' '.join(map(_quoted, value.args))})"
+            return f"$({word} {' '.join(map(_word, value.args))})"
         case "TextSubstitution" | "ParameterValue" | "ParameterFile" | "PythonLaunchDescriptionSource":
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
@@ -249,16 +250,9 @@ def _written(value: Said) -> str:
     return ""
 
 
-def _quoted(value: Any) -> str:
-    """A value as a word of a substitution; those inside it are made before it is split into words."""
-    parts = value if isinstance(value, (list, tuple)) else [value]
-    if not any(isinstance(part, Said) for part in parts):
-        return shlex.quote(text(value))
-    literal = [not isinstance(part, Said) or part.name == "TextSubstitution" for part in parts]
-    texts = [
-        text(part).replace("'", "'\"'\"'") if is_ else text(part) for part, is_ in zip(parts, literal, strict=True)
-    ]
-    return f"'{''.join(texts)}'"
+def _word(value: Any) -> str:
+    """A value as a word of a substitution."""
+    return as_word(text(value))
 
 
 def condition(said: Said) -> dict[str, str]:
@@ -269,7 +263,7 @@ def condition(said: Said) -> dict[str, str]:
     if said.name in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
         word = "equals" if said.name.endswith("nEquals") else "not-equals"
         variable, value = said.args
-        return {"if": f"$({word} $(var {text(variable)}) {text(value)})"}
+        return {"if": f"$({word} $(var {_word(variable)}) {_word(value)})"}
     RECORDING.problem(said, f"{said.name} has no words in a graph file")
     return {}
 

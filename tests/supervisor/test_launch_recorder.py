@@ -65,7 +65,7 @@ def test_what_is_recorded() -> None:
     push, talker = (next(iter(child.items())) for child in found[7]["children"])
     assert (push[0], push[1]["namespace"]) == ("push_ros_namespace", "robot1")
     assert (talker[1]["unless"], talker[1]["on_exit"]) == ("$(var quiet)", "shutdown")
-    assert found[8]["if"] == "$(eval '$(var who)' == 'leo')"
+    assert found[8]["if"] == """$(eval "'$(var who)' == 'leo'")"""
     assert found[8]["children"][0]["node"]["args"] == ["-d", "$(find-pkg-share robot)/rviz/a.rviz"]
     assert (found[9]["period"], found[9]["children"][0]["node"]["respawn"]) == (5.0, "True")
     assert found[10]["file"] == "$(find-pkg-share robot)/launch/b.launch.py"
@@ -157,7 +157,7 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
         "$(filename)",
         "$(log_dir)",
         "$(if true 'a b' c)",
-        "$(any true '$(var x)')",
+        "$(any true $(var x))",
         "$(find-pkg-prefix robot)",
         "$(exec-in-pkg look tools)",
         "$(param rate)",

@@ -81,4 +81,4 @@ def test_substitutions_in_words_of_others() -> None:
     """They keep their own quotes: they are made first."""
     same = said("EqualsSubstitution", said("LaunchConfiguration", "x"), "it's")
     chosen = said("IfElseSubstitution", same, if_value=["a ", said("LaunchConfiguration", "y")], else_value="b c")
-    assert text(chosen) == """$(if '$(equals '$(var x)' 'it'"'"'s')' 'a $(var y)' 'b c')"""
+    assert text(chosen) == """$(if $(equals $(var x) "it's") 'a $(var y)' 'b c')"""

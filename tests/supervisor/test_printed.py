@@ -47,7 +47,7 @@ def test_what_a_program_prints(text: str, output: str, tmp_path: Path, caplog: p
         ("$(command 'sh -c \"echo oh >&2\"')", "wrote to its error output: oh; to allow that: $(command '...' warn)"),
         ("$(command 'sleep 60')", "it has not ended within 0.2 s"),
         ("$(command 'head -c 100001 /dev/zero')", "it printed more than 100,000 characters"),
-        ("$(command 'printf \\\\377')", "can't decode byte 0xff"),
+        ("$(command 'printf \\\\\\\\377')", "can't decode byte 0xff"),
     ],
 )
 def test_a_program_that_fails(text: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
