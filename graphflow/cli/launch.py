@@ -139,6 +139,7 @@ def _yaml(top: Item) -> str:
     import yaml
 
     from graphflow.graph.source import scalar
+    from graphflow.graph.substitutions import Written
 
     class Dumper(yaml.SafeDumper):
         """Quotes every text that YAML 1.2 reads as something else."""
@@ -154,6 +155,7 @@ def _yaml(top: Item) -> str:
         return dumper.represent_scalar("tag:yaml.org,2002:str", value, style=None if is_text else "'")
 
     Dumper.add_representer(str, text)
+    Dumper.add_representer(Written, lambda dumper, value: dumper.represent_data(value.value))
     return yaml.dump(
         top.plain(), Dumper=Dumper, sort_keys=False, default_flow_style=None, width=110, allow_unicode=True
     )

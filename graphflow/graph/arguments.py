@@ -57,8 +57,11 @@ class Arguments:
         found = {**outer, **{name: item.plain() for name, item in fixed.items() if name not in specs}}
         for name, spec in specs.items():
             if name in fixed:
-                found[name] = self._checked(name, fixed[name].plain(), spec, fixed[name].place)
-                found[name] = found[name] if texts is None else Written(_written(found[name]))
+                given = fixed[name].plain()
+                value = given.value if isinstance(given, Written) else given
+                found[name] = self._checked(name, value, spec, fixed[name].place)
+                if texts is not None:
+                    found[name] = given if isinstance(given, Written) else Written(_written(value))
                 continue
             if name not in outer:
                 if "default" in spec.entries:

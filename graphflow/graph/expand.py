@@ -36,7 +36,7 @@ from graphflow.graph.model import (
 from graphflow.graph.project import no_file, shown
 from graphflow.graph.reading import read
 from graphflow.graph.ros_launch import ignore
-from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, truth
+from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, Written, truth
 from graphflow.graph.tree import Item, first_of, located, merged, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
@@ -470,7 +470,9 @@ class Expansion:
             return item._replace(value=result)
         if isinstance(item.value, list):
             return item._replace(value=[self._substituted(inner, scope, is_word=is_word) for inner in item.value])
-        value = self._one(item.value, item.place, scope, is_word=is_word)
+        value = self._one(item.value, item.place, scope, is_word=is_word or isinstance(item.value, Written))
+        if isinstance(item.value, Written):
+            value = Written(value)
         self._count(value, item.place)
         return located(value, item.place)._replace(key=item.key)
 

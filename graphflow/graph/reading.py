@@ -9,6 +9,7 @@ from typing import Any
 from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph import ros_launch, source, xml_source
 from graphflow.graph.project import project_root
+from graphflow.graph.ros_attributes import unescaped
 from graphflow.graph.ros_commands import Complain
 from graphflow.graph.ros_launch import ignore
 from graphflow.graph.tree import Item, tree
@@ -53,5 +54,5 @@ def read(
         return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note, number)
     top = xml_source.read_file(path, name) if path.suffix in (".xml", ".launch") else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):
-        return ros_launch.native(top, project_root(path), complain, note, number)
+        return ros_launch.native(unescaped(top), project_root(path), complain, note, number)
     return top

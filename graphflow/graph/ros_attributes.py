@@ -6,6 +6,7 @@ import re
 import shlex
 from collections.abc import Callable
 
+from graphflow.graph.substitution_words import UnclosedError, spans
 from graphflow.graph.tree import Item
 
 
@@ -34,6 +35,23 @@ def words(item: Item | None) -> list[str]:
         return str(item.value).split()
 
 
+def unescaped(item: Item) -> Item:
+    r"""The same without the backslashes by which launch files take the meaning from a character; `\$(` stays."""
+    if isinstance(item.value, dict):
+        return item._replace(value={key: unescaped(inner) for key, inner in item.value.items()})
+    if isinstance(item.value, list):
+        return item._replace(value=[unescaped(inner) for inner in item.value])
+    if not isinstance(item.value, str) or "\\" not in item.value:
+        return item
+    try:
+        parts = list(spans(item.value))
+    except UnclosedError:  # which is reported where the substitution is made
+        return item
+    texts = (f"$({p})" if is_inside else _ESCAPED.sub(r"\1", p).replace("$(", r"\$(") for p, is_inside in parts)
+    return item._replace(value="".join(texts))
+
+
+_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
 _MARK = re.compile("\ue000(\\d+)\ue001")
 """What stands for a substitution, in two characters that no text has."""
 

@@ -25,7 +25,7 @@ from graphflow.graph.ros_attributes import children, items, says, split
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, plain_words, step_of, typed
 from graphflow.graph.ros_components import KNOWN, components
-from graphflow.graph.ros_settings import conditional, pair, params, ros_words, setting
+from graphflow.graph.ros_settings import as_text, conditional, pair, params, ros_words, setting
 from graphflow.graph.tree import Item, located
 from graphflow.graph.workspace import bundled, find_workspace
 from graphflow.names import did_you_mean
@@ -58,7 +58,7 @@ _KNOWN: dict[str, set[str]] = {
     **KNOWN,
     "executable": {"cmd", "cwd", "shell", *_RUN},
     "push_ros_namespace": {"namespace", *_ANY},
-    "set_parameter": {"name", "value", *_ANY},
+    "set_parameter": {"name", "value", "type", *_ANY},
     "set_remap": {"from", "to", *_ANY},
     "set_use_sim_time": {"value", *_ANY},
     "timer": {"period", "children", *_ANY, *_RECORDED},
@@ -181,7 +181,7 @@ class _Translation:
             self._complain(item.at, f"{name}: a condition here has no words in a graph file; put it on a group")
         nothing = Item("", item.place)
         if name == "let":
-            values = Item([conditional(item, typed(item.entries.get("value", nothing)))], item.place)
+            values = Item([as_text(conditional(item, item.entries.get("value", nothing)))], item.place)
             loop = {"var": item.entries.get("name", nothing), "in": values, **self._block(after)}
             return item._replace(value={"for": Item(loop, item.place)})
         key, value = setting(name, item, self._complain)
@@ -244,7 +244,7 @@ class _Translation:
         entries: dict[str, Item] = {k: item.entries[k] for k in ("file", "if", "unless") if k in item.entries}
         args = [arg for key in ("arg", "let") for arg in items(item.entries.get(key))]
         if args:
-            pairs = [pair(arg, "name", "value", self._complain, is_typed=True) for arg in args]
+            pairs = [pair(arg, "name", "value", self._complain, is_written=True) for arg in args]
             entries["args"] = Item({key: value for pair in pairs for key, value in pair.entries.items()}, item.place)
         return item._replace(value=entries)
 

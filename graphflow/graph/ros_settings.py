@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import re
+
+from graphflow.graph.param_types import as_type
 from graphflow.graph.ros_attributes import items, says
 from graphflow.graph.ros_attributes import words as words_of
 from graphflow.graph.ros_commands import Complain, typed
 from graphflow.graph.substitution_words import as_word
-from graphflow.graph.tree import Item
+from graphflow.graph.substitutions import Written
+from graphflow.graph.tree import Item, located
+from graphflow.names import did_you_mean
 
 _OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
 """The keys of a graph file for ROS 2's options."""
+_OF_PARAMS = ("name", "value", "type", "param", "from", "allow_substs")
+_VARIABLE = re.compile(r"\$\(var [\w.]+\)\Z")
+"""An argument alone."""
 
 
 def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
@@ -18,7 +26,10 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
         case "push_ros_namespace":
             return "namespace", item.entries.get("namespace", Item("", item.place))
         case "set_parameter":
-            return "params", pair(item, "name", "value", complain, is_typed=True)
+            named = pair(item, "name", "value", complain)
+            kind = str(item.entries["type"].value) if "type" in item.entries else "yaml"
+            values = {key: parameter(value, kind, complain) for key, value in named.entries.items()}
+            return "params", named._replace(value=values)
         case "set_use_sim_time":
             value = typed(item.entries.get("value", Item("", item.place)))
             return "params", Item({"use_sim_time": value}, item.place)
@@ -48,18 +59,24 @@ def conditional(item: Item, value: Item) -> Item:
     return value
 
 
-def pair(item: Item, key: str, value: str, complain: Complain, *, is_typed: bool = False) -> Item:
+def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bool = False) -> Item:
     """A mapping of what one attribute of an action names to what another says.
 
     Args:
-        is_typed: Whether that is what it reads as in YAML; else it is a text.
+        is_written: Whether that is the value of a launch configuration.
     """
     name = item.entries.get(key)
     if name is None or not isinstance(name.value, str):
         complain(item.at, f"the attribute {key!r} is missing")
         return Item({}, item.place)
     found = item.entries.get(value, Item("", item.place))
-    return Item({name.value: (typed(found) if is_typed else found)._replace(key=name.place)}, item.place)
+    return Item({name.value: (as_text(found) if is_written else found)._replace(key=name.place)}, item.place)
+
+
+def as_text(item: Item) -> Item:
+    """The value of a launch configuration: it is a text, which is read where a value is wanted."""
+    text = str(item.value).lower() if isinstance(item.value, bool) else str(item.value)
+    return item._replace(value=Written(text))
 
 
 def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
@@ -69,6 +86,9 @@ def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
 
     def take(params: list[Item], into: dict[str, Item]) -> None:
         for param in params:
+            for key, value in param.entries.items():
+                if key not in _OF_PARAMS:
+                    complain(value.at, f"param: unknown attribute {key!r}{did_you_mean(key, _OF_PARAMS)}")
             if "from" in param.entries:
                 files.append(param.entries["from"])
             elif "param" in param.entries and isinstance(name := param.entries.get("name"), Item):
@@ -77,9 +97,8 @@ def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
                 into[str(name.value)] = Item(inner, param.place, name.place)
             else:
                 named = pair(param, "name", "value", complain)
-                kind = param.entries.get("type")
-                is_text = kind is not None and kind.value == "str"
-                into.update({key: value if is_text else typed(value) for key, value in named.entries.items()})
+                kind = str(param.entries["type"].value) if "type" in param.entries else ""
+                into.update({key: parameter(value, kind, complain) for key, value in named.entries.items()})
 
     take(items(item.entries.get("param")), values)
     if files:
@@ -87,6 +106,27 @@ def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
     if values:
         place = item.entries["param"].place
         entries["params"] = Item(values, place, place)
+
+
+def parameter(item: Item, kind: str, complain: Complain) -> Item:
+    """The value of a parameter; one with substitutions has its type as soon as they have been made.
+
+    Args:
+        kind: Its type, `yaml` for what the text reads as, or nothing for its own.
+    """
+    value = item.value
+    if isinstance(value, list):
+        inner = kind.removeprefix("list_of_")
+        return item._replace(value=[parameter(one, inner, complain) for one in value])
+    if isinstance(value, str) and "$(" in value:
+        if _VARIABLE.match(value) and kind in ("", "yaml"):  # which has the type of what it reads as
+            return item
+        return item._replace(value=f"$(as {kind or 'yaml'} {as_word(value)})")
+    try:
+        return located(as_type(kind, value), item.place)._replace(key=item.key) if kind else item
+    except ValueError as error:
+        complain(item.place, f"param: {error}")
+        return item
 
 
 def ros_words(item: Item, entries: dict[str, Item], note: Complain) -> None:

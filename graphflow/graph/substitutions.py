@@ -17,8 +17,9 @@ from typing import Any, NamedTuple
 
 from graphflow.graph.executables import package_prefix, package_program, package_share
 from graphflow.graph.expressions import ExpressionError, evaluate
+from graphflow.graph.param_types import as_type, from_yaml
 from graphflow.graph.source import scalar
-from graphflow.graph.substitution_words import UnclosedError, Word, quoted, spans, words
+from graphflow.graph.substitution_words import UnclosedError, Word, as_word, quoted, spans, words
 from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import find_workspace
 from graphflow.names import did_you_mean
@@ -41,9 +42,10 @@ class Written(str):
     def value(self) -> Any:
         """What it reads as; nothing is an empty text."""
         try:
-            return scalar(self) if self else ""
+            value = from_yaml(self) if self[:1] in ("[", "'", '"') else scalar(self) if self else ""
         except ValueError:  # a number with too many digits
             return str(self)
+        return str(value) if isinstance(value, str) else value
 
 
 Run = Callable[[list[str], str, Path, Mapping[str, str]], str]
@@ -250,6 +252,15 @@ class Substitutions:
             return f"$(command {' '.join(quoted(word.text) for word in given)})"
         return self._run(words, on_stderr, self._file.parent, self._env)
 
+    def _typed(self, given: list[Word]) -> Any:
+        kind, text = _words(given, 2, "as TYPE TEXT")
+        if self._run is None and "$(command " in text:  # which has not been run
+            return f"$(as {kind} {as_word(text)})"
+        try:
+            return as_type(kind, text)
+        except ValueError as error:
+            raise SubstitutionError(f"$(as {kind} ...): {error}") from None
+
     def _chosen(self, given: list[Word]) -> str:
         condition, yes, *no = _words(given, (2, 3), "if CONDITION A B")
         return yes if truth(condition) else "".join(no)
@@ -325,6 +336,7 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
     "eval": Substitutions._eval,
     "command": Substitutions._command,
     "if": Substitutions._chosen,
+    "as": Substitutions._typed,
     "not": lambda _, given: not truth(_joined(given)),
     "and": lambda _, given: all(map(truth, _words(given, 2, "and A B"))),
     "or": lambda _, given: any(map(truth, _words(given, 2, "or A B"))),

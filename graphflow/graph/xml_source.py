@@ -12,8 +12,9 @@ from typing import Any
 from xml.parsers import expat
 
 from graphflow.errors import GraphFileError, Place, Problem
+from graphflow.graph.param_types import from_yaml
 from graphflow.graph.source import MAX_BYTES, MAX_DEPTH
-from graphflow.graph.tree import Item
+from graphflow.graph.tree import Item, located
 
 LISTS = ("param", "remap", "env", "arg", "choice", "composable_node", "extra_arg", "keep", "let")
 """Elements that are attributes of the one around them, as lists; any other in it is an action."""
@@ -74,6 +75,8 @@ class _Reader:
 
     def _end(self, name: str) -> None:
         name, attributes, children = self._open.pop()
+        if name == "param" and "value" in attributes.value:
+            attributes = _with_type(attributes)
         if name in _WITH_ACTIONS:
             lists = [child for child in children if next(iter(child.value)) == "keep"]
             actions = [child for child in children if child not in lists]
@@ -94,6 +97,23 @@ class _Reader:
 
     def _refuse(self, *_: Any) -> None:
         raise _error(self._place, "<!DOCTYPE> is not used here; remove it")
+
+
+def _with_type(param: Item) -> Item:
+    """A parameter with its value as the YAML dialect has it: in XML all are texts."""
+    entries = param.without("value-sep").entries
+    item, separator = entries["value"], param.entries.get("value-sep")
+    is_typed = "type" in entries
+    if separator is not None:
+        value = [part if is_typed else _read(part) for part in str(item.value).split(str(separator.value) or None)]
+    else:
+        value = item.value if is_typed else _read(item.value)
+    return param._replace(value={**entries, "value": located(value, item.place)._replace(key=item.key)})
+
+
+def _read(text: str) -> Any:
+    """A text as what it reads as in YAML; one with substitutions only if they stand in quotes or in a list."""
+    return text if "$(" in text and text[:1] not in ("'", '"', "[") else from_yaml(text)
 
 
 def _error(place: Place, message: str) -> GraphFileError:

@@ -78,7 +78,9 @@ def _action(said: Said) -> tuple[str, Any]:
             found = {"name": text(get("name", 0)), "value": text(get("value", 1))}
             return "append_env", {**found, "prepend": str(get("prepend", 2, default=False))}
         case "SetParameter":
-            return "set_parameter", {"name": text(get("name", 0)), "value": plain(get("value", 1))}
+            found = _parameter(get("name", 0), get("value", 1))
+            is_text = isinstance(found["value"], str) and "$(" not in found["value"]  # which is no text to be read
+            return "set_parameter", {"type": "str", **found} if is_text else found
         case "SetRemap":
             return "set_remap", {"from": text(get("src", 0)), "to": text(get("dst", 1))}
         case "SetUseSimTime":
@@ -286,6 +288,8 @@ def _node(said: Said) -> dict[str, Any]:
     for given in _list(said, "parameters", "[{'rate': 2.0}]"):
         if isinstance(given, dict):
             params += [_parameter(key, value) for key, value in given.items()]
+        elif isinstance(given, Said) and given.name == "Parameter":
+            params.append(_parameter(given.get("name", 0), given))
         else:
             params.append({"from": text(given)})
     if params:
@@ -317,8 +321,23 @@ def _components(said: Said) -> list[dict[str, Any]]:
 def _parameter(name: Any, value: Any) -> dict[str, Any]:
     if isinstance(value, dict):
         return {"name": text(name), "param": [_parameter(key, inner) for key, inner in value.items()]}
-    is_text = isinstance(value, str) and "$(" not in value and not _is_number_to_ros(value)
-    return {"name": text(name), "value": plain(value), **({"type": "str"} if is_text else {})}
+    found = {"name": text(name), "value": plain(value)}
+    if isinstance(value, Said) and value.name in _TYPED:
+        kind, inner = _type_name(value.get("value_type")), value.get("value", _TYPED[value.name])
+        return _parameter(name, inner) | ({"type": kind} if kind else {})
+    if isinstance(value, str) and "$(" not in value and _is_number_to_ros(value):
+        found["value"] = scalar(value)
+    return found
+
+
+_TYPED = {"ParameterValue": 0, "Parameter": 1}
+"""Descriptions of parameters that may have a type, and where their values stand."""
+
+
+def _type_name(given: Any) -> str:
+    """A Python type by the name that it has in launch files: `list_of_int` for `List[int]`."""
+    inner = getattr(given, "__args__", ())
+    return f"list_of_{inner[0].__name__}" if inner else getattr(given, "__name__", "")
 
 
 def _is_number_to_ros(value: str) -> bool:

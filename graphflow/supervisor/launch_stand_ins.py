@@ -272,8 +272,8 @@ def plain(value: Any) -> Any:
     """A value as JSON has it: numbers stay numbers."""
     if isinstance(value, (bool, int, float, str)):
         return value
-    if isinstance(value, (list, tuple)):
-        return text(value) if any(isinstance(part, Said) for part in value) else [plain(part) for part in value]
+    if isinstance(value, (list, tuple)) and not any(isinstance(part, Said) for part in value):
+        return [text(part) if isinstance(part, (list, tuple)) else plain(part) for part in value]
     return text(value)
 
 

@@ -784,3 +784,39 @@ def test_a_launch_file_may_have_nothing_to_start(lamps: Path) -> None:
     for actions in ("", "{executable: {cmd: ls, if: 'false'}}"):
         (lamps / "f.launch.yaml").write_text(f"launch: [{actions}]\n")
         assert load(lamps / "f.launch.yaml").nodes == ()
+
+
+TYPES = """<launch>
+  <arg name="n" default="foo"/>
+  <let name="ten" value="10"/>
+  <let name="zip" value="0042"/>
+  <let name="list" value="[2, 5]"/>
+  <let name="text" value="\\'[2, 5]\\'"/>
+  <node pkg="demo_nodes_py" exec="talker">
+    <param name="a" value="$(var ten)" type="float"/>
+    <param name="b" value="$(var 'zip')" type="str"/>
+    <param name="c" value="$(var list)"/>
+    <param name="d" value="$(var text)"/>
+    <param name="e" value="['$(var n)1', '$(var n)2']"/>
+    <param name="f" value="\\'2\\', \\'5\\'" value-sep=", "/>
+    <param name="g" value="$(var ten), 2" value-sep=", "/>
+    <param name="h" value="\\$(var ten)"/>
+  </node>
+</launch>
+"""
+
+
+def test_parameters_of_launch_files_have_their_types(tmp_path: Path) -> None:
+    """As launch gives them: those that are asked for, else what the text reads as, substitutions made."""
+    (tmp_path / "f.launch.xml").write_text(TYPES)
+    found = load(tmp_path / "f.launch.xml", [], {}).nodes[0].params
+    assert {name: setting.value for name, setting in found.items()} == {
+        "a": 10.0,
+        "b": "0042",
+        "c": [2, 5],
+        "d": "[2, 5]",
+        "e": ["foo1", "foo2"],
+        "f": ["'2'", "'5'"],
+        "g": [10, 2],
+        "h": "$(var ten)",
+    }

@@ -113,7 +113,7 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
         (
             "[{let: {name: n, value: '3'}}, {group: [{set_use_sim_time: {value: 'true'}}, {node: {pkg: turtlesim, "
             "exec: turtlesim_node, name: sim}}]}]",
-            {"group": {"for": {"var": "n", "in": [3], "group": {"params": {"use_sim_time": True}, "nodes": SIM}}}},
+            {"group": {"for": {"var": "n", "in": ["3"], "group": {"params": {"use_sim_time": True}, "nodes": SIM}}}},
         ),
         (
             "[{executable: {cmd: rviz2 -d 'a b.rviz', on_exit: shutdown}}, {executable: {cmd: rviz2, cwd: /tmp}}]",
@@ -177,7 +177,7 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
         ),
         (
             "[{include: {file: a.yaml, if: $(var x)}}, {include: {file: b.yaml, arg: [{name: n, value: '1'}]}}]",
-            {"include": [{"file": "a.yaml", "if": "$(var x)"}, {"file": "b.yaml", "args": {"n": 1}}]},
+            {"include": [{"file": "a.yaml", "if": "$(var x)"}, {"file": "b.yaml", "args": {"n": "1"}}]},
         ),
         ("[{log: {message: hello}}, {log: {message: ''}}, {group: []}]", {"steps": {"log_1": {"log": "hello"}}}),
         (
@@ -218,7 +218,7 @@ def test_actions(actions: str, expected: dict[str, Any]) -> None:
 
 def test_components() -> None:
     """Nodes of a container share a process, and so do those that are loaded into it."""
-    talker = "{pkg: composition, plugin: 'composition::Talker', name: t, param: [{name: rate, value: '2.0'}]}"
+    talker = "{pkg: composition, plugin: 'composition::Talker', name: t, param: [{name: rate, value: 2.0}]}"
     listener = "{pkg: composition, plugin: 'composition::Listener', remap: [{from: chatter, to: news}]}"
     container = "{name: c, namespace: '', pkg: rclcpp_components, exec: component_container"
     made, complaints, _ = native(
@@ -289,7 +289,7 @@ def test_a_node_that_only_ros_has() -> None:
     """It is run by ros2; the reader of a converted file is told so."""
     made, complaints, notes = native(
         "launch: [{node: {pkg: nav2, exec: planner, name: p, namespace: n, args: -x 1, remap: [{from: a, to: b}], "
-        "param: [{name: rate, value: '2.5'}, {from: f.yaml}], respawn: 'true'}}]\n"
+        "param: [{name: rate, value: 2.5}, {from: f.yaml}], respawn: 'true'}}]\n"
     )
     assert complaints == []
     assert notes == ["nav2 planner: no node of that name is here; ros2 runs it, which must be installed"]

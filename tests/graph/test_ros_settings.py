@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph.ros_settings import pair, params, ros_words, setting
+from graphflow.graph.ros_settings import pair, parameter, params, ros_words, setting
 from graphflow.graph.tree import Item, located
 
 HERE = Place("f.yaml", 1, 1)
@@ -42,19 +42,50 @@ def test_a_missing_attribute_is_told() -> None:
 
 
 def test_parameters_and_files_of_them() -> None:
-    """Values read as YAML does, unless they are said to be texts; nested ones stay nested."""
+    """Values keep their types, unless another is given; nested ones stay nested."""
     said = [
-        {"name": "a", "value": "1e3"},
-        {"name": "b", "value": "1e3", "type": "str"},
+        {"name": "a", "value": 10, "type": "float"},
+        {"name": "b", "value": "1e3"},
         {"from": "p.yaml"},
-        {"name": "c", "param": [{"name": "d", "value": "true"}]},
+        {"name": "c", "param": [{"name": "d", "value": "true", "type": "bool"}]},
     ]
     entries: dict[str, Item] = {}
     params(located({"param": said}, HERE), entries, complained)
     assert {key: item.plain() for key, item in entries.items()} == {
         "params_file": ["p.yaml"],
-        "params": {"a": 1000.0, "b": "1e3", "c": {"d": True}},
+        "params": {"a": 10.0, "b": "1e3", "c": {"d": True}},
     }
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "expected"),
+    [
+        ("$(var a)", "", "$(var a)"),
+        ("$(var a)1", "", "$(as yaml $(var a)1)"),
+        ("$(env A)", "", "$(as yaml $(env A))"),
+        ("$(var a)", "float", "$(as float $(var a))"),
+        ("['$(var a)1', 'b']", "yaml", "$(as yaml \"['$(var a)1', 'b']\")"),
+        (["$(var a)1", "b"], "", ["$(as yaml $(var a)1)", "b"]),
+        ([1, "$(var a)"], "list_of_float", [1.0, "$(as float $(var a))"]),
+        ("0042", "", "0042"),
+        ("0042", "int", 42),
+        ("1", "bool", True),
+    ],
+)
+def test_the_type_of_a_parameter(value: Any, kind: str, expected: Any) -> None:
+    """Of a text with substitutions it is known when they have been made."""
+    assert parameter(located(value, HERE), kind, complained).plain() == expected
+
+
+def test_a_parameter_of_another_type() -> None:
+    """Is told with its place, and so is an attribute that means nothing."""
+    told: list[str] = []
+    said = {"param": [{"name": "a", "value": "x", "type": "int", "valeu": 1}]}
+    params(located(said, HERE), {}, lambda place, text: told.append(f"{place}: {text}"))
+    assert told == [
+        "f.yaml:1:1: param: unknown attribute 'valeu'; did you mean 'value'?",
+        "f.yaml:1:1: param: expected an integer, got 'x'",
+    ]
 
 
 def test_words_for_ros() -> None:

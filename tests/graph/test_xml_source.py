@@ -29,13 +29,34 @@ def test_elements(tmp_path: Path) -> None:
     node = {
         "pkg": "p",
         "exec": "e",
-        "param": [{"name": "x", "value": "1"}, {"name": "y", "value": "2"}],
+        "param": [{"name": "x", "value": 1}, {"name": "y", "value": 2}],
         "remap": [{"from": "a", "to": "b"}],
     }
     timer = {"period": "1.0", "children": [{"log": {"message": "hi"}}]}
     assert top.plain() == {"launch": [{"group": {"if": "a", "children": [{"node": node}, {"timer": timer}]}}]}
     group = top.entries["launch"].value[0].entries["group"]
     assert group.place == Place("f.xml", 2, 3)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "value"),
+    [
+        ('value="1e3"', 1000.0),
+        ('value="1e3" type="str"', "1e3"),
+        ("value=\"'2'\"", "2"),
+        (r'value="\'2\'"', r"\'2\'"),
+        ('value="[1, 2]"', [1, 2]),
+        ('value="1, 2" value-sep=", "', [1, 2]),
+        ('value="1, 2" value-sep=", " type="list_of_str"', ["1", "2"]),
+        ('value="$(var a): b"', "$(var a): b"),
+        ("value=\"['$(var a)1', b]\"", ["$(var a)1", "b"]),
+    ],
+)
+def test_values_of_parameters(tmp_path: Path, attributes: str, value: object) -> None:
+    """They read as in YAML, unless their type is given; with `value-sep` they are lists."""
+    top = read_file(written(tmp_path, f'<launch><node><param name="x" {attributes}/></node></launch>'), "f.xml")
+    [param] = top.plain()["launch"][0]["node"]["param"]
+    assert (param["value"], "value-sep" in param) == (value, False)
 
 
 @pytest.mark.parametrize(

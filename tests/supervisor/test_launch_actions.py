@@ -185,3 +185,27 @@ def test_what_a_node_cannot_be_given(given: dict[str, Any], said_of_it: str, pro
 def test_what_a_node_must_be_given() -> None:
     """Nothing is made up in its place."""
     assert actions([said("Node", package="p")]) == [{"node": {"pkg": "p", "line": 7}}]
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (said("ParameterValue", said("LaunchConfiguration", "x"), value_type=float), ("$(var x)", "float")),
+        (said("ParameterValue", value="0042", value_type=str), ("0042", "str")),
+        (said("ParameterValue", "[1]", value_type=list[int]), ("[1]", "list_of_int")),
+        (said("ParameterValue", 3), (3, None)),
+        ([["a", said("LaunchConfiguration", "x")], ["b"]], (["a$(var x)", "b"], None)),
+    ],
+)
+def test_types_of_parameters(value: Any, expected: tuple[Any, str | None]) -> None:
+    """They are written down by the names that launch files have for them."""
+    given = [{"rate": value}, said("Parameter", "rate", value)]
+    found = [actions(said("Node", package="p", executable="e", parameters=[one]))[0]["node"]["param"] for one in given]
+    assert [(param["value"], param.get("type")) for [param] in found] == [expected, expected]
+
+
+def test_a_text_that_is_set_for_all_stays_one() -> None:
+    """Unless it has substitutions."""
+    settings = [said("SetParameter", "a", value) for value in ("0042", said("LaunchConfiguration", "x"), 2)]
+    found = [action["set_parameter"] for action in actions(settings)]
+    assert [(one["value"], one.get("type")) for one in found] == [("0042", "str"), ("$(var x)", None), (2, None)]

@@ -53,7 +53,7 @@ def test_what_is_recorded() -> None:
         "remap": [{"from": "/turtle1/cmd_vel", "to": "/cmd_vel"}],
         "param": [
             {"name": "background_r", "value": 10},
-            {"name": "name", "value": "5", "type": "str"},
+            {"name": "name", "value": "5"},
             {"name": "gain", "value": "$(var speed 1.0)"},
             {"name": "list", "value": [1.0, 2.0]},
             {"name": "n", "param": [{"name": "a", "value": True}]},
@@ -327,7 +327,7 @@ def test_what_is_added_while_a_file_is_carried_out(tmp_path: Path) -> None:
     said = [f"OnProcessExit: {what} is left out: nothing is called while the graph runs" for what in left_out]
     assert [remark["message"] for remark in told["remarks"]] == said
     # ROS writes parameters to a file, unquoted where YAML 1.1 needs no quotes, and reads them by rules of its own.
-    assert [param.get("type") for param in actions[2][1]["param"]] == [None, "str", "str"]
+    assert [type(param["value"]) for param in actions[2][1]["param"]] == [float, str, str]
 
 
 ENVIRONMENT = """
