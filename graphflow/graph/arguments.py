@@ -69,15 +69,21 @@ class Arguments:
                     spec = spec._replace(value={**spec.entries, "default": default})
                 found[name] = self._own(name, spec) if texts is None else self._text(name, spec, texts.get(name, "$("))
             self.values[name] = found[name].value if isinstance(found[name], Written) else found[name]
+        if texts is not None:  # ROS has what is given for whatever asks for it
+            found = {**{name: Written(text) for name, text in self._given.items()}, **found}
         return found
 
     def refuse_strays(self) -> None:
         """Report words of the command line that no file has an argument for."""
         for name in self._given:
             if name not in self.values:
-                help_ = did_you_mean(name, self.values) or "; the file declares none under args:"
-                told = self._problems.remark if self._problems.launch_files else self._problems.add
-                told(COMMAND_LINE, f"there is no argument {name!r}{help_}")
+                help_ = did_you_mean(name, self.values)
+                if self._problems.launch_files:
+                    help_ = help_ or f"; only $(var {name}) has its value"
+                    self._problems.remark(COMMAND_LINE, f"no argument {name!r} is declared{help_}")
+                else:
+                    help_ = help_ or "; the file declares none under args:"
+                    self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
 
     def _text(self, name: str, spec: Item, default: str) -> Written:
         """The value of a launch file's argument; any text will do, if it is among the choices."""

@@ -37,7 +37,7 @@ from graphflow.graph.project import no_file, shown
 from graphflow.graph.reading import read
 from graphflow.graph.ros_launch import ignore
 from graphflow.graph.substitutions import Outside, SubstitutionError, Substitutions, Written, truth
-from graphflow.graph.tree import Item, first_of, located, merged, source_of
+from graphflow.graph.tree import Item, located, merged, shared, source_of
 from graphflow.names import check_full_name, check_namespace, did_you_mean, expand, join, split
 
 MAX_ROUNDS = 10_000
@@ -450,10 +450,11 @@ class Expansion:
         if not isinstance(value, str) or "$(" not in value:
             return value
         file = self.files.get(place.file, Path())
-        params = first_of([group["params"].entries for group in scope.shared if "params" in group])
-        values = {name: item.plain() for name, item in params.items()} if "param" in value else {}
+        params = shared("params", scope.shared) if "param" in value else {}
+        variables = {name: str(text) for name, text in shared("env", scope.shared).items()}
+        outside = self._outside._replace(env={**self._outside.env, **variables})
         try:
-            return Substitutions(scope.values, file, self._outside, values).apply(value, is_word=is_word)
+            return Substitutions(scope.values, file, outside, params).apply(value, is_word=is_word)
         except SubstitutionError as error:
             self._problems.add_unknown(place, str(error))
             return value
@@ -470,9 +471,9 @@ class Expansion:
             return item._replace(value=result)
         if isinstance(item.value, list):
             return item._replace(value=[self._substituted(inner, scope, is_word=is_word) for inner in item.value])
-        value = self._one(item.value, item.place, scope, is_word=is_word or isinstance(item.value, Written))
-        if isinstance(item.value, Written):
-            value = Written(value)
+        is_written = isinstance(item.value, Written)
+        value = self._one(item.value, item.place, scope, is_word=is_word or is_written)
+        value = Written(value) if is_written else value
         self._count(value, item.place)
         return located(value, item.place)._replace(key=item.key)
 

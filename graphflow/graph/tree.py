@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from graphflow.errors import Place
@@ -104,3 +104,9 @@ def first_of(mappings: list[Mapping[str, Item]]) -> dict[str, Item]:
         for key, item in mapping.items():
             found.setdefault(key, item)
     return found
+
+
+def shared(key: str, mappings: Sequence[Mapping[str, Item]]) -> dict[str, Any]:
+    """The plain entries that mappings have under one key; of those with one name that of the first mapping."""
+    found = first_of([mapping[key].entries for mapping in mappings if key in mapping])
+    return {name: item.plain() for name, item in found.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import yaml
@@ -58,6 +59,7 @@ def actions(said: Any) -> list[dict[str, Any]]:
 
 def _action(said: Said) -> tuple[str, Any]:
     get = said.get
+    _keep(said)
     match said.name:
         case "LaunchDescription":
             return "", actions(said.entities)
@@ -76,7 +78,8 @@ def _action(said: Said) -> tuple[str, Any]:
             return "set_env", {"name": text(get("name", 0)), "value": text(get("value", 1))}
         case "AppendEnvironmentVariable":
             found = {"name": text(get("name", 0)), "value": text(get("value", 1))}
-            return "append_env", {**found, "prepend": str(get("prepend", 2, default=False))}
+            separator = {} if get("separator", 3) is None else {"separator": text(get("separator", 3))}
+            return "append_env", {**found, "prepend": str(get("prepend", 2, default=False)), **separator}
         case "SetParameter":
             found = _parameter(get("name", 0), get("value", 1))
             is_text = isinstance(found["value"], str) and "$(" not in found["value"]  # which is no text to be read
@@ -88,7 +91,11 @@ def _action(said: Said) -> tuple[str, Any]:
         case "PushRosNamespace" | "PushROSNamespace":
             return "push_ros_namespace", {"namespace": text(get("namespace", 0))}
         case "GroupAction":
-            return "group", {"children": actions(get("actions", 0, [])), "scoped": bool(get("scoped", default=True))}
+            is_scoped, outer = bool(get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
+            children = actions(get("actions", 0, []))
+            if is_scoped:
+                RECORDING.set, RECORDING.env = outer
+            return "group", {"children": children, "scoped": is_scoped}
         case "TimerAction":
             return "timer", {"period": plain(get("period")), "children": actions(get("actions", default=[]))}
         case "IncludeLaunchDescription":
@@ -100,7 +107,11 @@ def _action(said: Said) -> tuple[str, Any]:
         case "UnregisterEventHandler":
             return "", []
         case "OpaqueFunction":
-            return "", actions(_called(said))
+            before = dict(RECORDING.set)
+            found_actions = _called(said)
+            changed = {name: value for name, value in RECORDING.set.items() if before.get(name) != value}
+            settings = [{"let": {"name": name, "value": value, "line": said.line}} for name, value in changed.items()]
+            return "", [*settings, *actions(found_actions)]
         case "RegisterEventHandler":
             return "", _handled(said)
         case "EmitEvent" if (change := _change(said)) is not None:
@@ -133,6 +144,26 @@ def _action(said: Said) -> tuple[str, Any]:
             return "executable", _process(said)
     RECORDING.problem(said, f"{said.name} has no words in a graph file")
     return "", []
+
+
+_SETTING = ("SetLaunchConfiguration", "SetEnvironmentVariable", "AppendEnvironmentVariable")
+
+
+def _keep(said: Said) -> None:
+    """Note what an action sets, for functions that come after it and ask."""
+    given = said.kwargs.get("condition")
+    if said.name not in _SETTING or RECORDING.values is None or (given is not None and not given.evaluate()):
+        return
+    name, value = (RECORDING.known(text(said.get(key, place))) for key, place in (("name", 0), ("value", 1)))
+    if said.name == "SetLaunchConfiguration":
+        RECORDING.set[name] = value
+        return
+    former = Context().environment.get(name)
+    if said.name == "AppendEnvironmentVariable" and former is not None:
+        parts = [former, value]
+        is_first = bool(said.get("prepend", 2, default=False))
+        value = text(said.get("separator", 3, os.pathsep)).join(parts[::-1] if is_first else parts)
+    RECORDING.env[name] = value
 
 
 def _called(said: Said) -> Any:

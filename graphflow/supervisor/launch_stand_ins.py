@@ -11,6 +11,7 @@ import json
 import logging
 import os
 import sys
+from collections import UserDict
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import import_module
@@ -32,6 +33,13 @@ PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_py
 """The packages that there are stand-ins for."""
 
 
+class PackageNotFoundError(KeyError):
+    """As of ament_index_python: there is no such package."""
+
+    def __str__(self) -> str:
+        return f"package {self.args[0]!r} not found; it is neither in the workspace nor installed"
+
+
 class Recording:
     """One launch file, and what is known of it while it is run."""
 
@@ -44,6 +52,10 @@ class Recording:
         """Those of the arguments that have been declared so far."""
         self.needed: set[str] = set()
         """The arguments that have been declared without one."""
+        self.set: dict[str, str] = {}
+        """The launch configurations that have been set so far."""
+        self.env: dict[str, str] = {}
+        """The variables of the environment that have been set so far."""
         self.descriptions: list[Said] = []
         """All that were made, to which a function may add while it is called."""
         self.problems: list[dict[str, Any]] = []
@@ -82,23 +94,32 @@ class Recording:
         return self._made(text, self.arguments())
 
     def arguments(self) -> dict[str, str]:
-        """The values of arguments that are known: what is given, and defaults."""
+        """The values of launch configurations that are known: what is given, defaults, and what has been set."""
         found = dict(self.values or {})
         for name, default in self.defaults.items():
             if name not in found:
                 found[name] = self._made(default, found)
-        return found
+        return found | self.set
 
     def _made(self, text: str, values: Mapping[str, str]) -> str:
         file = Path(self.file)
-        outside = Outside(os.environ, project_root(file), newest_logs(file.name.removesuffix(".launch.py")), printed)
+        env = {**os.environ, **self.env}
+        outside = Outside(env, project_root(file), newest_logs(file.name.removesuffix(".launch.py")), printed)
         return as_text(Substitutions(values, file, outside).apply(text))
 
     def folder(self, what: str, package: str) -> str:
-        """The `share` folder or `prefix` of a package; where that is not known, the substitution for it."""
+        """The `share` folder or `prefix` of a package; the substitution for it, if the file is only written down.
+
+        Raises:
+            PackageNotFoundError: There is no such package.
+        """
+        if self.values is None:
+            return f"$(find-pkg-{what} {package})"
         find = package_prefix if what == "prefix" else package_share
-        found = None if self.values is None else find(package, project_root(Path(self.file)), os.environ)
-        return f"$(find-pkg-{what} {package})" if found is None else str(found)
+        found = find(package, project_root(Path(self.file)), os.environ)
+        if found is None:
+            raise PackageNotFoundError(package)
+        return str(found)
 
 
 RECORDING = Recording()
@@ -110,13 +131,29 @@ def as_text(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
+class Configurations(UserDict[str, str]):
+    """Launch configurations, as a function sees and sets them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.data.update(RECORDING.arguments())
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        self.data[name] = RECORDING.set[name] = as_text(value)
+
+
 class Context:
     """What an `OpaqueFunction` is called with."""
 
     @property
-    def launch_configurations(self) -> dict[str, str]:
-        """The values of arguments."""
-        return RECORDING.arguments()
+    def launch_configurations(self) -> Configurations:
+        """The values of arguments, and of what has been set."""
+        return Configurations()
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables of the environment, with those that have been set."""
+        return {**os.environ, **RECORDING.env}
 
     def perform_substitution(self, value: Any) -> str:
         """A value with its substitutions made."""
@@ -277,8 +314,8 @@ def plain(value: Any) -> Any:
     return text(value)
 
 
-OWN: dict[str, type[Said]] = {}
-"""Classes that do more than remember, by name; who defines one puts it here."""
+OWN: dict[str, type] = {"PackageNotFoundError": PackageNotFoundError}
+"""Classes that do more than remember, by name; the module that defines one adds it."""
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
 _SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle", "logging", "utilities"}
 

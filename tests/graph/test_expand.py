@@ -376,3 +376,14 @@ def test_nodes_of_groups_on_their_own_namespace() -> None:
         plan(HEAD + "group: {namespace: n, nodes: {/b: {class: x:Y}}, steps: {s: {call: go}}}").steps[0].target
         == "/n/go"
     )
+
+
+def test_variables_of_groups_are_seen_in_them() -> None:
+    """By `$(env ...)`, also where a group within adds to one."""
+    text = (
+        "group: {env: {A: 1, USER: $(env USER)s}, group: {env: {A: $(env A):2}, "
+        "nodes: {n: {class: x:Y, params: {a: $(env A) $(env USER)}}}}}\n"
+    )
+    [node] = plan(text).nodes
+    assert (node.env["A"], node.params["a"].value) == ("1:2", "1:2 adas")
+    assert problems("{nodes: {n: {class: x:Y, params: {a: $(env A)}}}, group: {env: {A: 1}, nodes: {}}}\n")

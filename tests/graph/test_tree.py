@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from graphflow.errors import Place
 from graphflow.graph import source
-from graphflow.graph.tree import Item, first_of, located, merged, source_of, tree
+from graphflow.graph.tree import Item, first_of, located, merged, shared, source_of, tree
 
 TEXT = "a: 1\nb: {c: [x, {d: 2}], e: }\n"
 HERE, THERE = Place("f.yaml", 1, 1), Place("g.yaml", 2, 2)
@@ -64,3 +64,10 @@ def test_what_is_no_mapping_has_no_entries() -> None:
     item = Item(3, HERE)
     assert (item.entries, item.without("a")) == ({}, item)
     assert located({"a": 1, "b": 2}, HERE).without("a", "c").plain() == {"b": 2}
+
+
+def test_what_mappings_share() -> None:
+    """The first that has an entry counts."""
+    inner, outer = located({"env": {"a": 1}}, HERE), located({"env": {"a": 2, "b": 3}}, HERE)
+    assert shared("env", [inner.entries, {}, outer.entries]) == {"a": 1, "b": 3}
+    assert shared("params", [inner.entries]) == {}

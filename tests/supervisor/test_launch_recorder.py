@@ -218,9 +218,72 @@ def generate_launch_description():
         DeclareLaunchArgument("who", default_value="leo"),
         DeclareLaunchArgument("where", default_value=["at_", who]),
         OpaqueFunction(function=several, args=["drive"]),
-        Node(package=get_package_share_directory("elsewhere"), executable="e", parameters=[{"urdf": urdf, "ok": same}]),
+        Node(package="p", executable="e", parameters=[{"urdf": urdf, "ok": same}]),
     ])
 """
+
+
+MISSING = """
+from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import LogInfo
+
+def generate_launch_description():
+    try:
+        folder = get_package_share_directory("elsewhere")
+    except PackageNotFoundError as error:
+        folder = f"none: {error}"
+    return LaunchDescription([LogInfo(msg=folder), *ELSE])
+"""
+
+
+def test_a_package_that_is_not_there(tmp_path: Path) -> None:
+    """Is an error that a file may catch when it is started; the file is written down with a substitution."""
+    file = tmp_path / "a.launch.py"
+    file.write_text(MISSING.replace(", *ELSE", ""))
+    said = "package 'elsewhere' not found; it is neither in the workspace nor installed"
+    assert record(file)["actions"][0]["log"]["message"] == "$(find-pkg-share elsewhere)"
+    assert record(file, x=1)["actions"][0]["log"]["message"] == f"none: {said}"
+    file.write_text(MISSING.replace("*ELSE", "get_package_share_directory('nowhere')"))
+    [problem] = record(file, x=1)["problems"]
+    assert problem["message"] == f"PackageNotFoundError: {said.replace('elsewhere', 'nowhere')}"
+
+
+SET = """
+from launch import LaunchDescription
+from launch.actions import (AppendEnvironmentVariable, GroupAction, LogInfo, OpaqueFunction, SetEnvironmentVariable,
+    SetLaunchConfiguration)
+from launch.conditions import IfCondition
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+
+def tell(context, word):
+    asked = [EnvironmentVariable("A"), LaunchConfiguration("c", default="")]
+    told = [one.perform(context) for one in asked]
+    context.launch_configurations["d"] = word
+    return [LogInfo(msg=[*told, context.launch_configurations["d"], context.environment.get("A", "")])]
+
+def generate_launch_description():
+    return LaunchDescription([
+        SetEnvironmentVariable("A", "7"),
+        GroupAction([AppendEnvironmentVariable("A", "8"), SetLaunchConfiguration("c", "C"),
+            OpaqueFunction(function=tell, args=["in"])]),
+        SetLaunchConfiguration("c", "never", condition=IfCondition("false")),
+        OpaqueFunction(function=tell, args=["out"]),
+    ])
+"""
+
+
+def test_what_is_set_is_known_to_functions(tmp_path: Path) -> None:
+    """In the order of the file and within groups; what a function sets holds for what comes after it."""
+    file = tmp_path / "a.launch.py"
+    file.write_text(SET)
+    told = record(file, far=True)
+    assert told["problems"] == []
+    _, group, _, changed, last = told["actions"]
+    assert [next(iter(child)) for child in group["group"]["children"]] == ["append_env", "let", "let", "log"]
+    assert group["group"]["children"][-1]["log"]["message"] == "7:8Cin7:8"
+    assert (changed["let"]["name"], changed["let"]["value"]) == ("d", "out")
+    assert last["log"]["message"] == "7out7"
 
 
 def test_a_file_that_is_about_to_be_started(tmp_path: Path) -> None:
@@ -237,7 +300,6 @@ def test_a_file_that_is_about_to_be_started(tmp_path: Path) -> None:
     assert told["problems"] == []
     nodes = [action["node"] for action in told["actions"] if "node" in action]
     assert [node.get("name", node["exec"]) for node in nodes] == ["don0", "don1", f"{robot}/don", "at_don", "e"]
-    assert nodes[-1]["pkg"] == "$(find-pkg-share elsewhere)"
     assert [param["value"] for param in nodes[-1]["param"]] == ["<robot/>", True]
     (problem,) = record(file, who="don")["problems"]
     assert (problem["line"], problem["message"].startswith("SubstitutionError: there is no argument 'far'")) == (
