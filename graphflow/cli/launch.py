@@ -122,7 +122,7 @@ def convert(file: Path, target: Path | None) -> int:
 
     if target is not None and target.exists():
         raise UsageFault(f"{target} is there already; remove it, or name another file")
-    top = read(file, shown(file), complain, complain, described, remark=complain)
+    top = read(file, shown(file), complain, complain, described, remark=complain, leave_out=complain)
     text = f"# From {file.name}, by graphflow launch convert.\n{_yaml(top.without(FROM_LAUNCH))}"
     if target is None:
         output.lines(text.rstrip("\n").split("\n"))

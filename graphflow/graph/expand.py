@@ -193,8 +193,9 @@ class Expansion:
         if len(self.files) > MAX_FILES:
             raise GraphFileError([Problem(place, f"more than {MAX_FILES} files are included")])
         self._included += 1
-        add, remark = self._problems.add, self._problems.remark
-        top = read(path, shown(path), add, ignore, self._outside.describe, values, remark, self._included + 1)
+        found, told = self._problems, self._outside.describe
+        number = self._included + 1
+        top = read(path, shown(path), found.add, ignore, told, values, found.remark, number, found.leave_out)
         if not isinstance(top.value, dict):
             self._problems.add(place, f"{path.name} is not a graph file: it holds no mapping")
             return None

@@ -28,6 +28,8 @@ class Problems(list[Problem]):
         """Files of ROS's, whose users expect that what ROS lets pass is let pass."""
         self.remarks: list[Problem] = []
         """What was let pass."""
+        self.left_out: list[Problem] = []
+        """What launch files start and nobody here has."""
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
@@ -48,6 +50,11 @@ class Problems(list[Problem]):
         """Add what is let pass."""
         if Problem(place, message) not in self.remarks:
             self.remarks.append(Problem(place, message))
+
+    def leave_out(self, place: Place, message: str) -> None:
+        """Add what nobody here has: a remark if anything else is started, else a problem."""
+        if Problem(place, message) not in self.left_out:
+            self.left_out.append(Problem(place, message))
 
     def add_unknown(self, place: Place, message: str) -> None:
         """Add a problem that leaves the value unknown: further reports about it would only confuse."""

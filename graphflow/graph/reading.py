@@ -27,6 +27,7 @@ def read(
     values: Mapping[str, Any] | None = None,
     remark: Complain = ignore,
     number: int = 1,
+    leave_out: Complain = ignore,
 ) -> Item:
     """A graph file, or a launch file in YAML, XML or Python.
 
@@ -38,6 +39,7 @@ def read(
         values: The arguments that such a file is about to be started with; None if it is only to be written down.
         remark: Called with what such a file says that is left out.
         number: Which file of the graph it is: steps that a launch file does not name are called by it.
+        leave_out: Called with what such a file starts and nobody here has.
 
     Raises:
         GraphFileError: It cannot be read; why, and where.
@@ -51,8 +53,9 @@ def read(
             complain(Place(name, problem["line"], 1), problem["message"])
         for left_out in told["remarks"]:
             remark(Place(name, left_out["line"], 1), left_out["message"])
-        return ros_launch.native(ros_launch.recorded(told["actions"], name), project_root(path), complain, note, number)
+        recorded = ros_launch.recorded(told["actions"], name)
+        return ros_launch.native(recorded, project_root(path), complain, note, number, leave_out)
     top = xml_source.read_file(path, name) if path.suffix in (".xml", ".launch") else tree(source.read_file(path, name))
     if ros_launch.is_launch_file(top):
-        return ros_launch.native(unescaped(top), project_root(path), complain, note, number)
+        return ros_launch.native(unescaped(top), project_root(path), complain, note, number, leave_out)
     return top

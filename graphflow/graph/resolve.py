@@ -55,7 +55,15 @@ def load(
         GraphFileError: Every mistake that could be found.
     """
     problems = Problems()
-    top = read(path, shown(path), problems.add, describe=describe, values=given_values(given), remark=problems.remark)
+    top = read(
+        path,
+        shown(path),
+        problems.add,
+        describe=describe,
+        values=given_values(given),
+        remark=problems.remark,
+        leave_out=problems.leave_out,
+    )
     return _resolve(top, path, given, env, problems, run=run, describe=describe)
 
 
@@ -96,10 +104,11 @@ def _resolve(
     nodes = _nodes(src, model, files, programs, problems)
     expansion.left_out |= {str(name): problem.place for name, problem in programs.left_out.items()}
     problems.excuse(map(str, programs.left_out))
+    problems.left_out += programs.left_out.values()
     if nodes:
-        problems.remarks += programs.left_out.values()
+        problems.remarks += problems.left_out
     else:
-        problems += programs.left_out.values()
+        problems += problems.left_out
     files.refuse_strays([n.name for n in nodes.values()])
     _check_env(nodes.values(), problems)
     steps = _steps(src, model, problems)

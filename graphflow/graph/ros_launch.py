@@ -103,7 +103,14 @@ def recorded(actions: list[dict[str, Any]], file: str) -> Item:
     return Item({"launch": Item([action(said) for said in actions], top)}, top)
 
 
-def native(top: Item, root: Path, complain: Complain, note: Complain = ignore, number: int = 1) -> Item:
+def native(
+    top: Item,
+    root: Path,
+    complain: Complain,
+    note: Complain = ignore,
+    number: int = 1,
+    leave_out: Complain = ignore,
+) -> Item:
     """A launch file as a graph file.
 
     Args:
@@ -112,13 +119,14 @@ def native(top: Item, root: Path, complain: Complain, note: Complain = ignore, n
         complain: Called with what has no words here.
         note: Called with what has, but which the reader should know of.
         number: Which file of the graph it is.
+        leave_out: Called with components that nobody here has.
     """
-    return _Translation(root, complain, note, number).file(top)
+    return _Translation(root, complain, note, number, leave_out).file(top)
 
 
 class _Translation:
-    def __init__(self, root: Path, complain: Complain, note: Complain, number: int) -> None:
-        self._root, self._complain, self._note = root, complain, note
+    def __init__(self, root: Path, complain: Complain, note: Complain, number: int, leave_out: Complain) -> None:
+        self._root, self._complain, self._note, self._leave_out = root, complain, note, leave_out
         self._of = f"_of_{number}" if number > 1 else ""
         self._args: dict[str, Item] = {}
         self._texts: dict[str, Item] = {}  # their defaults as they are written
@@ -199,7 +207,7 @@ class _Translation:
         elif name == "node":
             self._node(item, body)
         elif name in KNOWN:
-            for component in components(item, self._root, self._complain):
+            for component in components(item, self._root, self._complain, self._leave_out):
                 self._node(component, body)
         elif name == "executable":
             self._executable(item, body)

@@ -130,7 +130,8 @@ def _action(said: Said) -> tuple[str, Any]:
             return "node", {**_node(said), **found}
         case "ComposableNodeContainer":
             for key in sorted(_OF_PROCESSES & {key for key, value in said.kwargs.items() if value}):
-                RECORDING.problem(said, f"{key}: its container is a process that nodes share; write it at the nodes")
+                why = "a container is a process that nodes share; write it at the nodes"
+                RECORDING.remark(said, f"{key}: left out, since {why}")
             return "node_container", {"name": text(get("name")), "composable_node": _components(said)}
         case "LoadComposableNodes":
             target = get("target_container")
@@ -338,7 +339,7 @@ _OF_PROCESSES = {
     "ros_arguments",
     "arguments",
 }
-"""What a container may be given that its nodes here must be given."""
+"""What a container may be given that counts only at its nodes here."""
 
 
 def _components(said: Said) -> list[dict[str, Any]]:

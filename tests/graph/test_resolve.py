@@ -822,3 +822,17 @@ def test_parameters_of_launch_files_have_their_types(tmp_path: Path) -> None:
         "g": [10, 2],
         "h": "$(var ten)",
     }
+
+
+def test_components_that_nobody_here_has_are_left_out_of_launch_files(lamps: Path) -> None:
+    """The others start; where there is nothing else, that is why nothing starts."""
+    absent = "{pkg: image_proc, plugin: 'image_proc::RectifyNode'}"
+    text = f"launch: [{{node_container: {{name: c, composable_node: [{absent}]}}}}%s]\n"
+    file = lamps / "f.launch.yaml"
+    file.write_text(text % ", {node: {pkg: turtlesim, exec: turtlesim_node}}")
+    found = load(file)
+    assert [node.name for node in found.nodes] == ["/turtlesim"]
+    assert "image_proc::RectifyNode is left out: no node here is the component" in found.remarks[0]
+    file.write_text(text % "")
+    with pytest.raises(GraphFileError, match="image_proc::RectifyNode is left out"):
+        load(file)

@@ -261,8 +261,8 @@ def test_lifecycle_nodes() -> None:
         ),
         ("node_container: {}", "f.yaml:1:11: the attribute 'name' or 'target' is missing"),
         (
-            "node_container: {name: c, composable_node: [{pkg: a, plugin: 'a::B'}]}",
-            "f.yaml:1:72: composable_node: no node here is the component a::B of the package a",
+            "node_container: {name: c, composable_node: [{pkg: composition, plugin: 'a::Talkr'}]}",
+            "f.yaml:1:82: composable_node: no node here is the component a::Talkr of the package composition; did you",
         ),
         (
             "load_composable_node: {target: c, composable_node: [{pkg: a}]}",
