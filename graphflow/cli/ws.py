@@ -83,6 +83,8 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
         output.lines(output.columns([*heads, *body]))
         for fault in faults:
             output.error(fault)
+        for name, folder in found.replaced.items():
+            output.talk(f"{folder} is not imported: graphflow has {name} itself")
         if not faults and any(p.executables for p, _ in rows):
             output.talk("Start one with: graphflow run PACKAGE EXECUTABLE")
     return exits.FAILED if faults else exits.OK

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.names import did_you_mean
+from graphflow.system import SITE
 
 DEPTH = 5
 """Folders below a workspace in which packages are looked for."""
@@ -155,6 +156,14 @@ class Workspace:
     def import_roots(self) -> list[Path]:
         """The folders of packages from which Python imports."""
         return [root for package in self.packages.values() for root in package.import_roots]
+
+    @property
+    def replaced(self) -> dict[str, Path]:
+        """Packages that Python would import from here, had graphflow not its own: source trees of rclpy, tf2_ros."""
+        own = os.listdir(SITE)
+        return {
+            name: root / name for root in self.import_roots for name in own if (root / name / "__init__.py").is_file()
+        }
 
     @property
     def interfaces(self) -> dict[str, Path]:

@@ -22,10 +22,19 @@ import importlib.util as u; u.find_spec("graphflow") and __import__("graphflow.r
 
 
 def elsewhere() -> str | None:
-    """The file of an rclpy that is not graphflow's; None if Python would find none."""
-    paths = [entry for entry in sys.path if os.path.abspath(entry or ".") != SITE]
+    """The file of an rclpy that is not graphflow's; None if Python would find none.
+
+    A source tree of it does not count: it cannot be imported before it has been built.
+    """
+    paths = [entry for entry in sys.path if os.path.abspath(entry or ".") != SITE and not _is_source_tree(entry)]
     found = importlib.machinery.PathFinder.find_spec("rclpy", paths)
     return found.origin if found is not None and found.origin is not None else None
+
+
+def _is_source_tree(entry: str) -> bool:
+    return os.path.isfile(os.path.join(entry, "rclpy", "__init__.py")) and os.path.isfile(
+        os.path.join(entry, "package.xml")
+    )
 
 
 def here() -> bool:
@@ -35,9 +44,11 @@ def here() -> bool:
         return False
     if SITE not in sys.path:
         sys.path.append(SITE)
-    from graphflow.rclpy.finder import install
+    from graphflow.rclpy.finder import install, prefer_own
 
     install()
+    if any(map(_is_source_tree, sys.path)):
+        prefer_own()
     return True
 
 

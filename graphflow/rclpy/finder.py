@@ -11,6 +11,8 @@ import sys
 from collections.abc import Sequence
 from types import ModuleType
 
+from graphflow.system import SITE
+
 BUNDLED = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "msgs")
 KINDS = ("msg", "srv", "action")
 KNOWN: dict[str, str] = {}
@@ -81,6 +83,19 @@ class MessagePackages:
         module.__dict__["__all__"] = names
         module.__getattr__ = make  # type: ignore[method-assign]
         module.__dir__ = lambda: names  # type: ignore[method-assign]
+
+
+class OwnPackages:
+    """Finds graphflow's rclpy, tf2_ros and the like also where a source tree of theirs comes before them."""
+
+    def __init__(self) -> None:
+        self._names = frozenset(os.listdir(SITE))
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        is_own = path is None and fullname in self._names
+        return importlib.machinery.PathFinder.find_spec(fullname, [SITE]) if is_own else None
 
 
 _NEVER = ("sitecustomize", "usercustomize", "org")
@@ -167,6 +182,12 @@ def install() -> None:
     """Let `import` see them, from now on."""
     if not any(isinstance(finder, MessagePackages) for finder in sys.meta_path):
         sys.meta_path.insert(0, MessagePackages())
+
+
+def prefer_own() -> None:
+    """Let `import` find graphflow's packages before others of their names."""
+    if not any(isinstance(finder, OwnPackages) for finder in sys.meta_path):
+        sys.meta_path.insert(0, OwnPackages())
 
 
 def look_around() -> None:

@@ -41,6 +41,14 @@ def test_what_there_is(machine: Machine, workspace: Path) -> None:
     assert found["packages"][0]["executables"] == ["lamp"]
 
 
+def test_a_source_tree_of_rclpy(machine: Machine, workspace: Path) -> None:
+    """Is no fault, but it is said that it does not count."""
+    (workspace / "src/rclpy/rclpy").mkdir(parents=True)
+    (workspace / "src/rclpy/package.xml").write_text("<package><name>rclpy</name></package>")
+    (workspace / "src/rclpy/rclpy/__init__.py").touch()
+    assert "src/rclpy/rclpy is not imported: graphflow has rclpy itself" in machine.look("ws", cwd=workspace)
+
+
 def test_many_interfaces(machine: Machine, workspace: Path) -> None:
     """The table has the first of them, so that it can be read."""
     for i in range(6):

@@ -28,6 +28,18 @@ def test_a_ros_that_is_sourced_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert sys.path[-1] == SITE
 
 
+def test_a_source_tree_of_rclpy_does_not_win(tmp_path: Path) -> None:
+    """It could not be imported before it is built; what is beside it can be."""
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").write_text("raise ImportError")
+    (tmp_path / "beside.py").touch()
+    (tmp_path / "package.xml").write_text("<package><name>rclpy</name></package>")
+    script = "from graphflow.rclpy import enabling; print(enabling.here()); import beside, rclpy; print(rclpy.__file__)"
+    env = os.environ | {"PYTHONPATH": str(tmp_path)}
+    shown = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=env, check=True).stdout
+    assert shown.split() == ["True", os.path.join(SITE, "rclpy", "__init__.py")]
+
+
 @slow
 def test_a_virtual_environment_has_it_from_enable_to_disable(tmp_path: Path) -> None:
     """With messages, and not before it was asked for."""

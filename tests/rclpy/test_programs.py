@@ -187,6 +187,23 @@ def test_what_comes_with_graphflow_runs(workspace: Path) -> None:
 
 
 @pytest.mark.real
+def test_source_trees_of_what_graphflow_has(workspace: Path) -> None:
+    """They are not imported, and a note says so; the programs of the workspace run."""
+    for name in ("rclpy", "tf2_py"):
+        (workspace / "src" / name / name).mkdir(parents=True)
+        (workspace / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+        (workspace / "src" / name / name / "__init__.py").write_text("raise ImportError")
+    file = workspace / "uses.py"
+    file.write_text("import rclpy, tf2_py\nprint(rclpy.__name__, tf2_py.__name__)\n")
+    command = [sys.executable, "-m", "graphflow.rclpy", str(file)]
+    ran = subprocess.run(command, cwd=workspace, capture_output=True, text=True, timeout=30, check=True)
+    assert ran.stdout == "rclpy tf2_py\n"
+    notes = [
+        f"{workspace}/src/{name}/{name} is not imported: graphflow has {name} itself" for name in ("rclpy", "tf2_py")
+    ]
+    assert ran.stderr.splitlines() == [f"note: {note}" for note in notes]
+
+
 def test_messages_of_messages(workspace: Path) -> None:
     """Those of another package of the workspace, which nobody has imported; one that is not there is named."""
     folder = workspace / "src/room_interfaces"
