@@ -43,7 +43,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     evaluator = simpleeval.EvalWithCompoundTypes(
         operators={**simpleeval.DEFAULT_OPERATORS, ast.Pow: _power, ast.Mult: _times, ast.Mod: _modulo},
         functions=dict(FUNCTIONS),  # it adds to them
-        names={**names, "true": True, "false": False, "pi": math.pi},
+        names={"math": _MATH, **names, "true": True, "false": False, "pi": math.pi},
     )
     for kind in (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr):
         evaluator.nodes.pop(kind, None)
@@ -112,7 +112,13 @@ def _range(*bounds: int) -> list[int]:
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     **{f.__name__: f for f in (abs, bool, float, int, len, max, min, round, str, sum)},
-    **{f.__name__: f for f in (math.sqrt, math.sin, math.cos, math.atan2, math.radians, math.degrees)},
+    **{
+        f.__name__: f for f in (math.sqrt, math.hypot, math.exp, math.log, math.log10, math.ceil, math.floor, math.fmod)
+    },
+    **{f.__name__: f for f in (math.sin, math.cos, math.tan, math.asin, math.acos, math.atan, math.atan2)},
+    **{f.__name__: f for f in (math.radians, math.degrees, math.isfinite, math.isinf, math.isnan)},
     "range": _range,
 }
 """What an expression may call."""
+_MATH = {**{name: function for name, function in FUNCTIONS.items() if hasattr(math, name)}, "pi": math.pi, "e": math.e}
+"""The module `math`, as expressions of launch files name it."""

@@ -7,6 +7,7 @@ Source: launch frontends, "Substitutions".
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
 import shutil
@@ -263,7 +264,7 @@ class Substitutions:
 
     def _chosen(self, given: list[Word]) -> str:
         condition, yes, *no = _words(given, (2, 3), "if CONDITION A B")
-        return yes if truth(condition) else "".join(no)
+        return yes if _is_true(condition) else "".join(no)
 
 
 def _default(given: list[Word]) -> Any:
@@ -310,10 +311,30 @@ def truth(value: Any) -> bool:
     raise SubstitutionError(f"expected true or false, got {value!r}")
 
 
-def _words(given: Sequence[Word], counts: int | Sequence[int] | None, form: str) -> list[str]:
-    """The texts of words, of which there may be so many, or at least one."""
+def _is_true(text: str) -> bool:
+    """What a text stands for as a truth value of YAML, which may be `on` or `no`, too."""
+    try:
+        return bool(as_type("bool", text))
+    except ValueError as error:
+        raise SubstitutionError(str(error)) from None
+
+
+def _is_equal(left: str, right: str) -> bool:
+    """Whether two texts are the same: as truth values or numbers, if both are some."""
+    words = {"true": True, "1": True, "false": False, "0": False}
+    truths = [words.get(text.lower()) for text in (left, right)]
+    if None not in truths:
+        return truths[0] is truths[1]
+    try:
+        return math.isclose(float(left), float(right))
+    except ValueError:
+        return left == right
+
+
+def _words(given: Sequence[Word], counts: int | Sequence[int], form: str) -> list[str]:
+    """The texts of words, of which there may be so many."""
     allowed = (counts,) if isinstance(counts, int) else counts
-    if not given if allowed is None else len(given) not in allowed:
+    if len(given) not in allowed:
         raise SubstitutionError(f"write $({form})")
     return [word.text for word in given]
 
@@ -337,12 +358,12 @@ _FUNCTIONS: dict[str, Callable[[Substitutions, list[Word]], Any]] = {
     "command": Substitutions._command,
     "if": Substitutions._chosen,
     "as": Substitutions._typed,
-    "not": lambda _, given: not truth(_joined(given)),
-    "and": lambda _, given: all(map(truth, _words(given, 2, "and A B"))),
-    "or": lambda _, given: any(map(truth, _words(given, 2, "or A B"))),
-    "all": lambda _, given: all(map(truth, _words(given, None, "all A B ..."))),
-    "any": lambda _, given: any(map(truth, _words(given, None, "any A B ..."))),
-    "equals": lambda _, given: len(set(_words(given, 2, "equals A B"))) == 1,
-    "not-equals": lambda _, given: len(set(_words(given, 2, "not-equals A B"))) == 2,
+    "not": lambda _, given: not _is_true(_joined(given)),
+    "and": lambda _, given: all(map(_is_true, _words(given, 2, "and A B"))),
+    "or": lambda _, given: any(map(_is_true, _words(given, 2, "or A B"))),
+    "all": lambda _, given: all(_is_true(word.text) for word in given),
+    "any": lambda _, given: any(_is_true(word.text) for word in given),
+    "equals": lambda _, given: _is_equal(*_words(given, 2, "equals A B")),
+    "not-equals": lambda _, given: not _is_equal(*_words(given, 2, "not-equals A B")),
 }
 """What may stand behind `$(`, and how the rest is read."""

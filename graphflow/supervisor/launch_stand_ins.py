@@ -260,11 +260,13 @@ def _written(value: Said) -> str:
         case "LaunchLogDir" | "LogDir":
             return "$(log_dir)"
         case "Parameter":
-            return f"$(param {_word(first)})"
+            default = value.get("default")
+            return f"$(param {_word(first)}{'' if default is None else f' {_word(default)}'})"
         case "IfElseSubstitution":
-            return f"$(if {' '.join(map(_word, (*value.args, *value.kwargs.values())))})"
+            ways = (value.get("if_value", 1, ""), value.get("else_value", 2, ""))
+            return f"$(if {' '.join(map(_word, (value.get('condition', 0), *ways)))})"
         case "AnySubstitution" | "AllSubstitution":
-            return f"$({value.name[:3].lower()} {' '.join(map(_word, value.args))})"
+            return f"$({' '.join([value.name[:3].lower(), *map(_word, value.args)])})"
         case "Command":
             on_stderr = value.get("on_stderr", 1)
             return f"$(command {_word(first)}{'' if on_stderr is None else f' {_word(on_stderr)}'})"
@@ -278,7 +280,7 @@ def _written(value: Said) -> str:
             return f"$(not {_word(first)})"
         case "EqualsSubstitution" | "NotEqualsSubstitution" | "AndSubstitution" | "OrSubstitution":
             word = {"Equals": "equals", "NotEquals": "not-equals", "And": "and", "Or": "or"}[value.name[:-12]]
-            return f"$({word} {' '.join(map(_word, value.args))})"
+            return f"$({word} {' '.join(_word('' if part is None else part) for part in value.args)})"
         case "TextSubstitution" | "ParameterValue" | "ParameterFile" | "PythonLaunchDescriptionSource":
             return text(first)
         case name if name.endswith("LaunchDescriptionSource"):
@@ -314,7 +316,12 @@ def plain(value: Any) -> Any:
     return text(value)
 
 
-OWN: dict[str, type] = {"PackageNotFoundError": PackageNotFoundError}
+OWN: dict[str, type] = {
+    "PackageNotFoundError": PackageNotFoundError,
+    "SubstitutionFailure": SubstitutionError,
+    "InvalidConditionExpressionError": SubstitutionError,
+    "LaunchContext": Context,
+}
 """Classes that do more than remember, by name; the module that defines one adds it."""
 _SUBMODULES = {"actions", "substitutions", "conditions", "events", "event_handlers", "launch_description_sources"}
 _SUBMODULES |= {"descriptions", "parameter_descriptions", "packages", "lifecycle", "logging", "utilities"}
@@ -343,7 +350,9 @@ def _made(module: str, name: str) -> Any:
 
 
 @cache
-def _class(name: str) -> type[Said]:
+def _class(name: str) -> type:
+    if name.endswith(("Error", "Failure", "Exception")):  # which a file may want to catch
+        return type(name, (Exception,), {})
     return type(name, (Said,), {"name": name})
 
 

@@ -78,6 +78,25 @@ def test_folders_of_packages(tmp_path: Path) -> None:
     assert (share.find("robot"), share.perform()) == (str(tmp_path), str(tmp_path))
 
 
+def test_what_fails_can_be_caught() -> None:
+    """By the names that ROS has for it."""
+    module = StandIns().create_module(StandIns().find_spec("launch.substitutions"))  # type: ignore[arg-type]
+    RECORDING.values = {}
+    with pytest.raises(module.SubstitutionFailure):
+        said("LaunchConfiguration", "z").perform(module.LaunchContext())
+    with pytest.raises(module.InvalidConditionExpressionError):
+        said("IfCondition", "typo").evaluate(Context())
+    assert issubclass(module.InvalidLaunchFileError, Exception)
+
+
+def test_conditions_and_choices() -> None:
+    """By name or by place, and of any number."""
+    assert text(said("IfElseSubstitution", "on", else_value="b")) == "$(if on '' b)"
+    assert [text(said(f"{name}Substitution")) for name in ("Any", "All")] == ["$(any)", "$(all)"]
+    assert text(said("EqualsSubstitution", None, True)) == "$(equals '' True)"
+    assert text(said("Parameter", "rate", default="2")) == "$(param rate 2)"
+
+
 def test_substitutions_in_words_of_others() -> None:
     """They keep their own quotes: they are made first."""
     same = said("EqualsSubstitution", said("LaunchConfiguration", "x"), "it's")
