@@ -257,7 +257,7 @@ class Expansion:
         self._body(bodies, inner)
         if "namespace" in settings.entries and self._relative == before and inner.namespace != scope.namespace:
             text = "every name in this group begins with a slash, so the namespace has no effect; leave the slashes out"
-            self._problems.add(settings.entries["namespace"].place, text)
+            self._problems.add_unless_ros(settings.entries["namespace"].place, text)
 
     def _for(self, block: Item, scope: _Scope) -> None:
         if self._is_left_out(block, scope):

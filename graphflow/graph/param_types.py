@@ -27,7 +27,8 @@ def as_type(name: str, value: Any) -> Any:
         ValueError: There is no such type, or the value is of another.
     """
     if name == "yaml":
-        return from_yaml(value) if isinstance(value, str) else value
+        found = from_yaml(value) if isinstance(value, str) else value
+        return uniform(found) if isinstance(found, list) else found
     if name not in TYPES:
         raise ValueError(f"there is no type {name!r}{did_you_mean(name, TYPES)}")
     if not name.startswith(_LIST):
@@ -45,6 +46,20 @@ def from_yaml(text: str) -> Any:
     except GraphFileError:
         return text
     return text if value is None or isinstance(value, dict) else value
+
+
+def uniform(values: list[Any]) -> list[Any]:
+    """A list whose values have one type, as those of a parameter: integers among floats become floats.
+
+    Raises:
+        ValueError: They have several.
+    """
+    kinds = {type(value) for value in values}
+    if kinds == {int, float}:
+        return [float(value) for value in values]
+    if len(kinds) > 1 or kinds & {list, dict, type(None)}:
+        raise ValueError(f"expected values of one type, got {values!r}")
+    return values
 
 
 def _scalar(name: str, value: Any) -> Any:

@@ -117,7 +117,10 @@ def parameter(item: Item, kind: str, complain: Complain) -> Item:
     value = item.value
     if isinstance(value, list):
         inner = kind.removeprefix("list_of_")
-        return item._replace(value=[parameter(one, inner, complain) for one in value])
+        item = item._replace(value=[parameter(one, inner, complain) for one in value])
+        if any(isinstance(one.value, str) and "$(" in one.value for one in item.value):
+            return item
+        value, kind = item.plain(), kind or "yaml"
     if isinstance(value, str) and "$(" in value:
         if _VARIABLE.match(value) and kind in ("", "yaml"):  # which has the type of what it reads as
             return item

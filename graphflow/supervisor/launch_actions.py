@@ -359,7 +359,14 @@ def _parameter(name: Any, value: Any) -> dict[str, Any]:
         return _parameter(name, inner) | ({"type": kind} if kind else {})
     if isinstance(value, str) and "$(" not in value and _is_number_to_ros(value):
         found["value"] = scalar(value)
+    is_made = isinstance(value, Said) or (isinstance(value, (list, tuple)) and not all(map(_is_plain, value)))
+    if is_made and "$(" not in str(found["value"]):  # ROS reads what substitutions have made
+        found["type"] = "yaml"
     return found
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, (bool, int, float, str))
 
 
 _TYPED = {"ParameterValue": 0, "Parameter": 1}

@@ -311,8 +311,10 @@ def plain(value: Any) -> Any:
     """A value as JSON has it: numbers stay numbers."""
     if isinstance(value, (bool, int, float, str)):
         return value
-    if isinstance(value, (list, tuple)) and not any(isinstance(part, Said) for part in value):
-        return [text(part) if isinstance(part, (list, tuple)) else plain(part) for part in value]
+    if isinstance(value, (list, tuple)):
+        is_text = any(isinstance(part, Said) for part in value) and all(isinstance(part, (Said, str)) for part in value)
+        if not is_text:  # each of its values is one, of which a list stands for a text
+            return [text(part) if isinstance(part, (list, tuple)) else plain(part) for part in value]
     return text(value)
 
 

@@ -824,6 +824,13 @@ def test_parameters_of_launch_files_have_their_types(tmp_path: Path) -> None:
     }
 
 
+def test_a_namespace_without_effect_is_let_pass_in_launch_files(lamps: Path) -> None:
+    """As ROS does."""
+    (lamps / "f.launch.yaml").write_text("launch: [{push_ros_namespace: {namespace: a}}]\n")
+    [remark] = load(lamps / "f.launch.yaml").remarks
+    assert "so the namespace has no effect" in remark
+
+
 def test_components_that_nobody_here_has_are_left_out_of_launch_files(lamps: Path) -> None:
     """The others start; where there is nothing else, that is why nothing starts."""
     absent = "{pkg: image_proc, plugin: 'image_proc::RectifyNode'}"

@@ -68,6 +68,8 @@ def test_parameters_and_files_of_them() -> None:
         (["$(var a)1", "b"], "", ["$(as yaml $(var a)1)", "b"]),
         ([1, "$(var a)"], "list_of_float", [1.0, "$(as float $(var a))"]),
         ("0042", "", "0042"),
+        ([2, 3.1], "", [2.0, 3.1]),
+        (["a", "1"], "", ["a", "1"]),
         ("0042", "int", 42),
         ("1", "bool", True),
     ],

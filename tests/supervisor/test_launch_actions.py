@@ -194,6 +194,9 @@ def test_what_a_node_must_be_given() -> None:
         (said("ParameterValue", value="0042", value_type=str), ("0042", "str")),
         (said("ParameterValue", "[1]", value_type=list[int]), ("[1]", "list_of_int")),
         (said("ParameterValue", 3), (3, None)),
+        (said("TextSubstitution", text="[1]"), ("[1]", "yaml")),
+        ([[said("TextSubstitution", text="1")], ["2"]], (["1", "2"], "yaml")),
+        (["1", "2"], (["1", "2"], None)),
         ([["a", said("LaunchConfiguration", "x")], ["b"]], (["a$(var x)", "b"], None)),
     ],
 )

@@ -33,7 +33,7 @@ def test_substitutions_are_texts() -> None:
         "$(find-pkg-share p)/a/$(var x)"
     )
     assert [plain(value) for value in (3, [1.5, True], [x], x)] == [3, [1.5, True], "$(var x)", "$(var x)"]
-    assert plain([["a", x], ["b"]]) == ["a$(var x)", "b"]
+    assert plain([["a", x], ["b"], x]) == ["a$(var x)", "b", "$(var x)"]
 
 
 def test_values_are_known_when_a_file_is_started() -> None:
