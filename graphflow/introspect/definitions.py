@@ -7,17 +7,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graphflow.errors import CallError, GraphflowError, InterfaceError, UnknownInterface, printable
+from graphflow.errors import GraphflowError, InterfaceError, UnknownInterface, printable
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
-from graphflow.wire.described import FieldSaid, definition_of, verified
+from graphflow.wire.described import DESCRIBING, FieldSaid, definition_of, verified
 from graphflow.wire.liveliness import Entity, Kind
 
 if TYPE_CHECKING:
     from graphflow.runtime.node import Node
 
-SERVICE = "type_description_interfaces/srv/GetTypeDescription"
 LIMIT = 2.0
 """Seconds that a node has to answer."""
 SAID = 300
@@ -29,7 +28,7 @@ NOBODY = "no node that uses it gives its definition"
 
 def request_for(entity: Entity) -> Any:
     """What to ask of the node of an endpoint."""
-    request = registry.interface_class(f"{SERVICE}_Request")
+    request = registry.interface_class(f"{DESCRIBING}_Request")
     return request(type_name=entity.type, type_hash=entity.hash, include_type_sources=True)
 
 
@@ -52,7 +51,10 @@ def sources_in(response: Any, entity: Entity) -> dict[str, str]:
     parts = [described.type_description, *described.referenced_type_descriptions]
     try:
         needed = verified(entity.type, entity.hash, files)
-    except InterfaceError:  # files in IDL, or none
+    except InterfaceError:
+        if not described.type_description.type_name:
+            raise
+        # Its files are in IDL, or there are none.
         files = {part.type_name: definition_of(part.type_name, [_said(f) for f in part.fields]) for part in parts}
         needed = verified(entity.type, entity.hash, files)
     return {name: files[name] for name in needed}
@@ -78,10 +80,10 @@ async def asked_sources(node: Node, entity: Entity) -> dict[str, str]:
     reasons = []
     users = endpoints_of(node.context.cache, entity.name, (entity.kind,))
     for user in [u for u in users if (u.type, u.hash) == (entity.type, entity.hash)][:ASKED]:
-        client: Any = node.create_client(registry.interface_class(SERVICE), service_of(user))
+        client: Any = node.create_client(registry.interface_class(DESCRIBING), service_of(user))
         try:
             return sources_in(await client.call(request_for(user), timeout=LIMIT), user)
-        except (CallError, InterfaceError) as error:
+        except GraphflowError as error:
             reasons.append(str(error))
         finally:
             client.close()
@@ -112,7 +114,7 @@ def learn(view: View, name: str, type_name: str, kinds: tuple[Kind, ...] = (Kind
                 users.setdefault(entity.node_name, entity)
         for entity in list(users.values())[:ASKED]:
             try:
-                response = view.call(service_of(entity), SERVICE, request_for(entity), LIMIT)
+                response = view.call(service_of(entity), DESCRIBING, request_for(entity), LIMIT)
                 registry.adopt(type_name, entity.hash, sources_in(response, entity))
             except GraphflowError as error:
                 reasons.append(str(error))

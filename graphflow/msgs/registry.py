@@ -14,8 +14,9 @@ from graphflow.msgs.values import checked
 from graphflow.names import did_you_mean
 from graphflow.wire import idl
 from graphflow.wire.cdr import Codec
-from graphflow.wire.codegen import FORMATS, Types
-from graphflow.wire.described import verified
+from graphflow.wire.codegen import FORMATS, Style, Types
+from graphflow.wire.described import DESCRIBING, VALUES_BOUND, verified
+from graphflow.wire.extent import extent
 from graphflow.wire.profile import wire_profile, wire_type
 from graphflow.wire.schema import Action, Interface, Message, Service
 from graphflow.wire.typehash import referenced, type_hash
@@ -234,30 +235,21 @@ def message_schema(name: str) -> Message:
     """The schema of a message, including those derived from services and actions (`.../srv/Spawn_Request`).
 
     Raises:
-        UnknownInterface, InterfaceError: As for `interface`; also when a type inside it is wrong or contains itself.
+        UnknownInterface, InterfaceError: As for `interface`; also when a type in it is wrong, contains itself, or is
+            too deep in it.
     """
-    message = _part(name)
-    _refuse_cycle(message, (name,), set())
-    return message
-
-
-def _refuse_cycle(message: Message, chain: tuple[str, ...], seen: set[str]) -> None:
-    for base in (f.type.base for f in message.fields if not f.type.is_primitive):
-        if base in chain:
-            raise InterfaceError(f"a message cannot contain itself: {' in '.join([base, *reversed(chain)])}")
-        if base not in seen:
-            _refuse_cycle(_part(base), (*chain, base), seen)
-            seen.add(base)
+    extent(name, _part)
+    return _part(name)
 
 
 @cache
 def _part(name: str) -> Message:
-    package, kind, base = name.split("/")
+    _, kind, base = name.split("/")
     if kind == "msg":
         found = interface(name)
         assert isinstance(found, Message)
         return found
-    owner = interface(f"{package}/{kind}/{base.partition('_')[0]}")
+    owner = interface(_owner(name))
     if isinstance(owner, (Service, Action)):
         for part in owner.messages:
             if part.name == name:
@@ -265,10 +257,15 @@ def _part(name: str) -> Message:
     raise UnknownInterface(f"{owner.name} has no part {base!r}")
 
 
+def _owner(name: str) -> str:
+    """The interface whose file defines a type: of `package/srv/Spawn_Request`, the service."""
+    package, kind, base = name.split("/")
+    return name if kind == "msg" else f"{package}/{kind}/{base.partition('_')[0]}"
+
+
 def service_schema(name: str) -> Service:
     """The schema of a service, including the two of an action (`.../action/Fibonacci_SendGoal`)."""
-    package, kind, base = name.split("/")
-    owner = interface(f"{package}/{kind}/{base.partition('_')[0]}")
+    owner = interface(_owner(name))
     if isinstance(owner, Service):
         return owner
     if isinstance(owner, Action):
@@ -326,13 +323,20 @@ def interface_class(name: str) -> type:
 @cache
 def codec(name: str) -> Codec:
     """The codec of a message."""
-    return Codec(message_schema(name), Types(message_schema, interface_class, checked))
+    return Codec(message_schema(name), _types_for(name, "numpy"))
 
 
 @cache
 def plain_codec(name: str) -> Codec:
     """The codec of a message that decodes numeric arrays into lists: slower for long ones, but numpy is not loaded."""
-    return Codec(message_schema(name), Types(message_schema, interface_class, checked, "list"))
+    return Codec(message_schema(name), _types_for(name, "list"))
+
+
+def _types_for(name: str, style: Style) -> Types:
+    """How a message is encoded and decoded: of a type from elsewhere, and of an answer with one, it may have less."""
+    owner = _owner(name)
+    types = Types(message_schema, interface_class, checked, style)
+    return types._replace(values=VALUES_BOUND) if owner in _given or owner == DESCRIBING else types
 
 
 def has_numeric_arrays(name: str) -> bool:

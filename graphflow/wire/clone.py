@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from graphflow.errors import EncodeError
-from graphflow.wire.codegen import FORMATS, Code, Item, Types
+from graphflow.wire.codegen import FORMATS, Code, Item, Parts, Types
 from graphflow.wire.encode import check_count
 from graphflow.wire.schema import FieldType, Message
 
@@ -22,8 +22,8 @@ Clone = Callable[[Any], Any]
 class Cloner(Code):
     """Each number of the run stands for its source; `targets` has where each goes."""
 
-    def __init__(self, types: Types) -> None:
-        super().__init__(types, "<")
+    def __init__(self, types: Types, parts: Parts) -> None:
+        super().__init__(types, "<", parts)
         self.names["new"] = object.__new__
         self.targets: list[str] = []
 
@@ -86,7 +86,7 @@ class Cloner(Code):
             function = "text" if type_.base == "string" else "wide_text"
             made = f"{function}(i, {type_.string_bound})"
         else:
-            made = f"{self.constant('clone', compile_clone_part(self.types.schema(type_.base), self.types))}(i)"
+            made = f"{self.part(type_.base, compile_clone_part)}(i)"
         check_count(self, type_, f"len({items})")
         self.line(f"{target} = [{made} for i in {items}]")
 
@@ -108,9 +108,9 @@ def _wide_text(text: str, bound: int) -> str:
     return units.decode("utf-16-le", "surrogatepass")
 
 
-def compile_clone_part(message: Message, types: Types) -> Clone:
+def compile_clone_part(message: Message, types: Types, parts: Parts) -> Clone:
     """`clone(message)`, for a part of another message: wrong values raise anything."""
-    code = Cloner(types)
+    code = Cloner(types, parts)
     code.message(message, "m", "o")
     code.flush()
     code.line("return o")
@@ -120,7 +120,7 @@ def compile_clone_part(message: Message, types: Types) -> Clone:
 
 def compile_clone(message: Message, types: Types, encode: Callable[[Any], bytes]) -> Clone:
     """`clone(message)`; raises EncodeError as encoding it would."""
-    part = compile_clone_part(message, types)
+    part = compile_clone_part(message, types, {})
 
     def clone(m: Any) -> Any:
         try:

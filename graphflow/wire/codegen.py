@@ -40,6 +40,9 @@ the classes that rosidl generates for Python, where `x` is kept in `_x`, a byte 
 sequences of numbers are `array.array`."""
 
 
+Parts = dict[str, Any]
+
+
 class Types(NamedTuple):
     """What the compiler needs to know about types other than the one at hand."""
 
@@ -49,6 +52,9 @@ class Types(NamedTuple):
     """A copy of a message with every value checked and converted; raises EncodeError naming the field."""
     style: Style = "numpy"
     """How the classes hold their fields."""
+    values: int = 20_000_000
+    """Values that the lists of a decoded message may have, arrays of numbers left out. A byte of a payload can become
+    an object: without a bound, a hundred megabytes from anybody would take all memory."""
 
     @property
     def prefix(self) -> str:
@@ -70,6 +76,13 @@ def min_size(type_: FieldType, schema: Callable[[str], Message]) -> int:
     return each * (type_.size if type_.array == "fixed" else 1)
 
 
+def value_count(type_: FieldType, schema: Callable[[str], Message]) -> int:
+    """The values that one element of the type has, itself included; a list in it counts as one."""
+    if type_.array or type_.is_primitive:
+        return 1
+    return 1 + sum(value_count(f.type, schema) for f in schema(type_.base).fields)
+
+
 class Item(NamedTuple):
     """One number of a run: its struct format and the expression it comes from or goes to. Format `x` has none."""
 
@@ -89,11 +102,16 @@ def layout_of(items: list[Item], start: int, order: Order) -> struct.Struct:
 
 
 class Code:
-    """Source text under construction, the objects it refers to, and the run of numbers not yet written out."""
+    """Source text under construction, the objects it refers to, and the run of numbers not yet written out.
 
-    def __init__(self, types: Types, order: Order) -> None:
+    Args:
+        parts: The functions for types that are in lists, by name: each is written once, however often it is used.
+    """
+
+    def __init__(self, types: Types, order: Order, parts: Parts) -> None:
         self.types = types
         self.order = order
+        self.parts = parts
         self.lines: list[str] = []
         self.names: dict[str, Any] = {}
         self.depth = 1
@@ -110,6 +128,12 @@ class Code:
         name = self.fresh(prefix)
         self.names[name] = value
         return name
+
+    def part(self, name: str, compile_part: Callable[[Message, Types, Parts], Any]) -> str:
+        """The name of the function for a type that is in a list."""
+        if name not in self.parts:
+            self.parts[name] = compile_part(self.types.schema(name), self.types, self.parts)
+        return self.constant("part", self.parts[name])
 
     def line(self, text: str) -> None:
         self.lines.append("    " * self.depth + text)

@@ -6,18 +6,19 @@ import struct
 import sys
 from array import array
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from graphflow.errors import DecodeError
-from graphflow.wire.codegen import FORMATS, Code, Order, Types, min_size
+from graphflow.wire.codegen import FORMATS, Code, Order, Parts, Types, min_size, value_count
 from graphflow.wire.schema import Field, FieldType, Message
 
 Decode = Callable[[bytes], Any]
 
 
 class Decoder(Code):
-    def __init__(self, types: Types, order: Order) -> None:
-        super().__init__(types, order)
+    def __init__(self, types: Types, order: Order, parts: Parts) -> None:
+        super().__init__(types, order, parts)
         self.names["new"] = object.__new__
 
     def flush(self) -> None:
@@ -123,17 +124,20 @@ class Decoder(Code):
             n = self.fresh("n")
             self.number("I", n)
         self.go_dynamic()
-        least = min_size(type_._replace(array=""), self.types.schema)
+        element = type_._replace(array="")
+        least = min_size(element, self.types.schema)
         self.line(f"if {n} * {least} > size - p: raise ValueError('a sequence claims more than the payload holds')")
+        self.line(f"left[0] -= {n} * {value_count(element, self.types.schema)}")
+        self.line(f"if left[0] < 0: raise ValueError('its lists have more than {self.types.values:,} values')")
         self.line(f"{items} = []")
         self.line(f"for _ in range({n}):")
         self.depth += 1
         item = self.fresh("i")
         if type_.is_primitive:
-            self.single(type_._replace(array=""), item)
+            self.single(element, item)
         else:
-            decode = self.constant("decode", compile_decode_part(self.types.schema(type_.base), self.types, self.order))
-            self.line(f"{item}, p = {decode}(buf, p, size)")
+            decode = self.part(type_.base, partial(compile_decode_part, self.order))
+            self.line(f"{item}, p = {decode}(buf, p, size, left)")
         self.line(f"{items}.append({item})")
         self.depth -= 1
         self.line(f"{target} = {items}")
@@ -156,18 +160,18 @@ def _narrow(utf32: bytes, order: Order) -> str:
     return struct.pack(f"<{count}H", *units).decode("utf-16-le", "surrogatepass")
 
 
-def compile_decode_part(message: Message, types: Types, order: Order) -> Any:
-    """`decode(buf, p, size) -> (message, p)`: read from position p."""
-    code = Decoder(types, order)
+def compile_decode_part(order: Order, message: Message, types: Types, parts: Parts) -> Any:
+    """`decode(buf, p, size, left) -> (message, p)`: read from position p; `left` has how many values may come."""
+    code = Decoder(types, order, parts)
     code.position = None
     code.message(message, "o")
     code.flush()
     code.line("return o, p")
-    return code.compile("decode", "def decode(buf, p, size):", message.name)
+    return code.compile("decode", "def decode(buf, p, size, left):", message.name)
 
 
 def compile_decode(message: Message, types: Types, order: Order, otherwise: Decode | None) -> Decode:
-    code = Decoder(types, order)
+    code = Decoder(types, order, {})
     code.names["otherwise"], code.names["failed"] = otherwise, _failed
     code.names["name"] = message.name
     if otherwise is not None:
@@ -178,7 +182,7 @@ def compile_decode(message: Message, types: Types, order: Order, otherwise: Deco
     code.message(message, "o")
     code.flush()
     if code.position is None:
-        code.lines.insert(before, "        size = len(buf)")
+        code.lines.insert(before, f"        size, left = len(buf), [{types.values}]")
     code.line("return o")
     code.depth -= 1
     code.names["Errors"] = (struct.error, ValueError, OverflowError)

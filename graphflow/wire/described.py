@@ -13,17 +13,26 @@ from typing import NamedTuple
 
 from graphflow.errors import InterfaceError
 from graphflow.wire import idl
+from graphflow.wire.extent import extent
 from graphflow.wire.schema import Action, FieldType, Interface, Message, Service
-from graphflow.wire.typehash import HIDDEN, base_of, referenced, type_hash
+from graphflow.wire.typehash import HIDDEN, Lookup, base_of, referenced, type_hash
 
+DESCRIBING = "type_description_interfaces/srv/GetTypeDescription"
+"""The service that tells a node's definitions."""
 TYPES_BOUND = 500
 """Types that one definition may need."""
 LINE_BOUND = 1000
 """Characters that a line may have beside its comment."""
 TEXT_BOUND = 300_000
 """Characters that their texts may have together."""
+FIELDS_BOUND = 20_000
+"""Fields that a type may have with those of the types in it, each counted wherever it is used. The largest of ROS 2's
+own types has a thirtieth of that; the code for as many takes about a second to write."""
 FIXED_BOUND = 1_000_000
 """Values that a message may have in arrays of fixed size: they are there in an empty one, too."""
+VALUES_BOUND = 2_000_000
+"""Values that the lists of a message of such a type may have, arrays of numbers left out."""
+_BY_HAND = "if it is meant, put its files into interfaces/"
 
 
 class FieldSaid(NamedTuple):
@@ -83,7 +92,7 @@ def verified(name: str, digest: str, sources: Mapping[str, str]) -> dict[str, In
         return messages[type_]
 
     whole = lookup(name)
-    _refuse_size(name, {name: whole, **referenced(whole, lookup)})
+    _refuse_size(name, lookup)
     actual = type_hash(whole, lookup)
     if digest and actual != digest:
         raise InterfaceError(f"{name}: its definition has the hash {actual}, not {digest}, which was announced")
@@ -95,21 +104,10 @@ def _messages(interface: Interface) -> tuple[Message, ...]:
     return interface.messages if isinstance(interface, (Service, Action)) else (interface,)
 
 
-def _refuse_size(name: str, messages: Mapping[str, Message]) -> None:
-    """Refuse types that contain themselves, and empty messages that would fill the memory."""
-    sizes: dict[str, int] = {}
-
-    def size(type_: str, chain: tuple[str, ...]) -> int:
-        if type_ in chain:
-            raise InterfaceError(f"{name}: {type_} contains itself")
-        if type_ not in sizes:
-            total = 0
-            for field in messages[type_].fields:
-                one = 1 if field.type.is_primitive else size(field.type.base, (*chain, type_))
-                total += one * (field.type.size if field.type.array == "fixed" else 1)
-            if total > FIXED_BOUND:
-                raise InterfaceError(f"{name}: an empty {type_} would have {total:,} values")
-            sizes[type_] = max(total, 1)
-        return sizes[type_]
-
-    size(name, ())
+def _refuse_size(name: str, lookup: Lookup) -> None:
+    """Refuse types whose code, or whose empty messages, would fill the memory."""
+    size = extent(name, lookup)
+    if size.fields > FIELDS_BOUND:
+        raise InterfaceError(f"{name}: with the types in it, it has more than {FIELDS_BOUND:,} fields; {_BY_HAND}")
+    if size.values > FIXED_BOUND:
+        raise InterfaceError(f"{name}: an empty one would have more than {FIXED_BOUND:,} values; {_BY_HAND}")

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 from graphflow.errors import EncodeError
-from graphflow.wire.codegen import FORMATS, LITTLE, Code, Types, padding
+from graphflow.wire.codegen import FORMATS, LITTLE, Code, Parts, Types, padding
 from graphflow.wire.schema import Field, FieldType, Message
 
 
 class Encoder(Code):
-    def __init__(self, types: Types) -> None:
-        super().__init__(types, "<")
+    def __init__(self, types: Types, parts: Parts) -> None:
+        super().__init__(types, "<", parts)
 
     def flush(self) -> None:
         run = self.take_run("pack")
@@ -167,8 +167,7 @@ class Encoder(Code):
         if type_.is_primitive:
             self.single(type_._replace(array=""), item)
         else:
-            encode = self.constant("encode", compile_encode_part(self.types.schema(type_.base), self.types))
-            self.line(f"p = {encode}({item}, parts, p)")
+            self.line(f"p = {self.part(type_.base, compile_encode_part)}({item}, parts, p)")
         self.depth -= 1
 
 
@@ -195,9 +194,9 @@ def _widen(utf16: bytes) -> bytes:
     return struct.pack(f"<{count}I", *struct.unpack(f"<{count}H", utf16))
 
 
-def compile_encode_part(message: Message, types: Types) -> Any:
+def compile_encode_part(message: Message, types: Types, parts: Parts) -> Any:
     """`encode(message, parts, p) -> p`: append to a payload that is at position p."""
-    code = Encoder(types)
+    code = Encoder(types, parts)
     code.position = None
     code.message(message, "m")
     code.flush()
@@ -206,7 +205,7 @@ def compile_encode_part(message: Message, types: Types) -> Any:
 
 
 def compile_encode(message: Message, types: Types) -> Callable[[Any], bytes]:
-    code = Encoder(types)
+    code = Encoder(types, {})
     code.position = 0
     code.number("I", str(LITTLE))
     code.line("try:")

@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 
 from graphflow.errors import InterfaceError, UnknownInterface
-from graphflow.introspect.definitions import SERVICE, learn, request_for, service_of, sources_in
+from graphflow.introspect.definitions import learn, request_for, service_of, sources_in
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import DEFAULT
-from graphflow.wire.described import verified
+from graphflow.wire.described import DESCRIBING, verified
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.schema import Message
 from graphflow.wire.typehash import type_hash
@@ -25,12 +25,12 @@ HASH = type_hash(MESSAGES[THING], MESSAGES.__getitem__)
 
 def entity(kind: Kind = Kind.PUBLISHER, node: str = "speaker", type_: str = THING, digest: str = HASH) -> Entity:
     name, number = ("/things", 1) if kind is Kind.PUBLISHER else (f"/{node}/get_type_description", 2)
-    type_name, digest = (type_, digest) if kind is Kind.PUBLISHER else (SERVICE, "RIHS01_00")
+    type_name, digest = (type_, digest) if kind is Kind.PUBLISHER else (DESCRIBING, "RIHS01_00")
     return Entity(0, "ab", 0, number, kind, "/", node, name, type_name, digest, DEFAULT)
 
 
 def response(*, files: bool = True, described: bool = True) -> Any:
-    found: Any = registry.interface_class(f"{SERVICE}_Response")(successful=True)
+    found: Any = registry.interface_class(f"{DESCRIBING}_Response")(successful=True)
     source: Any = registry.interface_class("type_description_interfaces/msg/TypeSource")
     one: Any = registry.interface_class("type_description_interfaces/msg/IndividualTypeDescription")
     field: Any = registry.interface_class("type_description_interfaces/msg/Field")
@@ -65,7 +65,7 @@ def test_a_description_will_do(files: bool) -> None:
 
 def test_a_refusal() -> None:
     """Is told with the node's reason."""
-    answer: Any = registry.interface_class(f"{SERVICE}_Response")(successful=False, failure_reason="no such type")
+    answer: Any = registry.interface_class(f"{DESCRIBING}_Response")(successful=False, failure_reason="no such type")
     with pytest.raises(InterfaceError, match="/speaker: no such type"):
         sources_in(answer, entity())
 
@@ -86,7 +86,7 @@ class View:
         self.asked: list[str] = []
 
     def call(self, name: str, type_name: str, request: Any, timeout: float) -> Any:
-        assert (type_name, request.type_name, request.type_hash) == (SERVICE, THING, HASH)
+        assert (type_name, request.type_name, request.type_hash) == (DESCRIBING, THING, HASH)
         assert timeout > 0
         self.asked.append(name)
         if isinstance(self.answers[name], Exception):
@@ -142,7 +142,7 @@ def test_how_many_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_reason_that_is_long_or_strange() -> None:
     """Is cut, and nothing in it is obeyed by a terminal."""
     reason = "\x1b[2J" + "x" * 5000
-    answer: Any = registry.interface_class(f"{SERVICE}_Response")(successful=False, failure_reason=reason)
+    answer: Any = registry.interface_class(f"{DESCRIBING}_Response")(successful=False, failure_reason=reason)
     with pytest.raises(InterfaceError) as caught:
         sources_in(answer, entity())
     assert len(str(caught.value)) < 400

@@ -56,7 +56,7 @@ def test_padding_reaches_the_next_multiple(widest: int) -> None:
 
 def test_names_in_the_code_are_never_the_same() -> None:
     """Objects that the code refers to each get a name of their own."""
-    code = Code(types(), "<")
+    code = Code(types(), "<", {})
     names = [code.constant("S", i) for i in range(5)] + [code.fresh("S") for _ in range(5)]
     assert len(set(names)) == 10
     assert [code.names[n] for n in names[:5]] == list(range(5))
@@ -64,7 +64,7 @@ def test_names_in_the_code_are_never_the_same() -> None:
 
 def test_a_run_at_a_known_position_has_a_known_size() -> None:
     """While the position is fixed a run is one struct; afterwards there is one for each alignment."""
-    code = Code(types(), "<")
+    code = Code(types(), "<", {})
     code.number("B", "a")
     code.number("d", "b")
     code.number("x", "")
@@ -114,7 +114,7 @@ def test_no_message_is_smaller_than_its_least_size(name: str) -> None:
 
 def test_code_knows_where_it_came_from() -> None:
     """A traceback through generated code names the message."""
-    code = Code(types(), "<")
+    code = Code(types(), "<", {})
     code.line("raise ZeroDivisionError")
     made = code.compile("f", "def f():", Message("pkg/msg/Thing").name)
     assert made.__code__.co_filename == "<pkg/msg/Thing>"

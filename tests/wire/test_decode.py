@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,9 @@ import pytest
 from graphflow.errors import DecodeError
 from graphflow.msgs import registry
 from graphflow.msgs.rcl_interfaces.msg import ParameterValue
+from graphflow.wire.cdr import Codec
+from graphflow.wire.codegen import Types
+from graphflow.wire.schema import Field, FieldType, Message
 
 from .messages import make
 
@@ -122,3 +126,42 @@ def test_plain_arrays() -> None:
     assert registry.plain_codec("std_msgs/msg/Float32MultiArray").decode(big).data == [1.0, -2.0]
     with pytest.raises(DecodeError, match="ends after the payload"):
         registry.plain_codec("std_msgs/msg/Float64MultiArray").decode(b"\0\1\0\0" + bytes(8) + b"\xff" * 4)
+
+
+class Thing:
+    """A message of whatever type."""
+
+
+EMPTY, ROW = Message("p/msg/Empty"), Message("p/msg/Row", (Field("cells", FieldType("p/msg/Empty", 0, "unbounded")),))
+TABLE = Message("p/msg/Table", (Field("rows", FieldType("p/msg/Row", 0, "unbounded")),))
+TYPES = Types({m.name: m for m in (EMPTY, ROW, TABLE)}.__getitem__, lambda _: Thing, lambda m: m)
+
+
+def table(rows: int, cells: int) -> bytes:
+    """A payload of rows with cells; an empty message is one byte."""
+    row = cells.to_bytes(4, "little") + bytes(cells)
+    return b"\0\1\0\0" + rows.to_bytes(4, "little") + row * rows
+
+
+def test_lists_of_more_values_than_allowed() -> None:
+    """Are refused by their counts before objects are made of them, lists in lists counted together."""
+    decode = Codec(TABLE, TYPES._replace(values=1_000 * 2 + 1_000 * 100)).decode
+    for _ in range(2):  # each message has as many
+        assert len(decode(table(1_000, 100)).rows) == 1_000
+    tracemalloc.start()
+    try:
+        for payload in (table(1_000, 104), table(1, 10_000_000), table(10_000_000, 0)):
+            with pytest.raises(DecodeError, match="p/msg/Table: its lists have more than 102,000 values"):
+                decode(payload)
+        assert tracemalloc.get_traced_memory()[1] < 150_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_values_of_types_from_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    """May be fewer than those of types that are installed here."""
+    monkeypatch.setattr(registry, "_given", {"decode_msgs/msg/Rows": "std_msgs/Empty[] rows"})
+    for codec in (registry.codec, registry.plain_codec):
+        with pytest.raises(DecodeError, match="more than 2,000,000 values"):
+            codec("decode_msgs/msg/Rows").decode(b"\0\1\0\0" + (2_000_001).to_bytes(4, "little") + bytes(2_000_001))
+        assert codec("test_msgs/msg/Arrays").decode(registry.example("test_msgs/msg/Arrays").to_bytes())
