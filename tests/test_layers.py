@@ -21,6 +21,7 @@ CELLAR = (
     "domain",
     "system",
     "folders",
+    "reading",
     "wire",
     "msgs",
     "machines",

@@ -15,6 +15,7 @@ import yaml
 from graphflow.bag.contents import Contents
 from graphflow.errors import BagError
 from graphflow.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
+from graphflow.reading import found_bytes
 from graphflow.wire.profile import wire_profile
 
 FILE = "metadata.yaml"
@@ -91,11 +92,7 @@ def read(folder: Path) -> dict[str, Any]:
     """
     path = folder / FILE
     try:
-        with path.open("rb") as file:
-            text = file.read(BOUND + 1)
-        if len(text) > BOUND:
-            raise BagError(f"{path}: larger than {BOUND:,} bytes")
-        data = loaded(text)
+        data = loaded(found_bytes(path, BOUND))
         return dict(data["rosbag2_bagfile_information"])
     except FileNotFoundError:
         return {}

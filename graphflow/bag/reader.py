@@ -100,7 +100,7 @@ class Bag:
         names = [Path(_word(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
         there = [self.path / name for name in names if name and (self.path / name).is_file()]
         # What a recorder that was killed wrote last is in no metadata.
-        more = [f for f in self.path.iterdir() if f.suffix in (".mcap", ".db3") and f not in there]
+        more = [f for f in self.path.iterdir() if f.suffix in (".mcap", ".db3") and f.is_file() and f not in there]
         found = [*there, *sorted(more, key=_natural)]
         if not found:
             missing = f"; its {metadata.FILE} names {', '.join(names)}" if names else ""

@@ -11,6 +11,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
+from graphflow.reading import found_bytes
 
 if TYPE_CHECKING:
     from graphflow.errors import Place, Problem
@@ -130,7 +131,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
 def _is_launch_file(file: Path) -> bool:
     """Whether a Python file is a launch file of ROS's."""
     named = file.name.endswith((".launch.py", "_launch.py"))
-    return file.is_file() and (named or b"def generate_launch_description" in file.read_bytes())
+    return file.is_file() and (named or b"def generate_launch_description" in found_bytes(file))
 
 
 def _has_rclpy(folder: Path) -> bool:

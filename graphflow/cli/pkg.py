@@ -14,6 +14,7 @@ from graphflow.cli.types import use_project
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
 from graphflow.names import did_you_mean
+from graphflow.reading import found_text
 
 
 @click.group(cls=Verbs)
@@ -110,7 +111,7 @@ def xml(package: str, tag: str | None) -> int:
     if file is None or not file.is_file():
         output.error(f"{package}: no package.xml was found{_hint(package)}")
         return exits.FAILED
-    text = file.read_text(encoding="utf-8", errors="replace")
+    text = found_text(file, "replace")
     if tag is None:
         output.data(text.rstrip("\n"))
         return exits.OK

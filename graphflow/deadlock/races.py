@@ -21,13 +21,14 @@ import sys
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from functools import cache
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from types import FrameType
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from graphflow.errors import Place
 from graphflow.executor.runner import Run
+from graphflow.reading import found_text
 
 VARIABLE = "GRAPHFLOW_RACES"
 
@@ -218,9 +219,8 @@ def _statements(function: ast.AST) -> Iterator[tuple[ast.AST, tuple[ast.expr, ..
 @cache
 def _function(file: str, line: int) -> ast.AST | None:
     try:
-        with open(file, encoding="utf-8") as source:
-            module = ast.parse(source.read())
-    except (OSError, SyntaxError):
+        module = ast.parse(found_text(Path(file)))
+    except (OSError, SyntaxError, ValueError):
         return None
     for node in ast.walk(module):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):

@@ -19,6 +19,7 @@ from graphflow.graph.tree import Item
 from graphflow.graph.unfound import why_no_package
 from graphflow.graph.workspace import Package, Workspace, bundled, find_workspace, uses_ros
 from graphflow.names import did_you_mean, nearest
+from graphflow.reading import found_text
 from graphflow.system import ROS2
 
 EXECUTABLES = {
@@ -243,7 +244,7 @@ def _described_packages(root: Path) -> Iterator[tuple[str, Path]]:
         folders[:] = sorted(f for f in folders if not f.startswith(".")) if depth < _SEARCH_DEPTH - 1 else []
         if "package.xml" in files:
             try:
-                text = Path(folder, "package.xml").read_text(encoding="utf-8", errors="replace")
+                text = found_text(Path(folder, "package.xml"), "replace")
             except OSError:
                 continue
             name = _PACKAGE_NAME.search(text)
@@ -329,7 +330,7 @@ def _project_name(root: Path) -> str:
 
 def _project(root: Path) -> dict[str, Any]:
     try:
-        found = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8")).get("project")
+        found = tomllib.loads(found_text(root / "pyproject.toml")).get("project")
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
@@ -343,6 +344,6 @@ def _classes(file: Path) -> list[str]:
 
 def _parsed(file: Path) -> ast.Module:
     try:
-        return ast.parse(file.read_text(encoding="utf-8"))
+        return ast.parse(found_text(file))
     except (OSError, SyntaxError, ValueError):
         return ast.Module([], [])

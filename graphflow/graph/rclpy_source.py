@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from graphflow.errors import Place
 from graphflow.graph.static import Finding, Grade
+from graphflow.reading import found_text
 
 FILES_BOUND = 2000
 """Files that are read below a folder."""
@@ -183,7 +184,7 @@ def findings_in(path: Path) -> list[Finding]:
     found: list[Finding] = []
     for file in files_in(path):
         try:
-            tree = ast.parse(file.read_text(encoding="utf-8"))
+            tree = ast.parse(found_text(file))
         except (OSError, SyntaxError, ValueError):
             continue
         for cls in _classes(tree, str(file)):

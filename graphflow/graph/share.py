@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 
 from graphflow.folders import state_root
 from graphflow.graph.workspace import Package, cmake_text, constant_text, constants
+from graphflow.reading import found_text
 
 FILES_BOUND = 5000
 _INSTALL = re.compile(r"install\s*\(\s*(DIRECTORY|FILES|PROGRAMS)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
@@ -71,7 +72,7 @@ def _link(folder: Path, source: Path, moved: Mapping[PurePosixPath, Path]) -> No
 def _of_setup_py(package: Package) -> Iterator[tuple[str, Path]]:
     """Pairs of `data_files`, as far as they are plain to see."""
     try:
-        tree = ast.parse((package.folder / "setup.py").read_text(encoding="utf-8", errors="replace"))
+        tree = ast.parse(found_text(package.folder / "setup.py", "replace"))
     except (OSError, SyntaxError, ValueError):
         return
     known = constants(tree)

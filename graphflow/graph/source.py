@@ -91,9 +91,12 @@ def read_file(path: pathlib.Path, name: str, *, is_params: bool = False) -> Sour
         GraphFileError: As for `read`; also when there is no such file, or it is not text.
     """
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
+    if len(data) > MAX_BYTES:
+        raise _error(Place(name), f"the file is larger than {MAX_BYTES:,} bytes")
     try:
         return read(data.decode("utf-8-sig"), name, is_params=is_params)
     except UnicodeDecodeError as error:

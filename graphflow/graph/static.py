@@ -27,6 +27,7 @@ from graphflow.graph.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface
 from graphflow.machines.regrouping import Regrouping
+from graphflow.reading import found_text
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
@@ -407,6 +408,6 @@ def _is_own(node: ast.AST) -> bool:
 @cache
 def _module(file: str) -> ast.Module:
     try:
-        return ast.parse(Path(file).read_text(encoding="utf-8"))
+        return ast.parse(found_text(Path(file)))
     except (OSError, SyntaxError, UnicodeDecodeError):
         return ast.Module([], [])

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.names import did_you_mean
+from graphflow.reading import found_text
 from graphflow.system import SITE
 
 DEPTH = 5
@@ -263,7 +264,7 @@ def _listing(folder: Path) -> tuple[list[str], set[str]]:
 
 def _text(file: Path) -> str:
     try:
-        return file.read_text(encoding="utf-8", errors="replace")
+        return found_text(file, "replace")
     except OSError:
         return ""
 

@@ -31,7 +31,8 @@ def read_file(path: pathlib.Path, name: str) -> Item:
         GraphFileError: It cannot be read, is no XML, or has what is refused here: entities of its own, great size.
     """
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise _error(Place(name), f"cannot be read: {error.strerror}") from None
     if len(data) > MAX_BYTES:

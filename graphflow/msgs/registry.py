@@ -12,6 +12,7 @@ from graphflow.errors import InterfaceError, UnknownInterface
 from graphflow.msgs import build
 from graphflow.msgs.values import checked
 from graphflow.names import did_you_mean
+from graphflow.reading import found_text
 from graphflow.wire import idl
 from graphflow.wire.cdr import Codec
 from graphflow.wire.codegen import FORMATS, Style, Types
@@ -97,8 +98,10 @@ def definition(name: str) -> str:
         return _given[name]
     path = definition_file(name)
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        return found_text(path)
+    except OSError as error:
+        raise InterfaceError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
         raise InterfaceError(f"{path}: {error}") from None
 
 

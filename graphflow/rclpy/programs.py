@@ -20,6 +20,7 @@ from graphflow.graph.workspace import KINDS, EntryPoint, Package, Workspace, bun
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.rclpy import enabling, finder, tracebacks
+from graphflow.reading import found_text
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
 
@@ -74,7 +75,7 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         near = did_you_mean(words[0], package.executables)
         raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}")
     file, entry = found
-    is_ours = entry is not None and not uses_ros(file) and "graphflow" in file.read_text("utf-8", "replace")
+    is_ours = entry is not None and not uses_ros(file) and "graphflow" in found_text(file, "replace")
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
 
 

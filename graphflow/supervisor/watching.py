@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from graphflow.errors import SupervisorError
+from graphflow.reading import found_bytes
 
 LOOK_EVERY = 0.5
 """Seconds between two looks at the files."""
@@ -57,7 +58,7 @@ class Watch:
         names: list[str] = []
         for path in sorted(changed):
             try:
-                compile(path.read_bytes(), str(path), "exec")
+                compile(found_bytes(path), str(path), "exec")
             except (SyntaxError, ValueError, OSError) as error:
                 line = getattr(error, "lineno", None)
                 self._note(f"{path}{f':{line}' if line else ''}: {getattr(error, 'msg', error)}; nothing was restarted")

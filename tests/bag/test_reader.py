@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -124,3 +125,16 @@ def test_many_files_are_not_open_at_once(tmp_path: Path, monkeypatch: pytest.Mon
         next(records)
     assert len(begun) < 6
     assert len(list(records)) == 36
+
+
+@pytest.mark.timeout(20)
+def test_files_of_a_bag_that_are_none(tmp_path: Path) -> None:
+    """Nobody waits for a FIFO in a bag's folder."""
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    os.mkfifo(folder / "bag_0.mcap")
+    with pytest.raises(BagError, match=r"it has no \.mcap or \.db3 file"):
+        Bag(folder)
+    os.mkfifo(folder / "metadata.yaml")
+    with pytest.raises(BagError, match=r"metadata\.yaml: it is not a regular file"):
+        Bag(folder)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
+from graphflow.graph.executables import package_folder
+from graphflow.graph.share import share_folder
 from graphflow.graph.workspace import EntryPoint, find_workspace, uses_ros
 
 
@@ -232,3 +235,26 @@ def test_definitions_in_folders_of_their_own(tmp_path: Path) -> None:
     """A package that sorts its messages into folders has interfaces all the same."""
     package(tmp_path / "a", "a", msg__inner__Ball_dot_msg="int32 x\n")
     assert list(find_workspace(tmp_path).interfaces) == ["a"]
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("name", ["package.xml", "setup.py", "setup.cfg", "CMakeLists.txt", "lamp/blink.py"])
+def test_files_that_are_none(tmp_path: Path, name: str) -> None:
+    """A FIFO, or a device without an end, in the place of a file is as one that cannot be read; nobody waits for it."""
+    for kind in ("fifo", "device"):
+        root = tmp_path / kind
+        lamp = package(root / "src" / "lamp", "lamp", setup_dot_py=SETUP, lamp__blink_dot_py="import rclpy")
+        package(root / "src" / "other", "other")
+        (lamp / name).unlink(missing_ok=True)
+        if kind == "fifo":
+            os.mkfifo(lamp / name)
+        else:
+            (lamp / name).symlink_to("/dev/zero")
+        found = find_workspace(root)
+        assert set(found.packages) == ({"other"} if name == "package.xml" else {"lamp", "other"})
+        for one in found.packages.values():
+            assert set(one.executables) <= {"talker", "listener", "third"}
+            assert (one.faults, one.import_roots, one.compiled) is not None
+            assert share_folder(one)
+        assert package_folder("other", root) == root / "src" / "other"
+        assert not uses_ros(lamp / name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -249,3 +250,13 @@ def test_what_does_not_go_with_what_is_known(monkeypatch: pytest.MonkeyPatch) ->
         assert registry._given == {}
         with pytest.raises(UnknownInterface):
             registry.full_name("clashing_msgs/msg/A")
+
+
+@pytest.mark.timeout(20)
+def test_a_definition_that_is_no_file(save: Save) -> None:
+    """Is refused with its name; nobody waits for it."""
+    file = save("fifo_msgs/msg/Thing", "int32 x")
+    file.unlink()
+    os.mkfifo(file)
+    with pytest.raises(InterfaceError, match=r"Thing\.msg: it is not a regular file"):
+        registry.definition("fifo_msgs/msg/Thing")

@@ -12,6 +12,7 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.widget import Widget
 
+from graphflow.reading import found_bytes
 from graphflow.tui.actions import Action
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
@@ -61,7 +62,7 @@ class Source(View):
             self._lines.replace([Text(f"there is no file {self.about} here", style=self.ink.warn)])
             return
         try:
-            data = self._file.read_bytes()[:LONGEST]
+            data = found_bytes(self._file)[:LONGEST]
         except OSError as error:
             self._lines.replace([Text(f"{self._file}: {error.strerror}", style=self.ink.warn)])
             return

@@ -1,0 +1,53 @@
+"""Files that are found: which are read, and how much of them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from graphflow.reading import found_bytes, found_text
+
+pytestmark = pytest.mark.timeout(20)
+
+
+def test_a_regular_file(tmp_path: Path) -> None:
+    """Is read as `open` would read it, also through a link."""
+    file, link = tmp_path / "package.xml", tmp_path / "link"
+    file.write_bytes(b"<name>\r\nl\xc3\xa4mp</name>\r")
+    link.symlink_to(file)
+    assert found_bytes(file) == file.read_bytes()
+    assert found_text(link) == file.read_text(encoding="utf-8") == "<name>\nlämp</name>\n"
+    file.write_bytes(b"\xff")
+    assert found_text(file, "replace") == "\ufffd"
+    with pytest.raises(UnicodeDecodeError):
+        found_text(file)
+
+
+def test_what_would_keep_its_reader_waiting(tmp_path: Path) -> None:
+    """Is no regular file, and refused with its name before it is opened."""
+    fifo, device = tmp_path / "package.xml", tmp_path / "setup.py"
+    os.mkfifo(fifo)
+    device.symlink_to("/dev/zero")
+    for file in (fifo, device):
+        with pytest.raises(OSError, match="it is not a regular file") as caught:
+            found_bytes(file)
+        assert caught.value.filename == str(file)
+    with pytest.raises(IsADirectoryError):
+        found_bytes(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        found_bytes(tmp_path / "none")
+
+
+def test_a_file_of_great_size(tmp_path: Path) -> None:
+    """Is not read to its end."""
+    file = tmp_path / "setup.py"
+    file.touch()
+    os.truncate(file, 1 << 40)
+    with pytest.raises(OSError, match="it has more than 10,000,000 bytes"):
+        found_bytes(file)
+    os.truncate(file, 5)
+    assert found_bytes(file, 5) == bytes(5)
+    with pytest.raises(OSError, match="more than 4 bytes"):
+        found_bytes(file, 4)
