@@ -27,7 +27,7 @@ from graphflow.wire.process import GROUPS, LOOK, NUMBERS, WAITS, answer_key
 
 LAG_LIMIT = 0.2
 """Seconds to wait for the event loop to come round before it is called late."""
-ANSWERS, LOOKS, MOVES = 200, 20, 200
+ANSWERS, LOOKS, MOVES = 50, 20, 200
 """How often a second other processes can have the waits or the numbers told anew, a deadlock looked for, or a handler
 moved."""
 MOVES_AT_ONCE = 64
@@ -55,7 +55,7 @@ class Inspection:
             session.open_report(answer_key(domain, NUMBERS, session.zid), self._numbers),
         )
         self._inbox = Inbox(session.bell, MOVE_BOUND, self._asked)
-        self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox)
+        self._server = session.open_server(answer_key(domain, GROUPS, session.zid), self._inbox, is_paced=True)
 
     def _waits(self) -> bytes:
         """Runs on any thread."""

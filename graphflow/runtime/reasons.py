@@ -40,7 +40,7 @@ class Reasons:
         """Answer from now on."""
         if self._server is None:
             key = answer_key(self._domain, GOALS, self._session.zid)
-            self._server = self._session.open_server(key, self._inbox)
+            self._server = self._session.open_server(key, self._inbox, is_paced=True)
 
     def note(self, goal_id: bytes, reason: str) -> None:
         """Remember why a goal did not come to its end."""

@@ -120,8 +120,13 @@ class Session(Protocol):
                 often. Not for TRANSIENT_LOCAL.
         """
 
-    def open_server(self, key: str, inbox: Inbox) -> Closable:
-        """Put every request on `key` into `inbox`, as `Request`s."""
+    def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> Closable:
+        """Put every request on `key` into `inbox`, as `Request`s.
+
+        Args:
+            is_paced: Whether requests come so quickly only that asking does not hold up the process; of too many, the
+                earlier end without an answer. For keys of graphflow's own, on which anybody may ask.
+        """
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> Caller:
         """Args:
@@ -136,7 +141,7 @@ class Session(Protocol):
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> Closable:
         """Answer queries on `key` with what `report` returns. It is called on a thread of its own, where there
-        are threads, so that it answers while the loop is blocked.
+        are threads, so that it answers while the loop is blocked; paced, as for `open_server`.
         """
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:

@@ -30,6 +30,8 @@ CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
 CALLBACK_LIMIT = 1.0
 """Seconds that Zenoh's callback threads have to end, at exit, when their sessions have been closed."""
+ANSWERING = "zenoh-questions"
+"""The name of threads that wait for queries: they end with the session."""
 OPEN_LIMIT = 10.0
 """Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
 them starting, an impatient one would never get a connection."""
@@ -175,9 +177,9 @@ def _close_after_main() -> None:
 
 
 def callback_threads() -> list[threading.Thread]:
-    """The threads of Zenoh's that call back, one per subscriber or queryable, known by their name.
+    """The threads of Zenoh's that call back, one per subscriber or queryable, and those that take questions, by name.
 
     They end soon after their session was closed. Those that were started from a daemon thread are daemons, which the
     interpreter does not wait for; and one that asks for the GIL when the interpreter has gone aborts the process.
     """
-    return [thread for thread in threading.enumerate() if thread.name.endswith("(pyo3-closure)")]
+    return [t for t in threading.enumerate() if t.name.endswith("(pyo3-closure)") or t.name == ANSWERING]

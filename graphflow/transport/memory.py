@@ -263,7 +263,7 @@ class MemorySession:
             if not self._loop.is_closed():
                 self._loop.call_soon(sender.tell_changed)
 
-    def open_server(self, key: str, inbox: Inbox) -> _Declared:
+    def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:
         servers = self._network.servers.setdefault(key, [])
         servers.append(inbox)
         self._served.append(inbox)

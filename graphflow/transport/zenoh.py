@@ -16,6 +16,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import threading
+import time
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -27,6 +28,7 @@ from graphflow.domain import rendezvous_endpoint
 from graphflow.qos import Durability, History, Qos, Reliability
 from graphflow.transport.base import EARLY, Answer, Bell, Inbox, Payload
 from graphflow.transport.config import (
+    ANSWERING,
     QUERY_LIMIT_MS,
     close_at_exit,
     close_session,
@@ -39,6 +41,10 @@ OWN = "@graphflow/"
 """What the keys begin with that ROS 2 does not know."""
 WATCHED_AT_ONCE = 64
 """Tokens that are taken in before others have a turn of the loop."""
+QUESTIONS_BOUND = 256
+"""Questions to a process that wait to be taken."""
+PAUSE = 0.002
+"""Seconds from one question to the next."""
 DEEP = 100
 """Depth of a queue from which on what it holds is copied out of the buffers of Zenoh."""
 logger = logging.getLogger("graphflow.transport")
@@ -60,6 +66,35 @@ class _Declared:
                 declaration.undeclare()
             except zenoh.ZError as error:  # the session is already closed
                 logger.debug("undeclare: %s", error)
+
+
+class _Questions(_Declared):
+    """Queries that anybody may ask, taken one after the other on a thread of their own, and not all of them.
+
+    Of those that wait, Zenoh keeps the latest and ends the others without an answer, all without Python. A callback
+    would need the GIL for each, and twenty thousand questions a second would leave nothing of it to the nodes.
+    """
+
+    def __init__(
+        self, session: zenoh.Session, key: str, take: Callable[[zenoh.Query], None], *, complete: bool = False
+    ) -> None:
+        channel: Any = zenoh.handlers.RingChannel(QUESTIONS_BOUND)
+        queryable: Any = session.declare_queryable(key, channel, complete=complete)
+        super().__init__(queryable)
+        threading.Thread(target=self._take_turns, args=(queryable.handler, take), name=ANSWERING).start()
+
+    def _take_turns(self, handler: Any, take: Callable[[zenoh.Query], None]) -> None:
+        while True:
+            try:
+                query = handler.recv()
+            except zenoh.ZError:  # it was closed, or the session was
+                return
+            try:
+                take(query)
+            except Exception as error:  # a question that fails must not end the answers to others
+                logger.debug("a question cannot be answered", exc_info=error)
+            del query  # which ends it, if nobody keeps it to answer it later
+            time.sleep(PAUSE)
 
 
 class _ZenohSender(_Declared):
@@ -304,10 +339,12 @@ class ZenohSession:
         )
         return _Declared(subscriber) if again is None else _Declared(subscriber, again)
 
-    def open_server(self, key: str, inbox: Inbox) -> _Declared:
+    def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:
         def arrived(query: zenoh.Query) -> None:
             inbox.put(_ZenohRequest(query, key))
 
+        if is_paced:
+            return _Questions(self.raw, key, arrived, complete=True)
         return _Declared(self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> _ZenohCaller:
@@ -338,9 +375,9 @@ class ZenohSession:
     def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
         def asked(query: zenoh.Query) -> None:
             with query:
-                query.reply(key, report(), congestion_control=zenoh.CongestionControl.DROP)
+                query.reply(key, report())
 
-        return _Declared(self.raw.declare_queryable(key, asked))  # on Zenoh's callback thread: the loop may be blocked
+        return _Questions(self.raw, key, asked)  # on a thread: the loop may be blocked
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
         found: list[bytes] = []

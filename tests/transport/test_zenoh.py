@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import struct
+import threading
 import time
 from collections.abc import Iterator
 
@@ -13,7 +14,8 @@ import zenoh
 
 from graphflow.qos import Durability, Qos
 from graphflow.transport.base import Answer, Inbox
-from graphflow.transport.zenoh import ZenohSession
+from graphflow.transport.config import callback_threads
+from graphflow.transport.zenoh import QUESTIONS_BOUND, ZenohSession
 from graphflow.wire.gid import gid
 from tests.conftest import LIMIT, Machine
 
@@ -217,3 +219,53 @@ async def test_an_answer_does_not_overtake_what_was_published_before_it(
     client.raw.close()  # type: ignore[no-untyped-call]
     server.raw.close()  # type: ignore[no-untyped-call]
     assert counts == [3 * (i + 1) for i in range(300)]
+
+
+async def test_a_flood_of_questions(graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session) -> None:
+    """Is ended by Zenoh, without Python, but for the latest that can wait; whoever asks next is answered."""
+    mine = ZenohSession(asyncio.get_running_loop())
+    taken, goes_on, ended = threading.Event(), threading.Event(), threading.Semaphore(0)
+    goes_on.set()
+    answers: list[zenoh.Reply] = []
+
+    def report() -> bytes:
+        taken.set()
+        assert goes_on.wait(LIMIT)
+        return b"told"
+
+    def ask(number: int) -> None:
+        for _ in range(number):
+            handler = zenoh.handlers.Callback(answers.append, drop=ended.release, indirect=False)
+            foreign_router.get("questions/mine", handler, timeout=LIMIT)
+
+    def flood() -> None:
+        while not list(foreign_router.get("questions/mine")):  # there is no way to it yet
+            time.sleep(0.01)
+        goes_on.clear()
+        taken.clear()
+        ask(1)
+        assert taken.wait(LIMIT)
+        ask(3_000)
+        for _ in range(3_000 - QUESTIONS_BOUND):
+            assert ended.acquire(timeout=LIMIT)
+        assert not answers
+        goes_on.set()
+        for _ in range(QUESTIONS_BOUND + 1):
+            assert ended.acquire(timeout=LIMIT)
+        assert len(answers) == QUESTIONS_BOUND + 1
+        ask(1)
+        assert ended.acquire(timeout=LIMIT)
+        assert len(answers) == QUESTIONS_BOUND + 2
+
+    before = {*callback_threads()}
+    questions = mine.open_report("questions/mine", report)
+    (thread,) = {*callback_threads()} - before
+    try:
+        async with asyncio.timeout(LIMIT):
+            await asyncio.to_thread(flood)
+    finally:
+        goes_on.set()
+        questions.close()
+        await asyncio.to_thread(thread.join, LIMIT)
+        mine.raw.close()  # type: ignore[no-untyped-call]
+    assert not thread.is_alive()
