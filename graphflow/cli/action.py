@@ -150,9 +150,9 @@ def send_goal(
         if there:
             from graphflow.introspect.definitions import learn
 
-            learn(view, full, there[0])
+            learn(view, full, type_name if type_name in there or len(there) > 1 else there[0])
     wanted = registry.full_name(type_name)
-    actual = agree(wanted, there[0], full) if there else wanted
+    actual = agree(wanted, there, full) if there else wanted
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))
     if not there:
         output.talk(f"there is no action {full} yet{did_you_mean(full, actions)}")

@@ -46,7 +46,7 @@ def list_(show_types: bool, count_services: bool, include_hidden_services: bool,
 def type_(name: str) -> None:
     """Print a service's type."""
     with View(domain_id()) as view:
-        output.data(view.service_type(expand(name, "/", "cli")))
+        output.lines(view.service_types(expand(name, "/", "cli")))
 
 
 @service.command()
@@ -69,13 +69,13 @@ def info(name: str, verbose: bool, as_json: bool) -> None:
     """Show a service's type, and how many nodes offer and call it."""
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
-        type_ = view.service_type(full)
+        types = view.service_types(full)
         clients, servers = (view.cache.endpoints(kind, full) for kind in (Kind.CLIENT, Kind.SERVICE))
     if as_json:
         nodes = {"clients": [e.node_name for e in clients], "servers": [e.node_name for e in servers]}
-        output.as_json({"name": full, "type": type_, **nodes})
+        output.as_json({"name": full, "type": ", ".join(types), **nodes})
         return
-    output.data(f"Type: {type_}")
+    output.data(f"Type: {', '.join(types)}")
     for title, ends in (("Clients count", clients), ("Services count", servers)):
         output.data(f"{title}: {len(ends)}")
         output.lines(f"    {end.node_name}" for end in ends if verbose)
@@ -92,7 +92,9 @@ def echo(name: str, **options: Any) -> int:
     full = expand(name, "/", "cli")
     use_project()
     with View(domain_id()) as view:
-        type_name = view.service_type(full)
+        type_name, *others = view.service_types(full)
+        if others:
+            raise UsageFault(f"{full} has several types: {', '.join([type_name, *others])}; one of its nodes is wrong")
         learn(view, full, type_name, (Kind.SERVICE,))
         if not view.cache.endpoints(Kind.PUBLISHER, f"{full}/_service_event"):
             output.talk(
@@ -131,12 +133,13 @@ def call(
     full = expand(name, "/", "cli")
     if type_name is None:
         with View(domain_id()) as view:
-            actual = view.service_type(full)
-        raise UsageFault(f"TYPE is missing; {full} is of type {actual}: graphflow service call {full} {actual}")
+            types = view.service_types(full)
+        told, given = " and ".join(types), types[0] if len(types) == 1 else "TYPE"
+        raise UsageFault(f"TYPE is missing; {full} is of type {told}: graphflow service call {full} {given}")
     with View(domain_id()) as view:
         there = view.cache.services(hidden=True).get(full, [])
-        if len(there) == 1:
-            learn(view, full, there[0], (Kind.SERVICE,))
+        if there:
+            learn(view, full, type_name if type_name in there or len(there) > 1 else there[0], (Kind.SERVICE,))
     wanted = registry.full_name(type_name)
     values_read = message_values(values, from_stdin=from_stdin)
     with View(domain_id()) as view:
@@ -147,7 +150,7 @@ def call(
             except ServiceUnavailable as error:
                 output.error(str(error))
                 return exits.TIMEOUT
-        actual = agree(wanted, view.service_type(full), full)
+        actual = agree(wanted, view.service_types(full), full)
         request = from_plain(registry.interface_class(registry.service_schema(actual).request.name), values_read)
         while True:
             started = time.monotonic()

@@ -188,7 +188,7 @@ def _echo_type(full: str, given: str | None) -> str:
         return wanted
     if len(types) > 1 and wanted is None:
         raise UsageFault(f"{full} has several types: {', '.join(types)}; say which")
-    return agree(wanted, types[0], full) if wanted is not None and wanted not in types else (wanted or types[0])
+    return types[0] if wanted is None else agree(wanted, types, full)
 
 
 @topic.command("type")
@@ -338,8 +338,8 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
         has, missing = (f"; it carries {known[0]}", known[0]) if known else ("", "TYPE")
         raise UsageFault(f"the topic's type comes before the values: graphflow topic pub {full} {missing} ...{has}")
     wanted = registry.full_name(type_name)
-    if known and wanted not in known:
-        wanted = agree(wanted, known[0], full)
+    if known:
+        wanted = agree(wanted, known, full)
     values_read, stamps = taken_stamps(wanted, message_values(values, from_stdin=options.pop("from_stdin")))
     message = from_plain(registry.interface_class(wanted), values_read)
     options["qos"] = take_qos(options, DEFAULT)

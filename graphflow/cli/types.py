@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from graphflow.cli import output
 from graphflow.errors import UsageFault
@@ -34,19 +34,23 @@ def names_of_type(names: Mapping[str, list[str]], type_name: str, *, only_count:
     return [str(len(found))] if only_count else found
 
 
-def agree(given: str, actual: str, name: str) -> str:
-    """The type to use: the graph's, when the given one has the same definition under another name.
+def agree(given: str, known: Collection[str], name: str) -> str:
+    """The type to use: one of the graph's, also when the given one has the same definition under another name.
+
+    Args:
+        known: The types that nodes announce for the name.
 
     Raises:
-        UsageFault: The two types differ.
+        UsageFault: It has none that would do.
     """
-    if given == actual:
-        return actual
+    if given in known:
+        return given
     from graphflow.msgs import registry
 
-    # turtlesim and turtlesim_msgs hold the same types under two names.
-    same = given.split("/")[1:] == actual.split("/")[1:]
-    if same and registry.definition(given) == registry.definition(actual):
-        output.talk(f"note: {name} is of type {actual}; using that")
-        return actual
-    raise UsageFault(f"{name} is of type {actual}, not {given}")
+    for actual in known:
+        # turtlesim and turtlesim_msgs hold the same types under two names.
+        same = given.split("/")[1:] == actual.split("/")[1:]
+        if same and registry.definition(given) == registry.definition(actual):
+            output.talk(f"note: {name} is of type {actual}; using that")
+            return actual
+    raise UsageFault(f"{name} is of type {' and '.join(known)}, not {given}")

@@ -33,7 +33,7 @@ class RemoteParameters:
         from graphflow.msgs.values import from_plain
 
         full, type_ = f"{self._node}/{service}", f"rcl_interfaces/srv/{type_name}"
-        self._view.service_type(full)
+        self._view.service_types(full)
         message = from_plain(registry.interface_class(f"{type_}_Request"), request)
         return self._view.call(full, type_, message, self._timeout, plain=True)
 

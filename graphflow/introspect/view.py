@@ -72,15 +72,15 @@ class View:
     def _empty(self, names: Iterable[str]) -> str:
         return "" if names else f"; domain {self.domain} has no nodes"
 
-    def service_type(self, name: str) -> str:
-        """The type of a service that is offered.
+    def service_types(self, name: str) -> list[str]:
+        """The types of a service that is offered: several, if nodes announce different ones. Anybody may announce any.
 
         Raises:
             ServiceUnavailable: No node offers it; the text names the nearest.
         """
-        servers = self.cache.endpoints(Kind.SERVICE, name)
-        if servers:
-            return servers[0].type
+        types = sorted({server.type for server in self.cache.endpoints(Kind.SERVICE, name)})
+        if types:
+            return types
         raise ServiceUnavailable(f"no node offers the service {name}{did_you_mean(name, *self.cache.offered())}")
 
     def wait_for_service(self, name: str, timeout: float) -> None:
@@ -92,7 +92,7 @@ class View:
         deadline = time.monotonic() + timeout
         while not self.cache.endpoints(Kind.SERVICE, name):
             if time.monotonic() > deadline:
-                self.service_type(name)
+                self.service_types(name)
             time.sleep(0.05)
             self.refresh()
 
@@ -156,11 +156,12 @@ class View:
         return {token.zid: token for token in tokens if token is not None}
 
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:
-        for server in self.cache.endpoints(Kind.SERVICE, name):
-            if server.type != type_name:
-                return f"{name} is of type {server.type}, not {type_name}"
-            if server.hash != hash_:
-                return f"{name}: the server's {type_name} has a different definition from the one here"
+        servers = self.cache.endpoints(Kind.SERVICE, name)
+        same = [server for server in servers if server.type == type_name]
+        if servers and not same:
+            return f"{name} is of type {' and '.join(self.service_types(name))}, not {type_name}"
+        if same and all(server.hash != hash_ for server in same):
+            return f"{name}: the server's {type_name} has a different definition from the one here"
         return f"{name}: the server went away before it answered"
 
 

@@ -13,20 +13,20 @@ from graphflow.msgs import registry
 
 def test_the_same_type(capsys: pytest.CaptureFixture[str]) -> None:
     """Nothing is said of it."""
-    assert agree("std_msgs/msg/String", "std_msgs/msg/String", "/chatter") == "std_msgs/msg/String"
+    assert agree("std_msgs/msg/String", ["a/msg/B", "std_msgs/msg/String"], "/chatter") == "std_msgs/msg/String"
     assert capsys.readouterr() == ("", "")
 
 
 def test_one_definition_under_two_names(capsys: pytest.CaptureFixture[str]) -> None:
     """The graph's name is taken, which is said."""
-    assert agree("turtlesim_msgs/msg/Pose", "turtlesim/msg/Pose", "/turtle1/pose") == "turtlesim/msg/Pose"
+    assert agree("turtlesim_msgs/msg/Pose", ["a/msg/B", "turtlesim/msg/Pose"], "/turtle1/pose") == "turtlesim/msg/Pose"
     assert capsys.readouterr() == ("", "note: /turtle1/pose is of type turtlesim/msg/Pose; using that\n")
 
 
 def test_two_types() -> None:
     """It is wrong usage, and the right one is named."""
     with pytest.raises(UsageFault, match=r"^/chatter is of type std_msgs/msg/String, not std_msgs/msg/Int32$"):
-        agree("std_msgs/msg/Int32", "std_msgs/msg/String", "/chatter")
+        agree("std_msgs/msg/Int32", ["std_msgs/msg/String"], "/chatter")
 
 
 def test_the_projects_own_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

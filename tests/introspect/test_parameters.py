@@ -28,10 +28,10 @@ class Robot(View):
         self.values = {"speed": 3, "gain": 5}
         self.calls: list[str] = []
 
-    def service_type(self, name: str) -> str:
+    def service_types(self, name: str) -> list[str]:
         if not name.startswith("/robot/"):
             raise CallError(f"no node offers the service {name}")
-        return ""
+        return [""]
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         self.calls.append(name)

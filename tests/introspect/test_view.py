@@ -24,8 +24,8 @@ ROS = Entity(7, "z9", 0, 0, Kind.NODE, "/", "ros")
 HIDDEN = Entity(7, "z1", 2, 2, Kind.NODE, "/", "_tool")
 
 
-def server(type_: str = TYPE, hash_: str = HASH) -> Entity:
-    return Entity(7, "z1", 0, 1, Kind.SERVICE, "/office", "clerk", ADD, type_, hash_)
+def server(type_: str = TYPE, hash_: str = HASH, node: str = "clerk") -> Entity:
+    return Entity(7, "z1", 0, 1, Kind.SERVICE, "/office", node, ADD, type_, hash_)
 
 
 class Client:
@@ -102,9 +102,9 @@ def test_a_node_that_is_not_there(view: View, client: Client) -> None:
 
 def test_the_type_of_a_service(view: View) -> None:
     """As its server announces it; the nearest name when there is none."""
-    assert view.service_type(ADD) == TYPE
+    assert view.service_types(ADD) == [TYPE]
     with pytest.raises(ServiceUnavailable, match=f"^no node offers the service /office/ad; did you mean '{ADD}'"):
-        view.service_type("/office/ad")
+        view.service_types("/office/ad")
 
 
 def test_waiting_for_a_service(view: View, client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,6 +162,20 @@ def test_why_there_was_no_answer(view: View, client: Client, other: Entity, text
     client.entities = [CLERK, other]
     view.refresh()
     with pytest.raises(ServerLost, match=text):
+        view.call(ADD, TYPE, AddTwoInts.Request())
+
+
+def test_a_token_that_somebody_forges(view: View, client: Client) -> None:
+    """Takes no type away from the server that is there: all that are announced are told."""
+    forged = server(type_="a_msgs/srv/A", node="aaa")
+    client.entities = [CLERK, forged, server(hash_="RIHS01_0", node="aab"), server()]
+    view.refresh()
+    assert view.service_types(ADD) == ["a_msgs/srv/A", TYPE]
+    with pytest.raises(ServerLost, match="the server went away"):
+        view.call(ADD, TYPE, AddTwoInts.Request())
+    client.entities.remove(server())
+    view.refresh()
+    with pytest.raises(ServerLost, match=f"the server's {TYPE} has a different definition"):
         view.call(ADD, TYPE, AddTwoInts.Request())
 
 

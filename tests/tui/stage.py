@@ -107,8 +107,8 @@ class MemoryView:
     def node(self, name: str) -> str:
         return name
 
-    def service_type(self, name: str) -> str:
-        return self.cache.services(hidden=True)[name][0]
+    def service_types(self, name: str) -> list[str]:
+        return self.cache.services(hidden=True)[name]
 
     def call(self, name: str, type_name: str, request: Any, timeout: float = 10.0, *, plain: bool = False) -> Any:
         type_: Any = registry.interface_class(type_name)
