@@ -151,13 +151,16 @@ def _whose_rclpy() -> Iterator[str]:
 
 
 def _left_over() -> Iterator[str]:
-    from graphflow.supervisor.rundir import left_over
+    from graphflow.supervisor.rundir import left_over, running
 
     for folder, run in left_over():
         yield (
             f"graph {run.graph} (domain {run.domain}) was killed and has left {folder}: start it again, "
             "which clears up, or delete that folder"
         )
+    for run in running():
+        if run.unguarded:
+            yield f"graph {run.graph} (domain {run.domain}): {run.guard_again}"
 
 
 @doctor.command()

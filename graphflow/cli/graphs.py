@@ -95,7 +95,7 @@ def up(
         return _open_console(report["run"])
     from graphflow.cli.streaming import stream
 
-    code = stream(report["run"], report["classes"], detach=detach)
+    code = stream(report["run"], report["classes"], detach=detach, end=launched.wait)
     if detach:
         launched.let_go()
     return code
@@ -198,6 +198,9 @@ def ps(name: str | None, everything: bool, as_json: bool) -> int:
         output.as_json(rows)
     elif rows:
         output.lines(_table(rows))
+    for run in runs:
+        if run.unguarded:
+            output.talk(f"warning: {run.graph}: {run.guard_again}")
     for run in silent:
         output.error(
             f"the supervisor of {run.graph} (process {run.pid}) does not answer; if it is stopped: kill -CONT {run.pid}"

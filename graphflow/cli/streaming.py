@@ -7,7 +7,7 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -85,19 +85,30 @@ def _rest(path: Path, offset: int) -> bytes:
         return b""
 
 
-def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool) -> int:
-    """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`."""
+def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str]) -> int:
+    """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`.
+
+    Args:
+        end: Waits for the guardian, and says what ended it and the supervisor.
+    """
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda got, _: interrupts.append(got))
     # This comes first: a graph that fails at once waits for a follower, tells it everything, and is gone.
-    nodes = _list_nodes(run["socket"])
-    with ControlClient(run["socket"]) as client:
-        client.send(do="follow")
-        code = _Stream(run, classes, nodes, client, detach, interrupts).run()
+    try:
+        nodes = _list_nodes(run["socket"])
+        with ControlClient(run["socket"]) as client:
+            client.send(do="follow")
+            followed = _Stream(run, classes, nodes, client, detach, interrupts).run()
+    except SupervisorError:
+        if not GraphRun(**run).wait_gone(_GONE_LIMIT):
+            raise
+        followed = None
+    if followed is None:
+        return _tell_loss(run, end)
     if not detach:
         GraphRun(**run).wait_gone(_GONE_LIMIT)
-    return code
+    return followed
 
 
 def _list_nodes(socket: str) -> list[dict[str, Any]]:
@@ -130,14 +141,16 @@ class _Stream:
         self._began = time.monotonic()
         self._failed: list[str] = []
 
-    def run(self) -> int:
+    def run(self) -> int | None:
+        """Returns the exit code of `up`; None if the supervisor has gone without a word."""
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
         self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0))
         while True:
             select.select([self._client], [], [], _POLL)
             events = self._client.pending()
             if events is None:
-                return self._lost()
+                self._logs.show()
+                return None
             for event in events:
                 self._unanswered_since = None
                 code = self._show(event)
@@ -164,14 +177,6 @@ class _Stream:
         elif not self._has_told_silence:
             self._has_told_silence = True
             output.talk(f"{silent(run)}; Ctrl-C again ends the graph without it")
-
-    def _lost(self) -> int:
-        assert self._logs is not None
-        self._logs.show()
-        GraphRun(**self._run).wait_gone(_GONE_LIMIT)
-        log = Path(self._run["logs"]) / SUPERVISOR_LOG
-        output.error(f"{last_words(log)}\n  its log: {log}")
-        return exits.FAILED
 
     def _show(self, event: dict[str, Any]) -> int | None:
         """Show one event; returns an exit code when it is the last."""
@@ -251,13 +256,27 @@ class _Stream:
         output.talk("")
 
 
-def last_words(log: Path) -> str:
-    """What the guardian has written of a supervisor's death."""
+def _tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
+    """Tell of a supervisor that was killed, once nothing is left of its graph; returns the exit code of `up`."""
+    lost = GraphRun(**run)
+    has_gone = lost.wait_gone(_GONE_LIMIT)
+    why = last_words(lost) or (end() if has_gone else silent(lost))
+    output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
+    return exits.FAILED
+
+
+def last_words(run: GraphRun) -> str:
+    """What the guardian has written of a supervisor's death; empty if it could not."""
+    log = Path(run.logs) / SUPERVISOR_LOG
     try:
-        last = log.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2]
+        lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
-        last = ""
-    return last if last.startswith("the supervisor, process ") else "the supervisor died"
+        lines = []
+    begin = f"the supervisor, process {run.pid}, was ended"
+    for line in reversed(lines):
+        if line.startswith(begin):
+            return line
+    return ""
 
 
 def _shown(place: str) -> str:

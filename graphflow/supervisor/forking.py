@@ -8,6 +8,7 @@ import os
 import signal
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -40,17 +41,31 @@ class ForkingStarter:
         self._ending: asyncio.Task[None] | None = None
 
     def begin_probe(self, classes: Sequence[str], root: str) -> None:
-        self._channel.sendall(json.dumps({"do": "probe", "classes": list(classes), "root": root}).encode() + b"\n")
+        with suppress(ConnectionError):  # it has ended, as `probed` finds out
+            self._channel.sendall(json.dumps({"do": "probe", "classes": list(classes), "root": root}).encode() + b"\n")
 
     def probed(self) -> dict[str, Any]:
         data = b""
         while not data.endswith(b"\n"):
-            chunk = self._channel.recv(65536)
+            try:
+                chunk = self._channel.recv(65536)
+            except ConnectionError:
+                chunk = b""
             if not chunk:
-                raise SupervisorError("the process that imports node classes died")
+                raise SupervisorError(f"{self._end_in_words()} before the graph was up")
             data += chunk
-        result: dict[str, Any] = json.loads(data)["interfaces"]
+        answer: dict[str, Any] = json.loads(data)
+        if answer["event"] == "broken":
+            raise SupervisorError(f"process {self._pid}, which starts the nodes, failed:\n{answer['trace']}")
+        result: dict[str, Any] = answer["interfaces"]
         return result
+
+    def _end_in_words(self) -> str:
+        """Wait for the preload process, which has ended, and say how."""
+        _, status = os.waitpid(self._pid, 0)
+        self._has_ended = True
+        how = Exit.of_status(os.waitstatus_to_exitcode(status))
+        return f"process {self._pid}, which starts the nodes, was ended by {how}"
 
     async def open(self, log: Path, heard: Heard, lost: Callable[[str], None]) -> None:
         self._heard, self._lost = heard, lost
@@ -59,6 +74,8 @@ class ForkingStarter:
 
     def _told(self, event: dict[str, Any]) -> None:
         """What the preload process says."""
+        if event["event"] == "broken":
+            return  # it has written why to the log, and its end is told in a moment
         if event["event"] == "spawned":
             self._watch(event["process"], event["pid"])
         elif event["event"] == "exited":
@@ -106,10 +123,7 @@ class ForkingStarter:
 
         Foreign programs know nothing of that, and are asked here.
         """
-        _, status = os.waitpid(self._pid, 0)
-        self._has_ended = True
-        how = Exit.of_status(os.waitstatus_to_exitcode(status))
-        self._lost(f"process {self._pid}, which starts the nodes, was ended by {how}")
+        self._lost(self._end_in_words())
         for pid, (name, _) in self._workers.items():
             if name in self._programs:
                 family.kill_group(pid, signal.SIGTERM)

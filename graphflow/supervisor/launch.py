@@ -51,8 +51,8 @@ class Launched(NamedTuple):
     """The descriptor its report comes from."""
     lifeline: int
     """The command's end of the lifeline."""
-    wait: Callable[[], object]
-    """Waits until it has ended, with all that belonged to it."""
+    wait: Callable[[], str]
+    """Waits until it has ended, with all that belonged to it; says what ended it."""
 
     def let_go(self) -> None:
         """Let the graph go on without this command."""
@@ -94,9 +94,8 @@ def launch(
             data += chunk
     finally:
         os.close(begun.report)
-    if not data:
-        begun.wait()
-        return {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}, begun
+    if not data.endswith(b"\n"):
+        return {"ok": False, "exit_code": 1, "message": f"{begun.wait()} before the graph was up"}, begun
     report: Report = json.loads(data)
     if not report["ok"]:
         begun.wait()
@@ -115,12 +114,24 @@ def _begin_forked(job: dict[str, Any]) -> Launched:
             os.close(report)
             os.close(lifeline)
             os.setsid()
-            guard(_Launch(job, write, watched, note).supervise, noted, (write, watched, note))
+            # Told here: a supervisor that asked for its parent might get an answer after the guardian's end.
+            begun = _Launch(job, write, watched, note, guardian=os.getpid())
+            guard(begun.supervise, noted, (write, watched, note))
         finally:
             os._exit(1)
     for fd in (write, watched, noted, note):
         os.close(fd)
-    return Launched(report, lifeline, lambda: os.waitpid(pid, 0))
+    return Launched(report, lifeline, lambda: _end_of(pid))
+
+
+def _end_of(guardian: int) -> str:
+    """Wait for the guardian, which ends with the exit code of its supervisor; returns what ended the two."""
+    from graphflow.machines.process import Exit
+
+    code = os.waitstatus_to_exitcode(os.waitpid(guardian, 0)[1])
+    if code < 0:
+        return f"the guardian, process {guardian}, was ended by {Exit.of_status(code)}, and the supervisor with it"
+    return f"the supervisor was ended by {Exit.of_status(128 - code if code > 128 else code)}"
 
 
 def _begin_portable(job: dict[str, Any]) -> Launched:
@@ -131,7 +142,8 @@ def _begin_portable(job: dict[str, Any]) -> Launched:
     assert process.stdin is not None
     assert process.stdout is not None
     process.stdin.write(json.dumps(job).encode() + b"\n")
-    return Launched(os.dup(process.stdout.fileno()), _kept(process.stdin), process.wait)
+    wait = lambda: f"the supervisor, process {process.pid}, was ended by code {process.wait()}"  # noqa: E731
+    return Launched(os.dup(process.stdout.fileno()), _kept(process.stdin), wait)
 
 
 def _kept(stream: IO[bytes]) -> int:
@@ -184,12 +196,14 @@ class _Launch:
         report: The pipe to the command.
         lifeline: The supervisor's end of the lifeline.
         note: The pipe to the guardian; -1 for none.
+        guardian: The guardian's process id; 0 for none.
     """
 
-    def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1) -> None:
+    def __init__(self, job: dict[str, Any], report: int, lifeline: int, note: int = -1, guardian: int = 0) -> None:
         self._file, self._given, self._domain, self._only = Path(job["file"]), job["given"], job["domain"], job["only"]
         self._is_watching, self._debug = bool(job["watch"]), job["debug"]
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
+        self._guardian = guardian
         self._starter: Starter
 
     def supervise(self) -> int:
@@ -287,7 +301,7 @@ class _Launch:
             context = await Context.open(domain, link=False)
             try:
                 context.open_link()
-                run = _run_file(plan, run_id, logs, domain)
+                run = _run_file(plan, run_id, logs, domain, self._guardian)
                 return await self._supervise(plan, context, directory, run, interfaces, step_types)
             finally:
                 await context.close()
@@ -373,10 +387,10 @@ async def _keep_reachable(
 
     guardian = run.guardian
     while True:
-        await asyncio.sleep(REACHABLE_EVERY)
         if guardian and os.getppid() != guardian:
-            supervisor.note(f"the guardian, process {guardian}, was ended; the graph goes on without it")
+            supervisor.note(f"{run.unguarded}; the graph goes on without it")
             guardian = 0
+        await asyncio.sleep(REACHABLE_EVERY)
         if directory.is_there(run):
             continue
         try:
@@ -419,7 +433,7 @@ async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> 
     await Watch(Path(plan.root), nodes, partial(supervisor.restart, by="--watch"), supervisor.note).run()
 
 
-def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
+def _run_file(plan: Plan, run_id: str, logs: Path, domain: int, guardian: int) -> GraphRun:
     import hashlib
     import time
 
@@ -437,7 +451,7 @@ def _run_file(plan: Plan, run_id: str, logs: Path, domain: int) -> GraphRun:
         socket="",
         logs=str(logs),
         endpoint=rendezvous_endpoint(),
-        guardian=0 if is_portable() else os.getppid(),
+        guardian=guardian,
         plan_hash=hashlib.sha256(json.dumps(plan.to_json(), sort_keys=True).encode()).hexdigest(),
     )
 

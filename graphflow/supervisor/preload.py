@@ -11,6 +11,8 @@ The supervisor sends requests as lines of JSON over a socket pair and gets lines
                                                              -> {"event": "spawned", "process": ..., "pid": ...}
     {"do": "tell", "process": ..., "order": {...}}           (passed on to the worker, over a pipe of its own)
                                               and, at its end, {"event": "exited", "process": ..., "status": ...}
+
+and, if it fails itself, {"event": "broken", "trace": ...} before it ends.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from typing import Any, NamedTuple, NoReturn
 
 from graphflow.supervisor import family
@@ -67,14 +70,21 @@ def start(keep: tuple[int, ...]) -> tuple[socket.socket, int, int]:
                 os.close(fd)
             _Preload(its, status_write).run()
         except BaseException:  # a forked child must not unwind into its parent's code
-            import traceback
-
-            traceback.print_exc()
+            _tell_failure(its)
         finally:
             os._exit(1)
     its.close()
     os.close(status_write)
     return mine, status_read, pid
+
+
+def _tell_failure(channel: socket.socket) -> None:
+    """Say why this process fails: in the log, which it may not have been told yet, and to the supervisor."""
+    import traceback
+
+    traceback.print_exc()
+    with suppress(OSError):  # the supervisor may have ended
+        channel.sendall(json.dumps({"event": "broken", "trace": traceback.format_exc()}).encode() + b"\n")
 
 
 class _Worker(NamedTuple):
@@ -113,14 +123,19 @@ class _Preload:
         while True:
             for key, _ in selector.select():
                 if key.fileobj is self._channel:
-                    data = self._channel.recv(65536)
-                    if not data:
-                        self._end()
-                    self._buffer += data
+                    self._buffer += self._hear()
                 else:
                     os.read(wake_read, 4096)
             self._serve()
             self._reap()
+
+    def _hear(self, how: int = 0) -> bytes:
+        """What the supervisor sends; does not return when it has ended."""
+        try:
+            data = self._channel.recv(65536, how)
+        except ConnectionError:  # it was killed, and had not read all answers
+            data = b""
+        return data or self._end()
 
     def _warm_up(self) -> None:
         """Import, compile and rehearse what every node needs, then tune memory for many forks."""
@@ -169,7 +184,10 @@ class _Preload:
         os.close(out)
 
     def _answer(self, event: dict[str, Any]) -> None:
-        self._channel.sendall(json.dumps(event).encode() + b"\n")
+        try:
+            self._channel.sendall(json.dumps(event).encode() + b"\n")
+        except ConnectionError:
+            self._end()
 
     def _probe_classes(self, request: dict[str, Any]) -> dict[str, Any]:
         """Import classes in a child of its own, so that what they do stays there."""
@@ -188,8 +206,13 @@ class _Preload:
         deadline = time.monotonic() + PROBE_LIMIT
         with selectors.DefaultSelector() as selector:
             selector.register(read, selectors.EVENT_READ)
+            selector.register(self._channel, selectors.EVENT_READ)  # nothing comes there now but the supervisor's end
             while not done and (left := deadline - time.monotonic()) > 0:
-                if selector.select(left):
+                for key, _ in selector.select(left):
+                    if key.fileobj is self._channel:
+                        self._hear(socket.MSG_PEEK)
+                        selector.unregister(self._channel)
+                        continue
                     chunk = os.read(read, 65536)
                     data += chunk
                     done = not chunk

@@ -154,6 +154,16 @@ class GraphRun:
         return True
 
     @property
+    def unguarded(self) -> str:
+        """The end of the guardian in words; empty while it lives, and where there is none."""
+        return f"the guardian, process {self.guardian}, was ended" if self.guardian and not self._is_guarded else ""
+
+    @property
+    def guard_again(self) -> str:
+        """The end of the guardian, and the next step."""
+        return f"{self.unguarded}; to have it guarded again: graphflow up --replace {self.file}"
+
+    @property
     def _is_guarded(self) -> bool:
         """Whether the guardian, which was there before the supervisor, is there still."""
         began = start_time(self.guardian) if self.guardian else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import sys
 from pathlib import Path
@@ -49,10 +50,46 @@ def test_classes_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     assert made.probed() == {"a:A": {}}
 
 
+def killed() -> int:
+    """A child that was killed, and that nobody has waited for."""
+    pid = os.fork()
+    if pid == 0:
+        signal.pause()
+    os.kill(pid, signal.SIGKILL)
+    return pid
+
+
 def test_a_preload_process_that_dies_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told, and nobody waits for ever."""
-    with pytest.raises(SupervisorError, match="the process that imports node classes died"):
-        starter(Channel(b'{"event"'), monkeypatch).probed()
+    """It is told with its cause, whether it dies before it is asked or before it has answered."""
+    mine, its = socket.socketpair()
+    monkeypatch.setattr(preload, "start", lambda keep: (mine, -1, killed()))
+    made = ForkingStarter(())
+    its.close()
+    made.begin_probe(("a:A",), "/lab")
+    cause = r"process \d+, which starts the nodes, was ended by signal SIGKILL .* before the graph was up"
+    with pytest.raises(SupervisorError, match=cause):
+        made.probed()
+    mine.close()
+
+    channel = Channel(b'{"event"')
+    monkeypatch.setattr(preload, "start", lambda keep: (channel, -1, killed()))
+    with pytest.raises(SupervisorError, match=cause):
+        ForkingStarter(()).probed()
+
+
+def test_a_preload_process_that_fails_before_it_serves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its traceback is shown, though it has no log yet."""
+
+    def fail(_: object) -> None:
+        raise MemoryError("no room for NumPy")
+
+    monkeypatch.setattr(preload._Preload, "_warm_up", fail)
+    made = ForkingStarter(())
+    made.begin_probe(("a:A",), "/lab")
+    with pytest.raises(SupervisorError, match=r"(?s)which starts the nodes, failed:\nTraceback.*no room for NumPy"):
+        made.probed()
+    made.end()
+    os.close(made._status)
 
 
 @pytest.mark.usefixtures("graphflow_runner")

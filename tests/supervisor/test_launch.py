@@ -144,8 +144,9 @@ class Begun:
         os.close(write)
         return Launched(read, held, self.reap)
 
-    def reap(self) -> None:
+    def reap(self) -> str:
         self.is_reaped = True
+        return "the supervisor was ended by signal SIGKILL"
 
 
 def test_a_supervisor_that_reports(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -167,7 +168,7 @@ def test_a_supervisor_that_has_ended_is_let_go() -> None:
     """Nobody is there to be told, and that is no error."""
     read, write = os.pipe()
     os.close(read)
-    Launched(-1, write, lambda: None).let_go()
+    Launched(-1, write, str).let_go()
     with pytest.raises(OSError, match="Bad file"):
         os.close(write)
 
@@ -181,10 +182,34 @@ def test_a_supervisor_that_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_supervisor_that_dies(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told as a failure."""
-    Begun(monkeypatch)
-    report, _ = launch(Path("g.yaml"), [], None)
-    assert report == {"ok": False, "exit_code": 1, "message": "the supervisor died before the graph was up"}
+    """It is told as a failure with its cause, also if it was killed while it reported."""
+    for chunks in ((), (b'{"ok": true, "ru',)):
+        Begun(monkeypatch, *chunks)
+        report, _ = launch(Path("g.yaml"), [], None)
+        message = "the supervisor was ended by signal SIGKILL before the graph was up"
+        assert report == {"ok": False, "exit_code": 1, "message": message}
+
+
+@pytest.mark.real
+@pytest.mark.skipif(is_portable(), reason="the portable way has no guardian")
+@pytest.mark.parametrize("victim", ["guardian", "supervisor", "preload"])
+def test_a_start_whose_processes_are_killed(machine: Machine, project: Path, victim: str) -> None:
+    """As soon as the last of the three is there: the end is told with its cause, and nothing is left."""
+    shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
+    up = machine.start("up", "-d", write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
+    machine.until(lambda: len(family_of(up.pid)) >= 3, "the preload process is there")
+    family = family_of(up.pid)
+    os.kill(family[["guardian", "supervisor", "preload"].index(victim)], signal.SIGKILL)
+    if victim == "guardian":
+        machine.until(lambda: bool(list(machine.run_directory.glob("graphflow/*/*/run.json"))), "it goes on")
+        run = supervisor_of(machine)
+        assert run["guardian"] == family[0]
+        assert f"the guardian, process {family[0]}, was ended; to have it guarded again" in machine.look("ps")
+        assert "graph lab is down" in machine.look("down")
+    assert up.wait() == (0 if victim == "guardian" else 1)
+    assert "Traceback" not in up.text
+    assert "was ended by signal SIGKILL" in up.text or victim == "guardian"
+    nothing_is_left(machine, family)
 
 
 @pytest.mark.real

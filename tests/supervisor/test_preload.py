@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from graphflow.supervisor.preload import ORDER_BOUND, PROBE_LIMIT, _reseed, _write_whole, probe_result, sweep
+from graphflow.supervisor.preload import ORDER_BOUND, PROBE_LIMIT, _Preload, _reseed, _write_whole, probe_result, sweep
 from graphflow.system import is_portable
 from tests.cases import slow
 from tests.conftest import Machine, alive
@@ -111,3 +112,20 @@ def test_an_order_goes_into_a_pipe_whole_or_not_at_all() -> None:
     os.close(read)
     assert not _write_whole(write, b"nobody reads\n")
     os.close(write)
+
+
+@pytest.mark.skipif(is_portable(), reason="the portable way has no preload process")
+def test_a_supervisor_that_is_killed_before_it_has_read_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The workers are ended as after any other end of it, whichever call finds out."""
+
+    def end(_: object) -> None:
+        raise SystemExit
+
+    monkeypatch.setattr(_Preload, "_end", end)
+    for find_out in (_Preload._hear, lambda made: made._answer({"event": "spawned"})):
+        mine, its = socket.socketpair()
+        its.sendall(b"an answer that nobody reads\n")
+        mine.close()
+        with pytest.raises(SystemExit):
+            find_out(_Preload(its, -1))
+        its.close()
