@@ -2,7 +2,7 @@
 
 A process whose parent ends goes to the nearest ancestor that has asked for it by `adopt_orphans`. The guardian, the
 supervisor and the preload process all have: so whatever a node leaves behind, in its session or in one of its own,
-stays below each of them that lives, and none of it can outlive all three.
+stays below each of them that lives. If all three are killed at one moment, each worker ends its own (`orphaned`).
 
 Source: prctl(2), PR_SET_CHILD_SUBREAPER and PR_SET_NAME; proc_pid_stat(5).
 """
@@ -15,6 +15,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 
 _PR_SET_NAME = 15
 _PR_SET_CHILD_SUBREAPER = 36
@@ -55,13 +56,13 @@ def descendants(root: int) -> list[int]:
 def _below(root: int, *, is_deep: bool) -> list[int]:
     children: dict[int, list[int]] = {}
     dead: set[int] = set()
-    for name in os.listdir("/proc"):
-        found = _stat(int(name)) if name.isdecimal() else None
+    for pid in _numbers():
+        found = _stat(pid)
         if found is not None:
             state, parent = found
-            children.setdefault(parent, []).append(int(name))
+            children.setdefault(parent, []).append(pid)
             if state in "ZX":
-                dead.add(int(name))
+                dead.add(pid)
     below: list[int] = []
     todo = [root]
     while todo:
@@ -69,6 +70,15 @@ def _below(root: int, *, is_deep: bool) -> list[int]:
         below += mine
         todo += mine if is_deep else []
     return [pid for pid in below if pid not in dead]
+
+
+def _numbers() -> list[int]:
+    return [int(name) for name in os.listdir("/proc") if name.isdecimal()]
+
+
+def processes() -> list[int]:
+    """All living processes."""
+    return [pid for pid in _numbers() if state_of(pid) not in ("", "Z", "X")]
 
 
 def children(root: int) -> list[int]:
@@ -95,6 +105,15 @@ def files(pid: int) -> set[str]:
     return found
 
 
+def output(pid: int) -> set[str]:
+    """The files that a process has as its standard output and error."""
+    found: set[str] = set()
+    for fd in (1, 2):
+        with suppress(OSError):
+            found.add(os.readlink(f"/proc/{pid}/fd/{fd}"))
+    return found
+
+
 def _stat(pid: int) -> tuple[str, int] | None:
     """State and parent of a process."""
     try:
@@ -106,15 +125,21 @@ def _stat(pid: int) -> tuple[str, int] | None:
 
 
 def end_descendants(root: int, reap: Callable[[], None]) -> bool:
-    """Kill all processes below one until there are none; False if some are still there after `END_LIMIT`.
+    """Kill all processes below one; see `end_all`."""
+    return end_all(partial(descendants, root), reap)
+
+
+def end_all(find: Callable[[], list[int]], reap: Callable[[], None]) -> bool:
+    """Kill all processes of a kind until there are none; False if some are still there after `END_LIMIT`.
 
     Args:
+        find: Finds those that live.
         reap: Called in between, to wait for this process's own children that have ended.
     """
     deadline = time.monotonic() + END_LIMIT
     empty = 0
     while empty < 2:  # a process that changes its parent during a look may be missed by it
-        left = descendants(root)
+        left = find()
         for pid in left:
             kill(pid, signal.SIGKILL)
         reap()

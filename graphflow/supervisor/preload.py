@@ -31,9 +31,9 @@ from typing import Any, NamedTuple, NoReturn
 
 from graphflow.supervisor import family
 from graphflow.supervisor.guardian import GRACE
+from graphflow.supervisor.orphaned import LOG_VARIABLE, Orphan
+from graphflow.system import end_with_parent
 
-PROCESS_VARIABLE = "GRAPHFLOW_PROCESS"
-"""What the programs that a worker starts inherit: the name of its process."""
 ORDER_BOUND = 1 << 16
 """Bytes of an order to a worker: so many fit into an empty pipe (pipe(7))."""
 PROBE_LIMIT = 20.0
@@ -276,9 +276,10 @@ class _Preload:
     def _be_worker(self, request: dict[str, Any], parent: int, orders: int) -> None:
         from graphflow.supervisor import worker
 
-        worker.become(request["log"], {**request["env"], PROCESS_VARIABLE: request["process"]}, parent)
+        worker.become(request["log"], {**request["env"], LOG_VARIABLE: request["log"]}, parent)
         _reseed()
-        worker.main(request["job"], worker.PipeReporter(self._status, orders))
+        orphan = Orphan(parent, self._status, orders, request["log"])
+        worker.main(request["job"], worker.PipeReporter(self._status, orders, orphan))
 
     def _spawn_fresh(self, request: dict[str, Any], orders: int) -> int:
         """A worker in a new interpreter, for environments that a running one cannot adopt."""
@@ -289,7 +290,7 @@ class _Preload:
                 stdin=subprocess.PIPE,
                 stdout=out,
                 stderr=out,
-                env={**os.environ, **request["env"], PROCESS_VARIABLE: request["process"]},
+                env={**os.environ, **request["env"], LOG_VARIABLE: request["log"]},
                 pass_fds=[self._status, orders],
                 start_new_session=True,
             )
@@ -313,8 +314,8 @@ class _Preload:
 
     def _end_orphans(self) -> None:
         """End what workers have left behind in sessions of their own; what a living one has put there stays."""
-        living = {f"{PROCESS_VARIABLE}={worker.process}".encode() for worker in self._workers.values()}
         logs = {worker.log for worker in self._workers.values()}
+        living = {f"{LOG_VARIABLE}={log}".encode() for log in logs}
         for pid in family.children(os.getpid()):
             if pid not in self._workers and not (living & family.environment(pid) or logs & family.files(pid)):
                 family.kill(pid, signal.SIGKILL)
@@ -335,20 +336,27 @@ class _Preload:
 
 def _spawn_program(request: dict[str, Any]) -> int:
     """A foreign program, with signals as it expects them: this process blocks some and ignores others."""
-    command: list[str] = request["job"]["command"]
-    return os.posix_spawnp(
-        command[0],
-        command,
-        {**os.environ, **request["env"], PROCESS_VARIABLE: request["process"]},
-        file_actions=[
-            (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),
-            (os.POSIX_SPAWN_OPEN, 1, request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600),
-            (os.POSIX_SPAWN_DUP2, 1, 2),
-        ],
-        setsid=True,
-        setsigmask=(),
-        setsigdef=(signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD, signal.SIGPIPE),
-    )
+    parent = os.getpid()
+
+    def prepare() -> None:  # which forking makes safe: this process has one thread
+        end_with_parent(parent, signal.SIGTERM)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD):
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+
+    log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    with open(log, "ab") as out:
+        child = subprocess.Popen(
+            request["job"]["command"],
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=out,
+            env={**os.environ, **request["env"], LOG_VARIABLE: request["log"]},
+            start_new_session=True,
+            preexec_fn=prepare,
+        )
+    child.returncode = 0  # it is reaped with the others
+    return child.pid
 
 
 def answer_probe(request: dict[str, Any], write: int) -> None:

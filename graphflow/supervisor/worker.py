@@ -37,6 +37,7 @@ from graphflow.supervisor import debugging, family, logfile
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.supervisor.container import Container
 from graphflow.supervisor.orders import Orders
+from graphflow.supervisor.orphaned import Orphan
 from graphflow.system import end_with_parent
 from graphflow.transport import loop
 
@@ -114,25 +115,34 @@ class Reporter(Protocol):
         They are called on the loop, which must run.
         """
 
+    def close(self) -> None:
+        """Say nothing more: this process is about to end."""
+
 
 class PipeReporter:
     """Events go into a pipe that all workers share, orders come out of another; to be stopped takes a signal."""
 
-    def __init__(self, pipe: int, orders: int) -> None:
-        self._pipe, self._orders = pipe, orders
+    def __init__(self, pipe: int, orders: int, orphan: Orphan) -> None:
+        self._pipe, self._orders, self._orphan = pipe, orders, orphan
         self._unread = b""
+        orphan.end_on_sigterm()
 
     def tell(self, **event: Any) -> None:
         # In one write: a pipe keeps lines of up to 4096 bytes together.
         while len(line := json.dumps(event).encode()) >= PIPE_BUF and event.get("error"):
             event["error"] = event["error"][: len(event["error"]) // 2]
-        os.write(self._pipe, line + b"\n")
+        with suppress(BrokenPipeError):  # the supervisor has gone, and this process will
+            os.write(self._pipe, line + b"\n")
 
     def is_open(self) -> bool:
         return bool(select.select([], [self._pipe], [], 0)[1])
 
+    def close(self) -> None:
+        self._orphan.end_own()
+
     def listen(self, stop: Callable[[], object], order: Callable[[bytes], object]) -> None:
         """Only for orders: signals stop this worker."""
+        self._orphan.watch()
         asyncio.get_running_loop().add_reader(self._orders, self._read, order)
 
     def _read(self, order: Callable[[bytes], object]) -> None:
@@ -171,6 +181,9 @@ class SocketReporter:
 
         self._wake = lambda: loop.call_soon_threadsafe(take)
         take()
+
+    def close(self) -> None:
+        """The supervisor ends what is left."""
 
     def _listen(self) -> None:
         # Not on the loop: even a node whose loop is blocked must not outlive its supervisor.
@@ -221,6 +234,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
         code = loop.run(_run(nodes, job, report))
     sys.stdout.flush()
     sys.stderr.flush()
+    report.close()
     # Zenoh's threads can keep an interpreter from ending.
     os._exit(code)
 
@@ -334,7 +348,8 @@ def _start() -> None:
     if len(sys.argv) == 4:
         status, orders, parent = map(int, sys.argv[1:])
         end_with_parent(parent, signal.SIGTERM)
-        main(json.load(sys.stdin), PipeReporter(status, orders))
+        job = json.load(sys.stdin)
+        main(job, PipeReporter(status, orders, Orphan(parent, status, orders, job["log"])))
     given = json.load(sys.stdin)
     main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))
 

@@ -18,6 +18,7 @@ from graphflow.graph.plan import PlannedNode, Rule, Setting
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.core import core_of
 from graphflow.supervisor import worker
+from graphflow.supervisor.orphaned import Orphan
 from graphflow.supervisor.worker import PIPE_BUF, PipeReporter, SocketReporter, _one_line, make_node
 from graphflow.testing import Graph
 from nodes.talker import Talker
@@ -119,7 +120,7 @@ def test_a_node_that_cannot_be_made(node: PlannedNode, told: str) -> None:
 def test_a_report_keeps_in_one_piece() -> None:
     """A pipe that many write to mixes lines that are longer: an error is cut, the rest is not."""
     read, write = os.pipe()
-    report = PipeReporter(write, -1)
+    report = PipeReporter(write, -1, Orphan(0, -1, -1, ""))
     report.tell(event="ready", process="/a", node="/a")
     report.tell(event="failed", process="/a", error="x" * 10_000)
     os.close(write)
@@ -185,11 +186,18 @@ def nothing(line: bytes) -> None:
     """No order is expected."""
 
 
+class Attended(Orphan):
+    """Of a worker whose preload process lives as long as the test."""
+
+    def watch(self) -> None:
+        return
+
+
 async def test_orders_come_over_a_pipe(graphflow_runner: asyncio.Runner) -> None:
     """Whole lines, however they are cut; the end of the pipe is nothing."""
     read, write = os.pipe()
     heard: list[bytes] = []
-    PipeReporter(-1, read).listen(lambda: None, heard.append)
+    PipeReporter(-1, read, Attended(0, -1, read, "")).listen(lambda: None, heard.append)
     for part in (b'{"order": 1', b'}\n{"order"', b": 2}\n"):
         os.write(write, part)
         await asyncio.sleep(0.01)
