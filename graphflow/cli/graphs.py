@@ -6,7 +6,7 @@ import os
 import time
 from pathlib import Path
 from textwrap import shorten
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,6 +17,10 @@ from graphflow.domain import ENDPOINT_VARIABLE, domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.times import ago
 from graphflow.wire.profile import PROFILES, VARIABLE
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.rundir import GraphRun
+    from graphflow.supervisor.starts import Start
 
 _graph = click.option("--graph", "name", metavar="NAME", help="Which running graph, if there are several.")
 _everywhere = click.option("--all", "everything", is_flag=True, help="Of every domain.")
@@ -105,7 +109,9 @@ def _take_down_running(path: Path) -> None:
     """Stop what runs of a graph file, in this domain."""
     from graphflow.cli.streaming import take_down
     from graphflow.supervisor import rundir
+    from graphflow.supervisor.starts import wait_started
 
+    wait_started(_tell_start, path)
     for run in rundir.running():
         if run.is_here and run.file == str(path.resolve()):
             take_down(run, now=False)
@@ -165,12 +171,29 @@ def down(name: str | None, everything: bool, now: bool) -> int:
 
     Without --graph or --all it is the one of this domain.
     """
-    from graphflow.supervisor import rundir
-
-    runs = rundir.running_here(everything=True) if everything else [rundir.choose(name)]
+    runs = _to_stop(name, everything=everything)
     from graphflow.cli.streaming import take_down
 
     return max(take_down(run, now=now) for run in runs)
+
+
+def _to_stop(name: str | None, *, everything: bool) -> list[GraphRun]:
+    """The graphs that are meant; those that are being started are waited for if they may be among them."""
+    from graphflow.supervisor import rundir
+    from graphflow.supervisor.starts import wait_started
+
+    has_waited = everything and wait_started(_tell_start)
+    while True:
+        try:
+            return rundir.running_here(everything=True) if everything else [rundir.choose(name)]
+        except SupervisorError as error:
+            if error.exit_code != exits.NOT_RUNNING or has_waited or not wait_started(_tell_start):
+                raise
+            has_waited = True
+
+
+def _tell_start(start: Start) -> None:
+    output.talk(f"waiting for {start}")
 
 
 @click.command()

@@ -205,7 +205,8 @@ class _Stream:
             if self._logs is not None and not self._detach:
                 self._logs.show()
             output.talk(f"graph {self._run['graph']} has ended")
-            return int(event["exit_code"])
+            has_failed = self._detach and exits.FAILED  # a graph that came up would have been left by now
+            return int(event["exit_code"]) or has_failed
         return None
 
     def _tell_death(self, event: dict[str, Any]) -> None:

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from graphflow.graph.check import Interfaces
     from graphflow.graph.plan import Plan
     from graphflow.runtime.context import Context
-    from graphflow.supervisor.control import ControlServer
     from graphflow.supervisor.rundir import GraphRun, RunDirectory
     from graphflow.supervisor.starter import Starter
+    from graphflow.supervisor.starts import Announcement
     from graphflow.supervisor.supervisor import Supervisor
 
 Report = dict[str, Any]
@@ -39,9 +39,6 @@ Report = dict[str, Any]
 LET_GO = b"-"
 """What the command sends over the lifeline to let the graph go on without it."""
 GONE = "its terminal went away"
-
-REACHABLE_EVERY = 2.0
-"""Seconds between two looks whether the run directory and the guardian are still there."""
 
 
 class Launched(NamedTuple):
@@ -204,6 +201,7 @@ class _Launch:
         self._is_watching, self._debug = bool(job["watch"]), job["debug"]
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._guardian = guardian
+        self._announcement: Announcement | None = None
         self._starter: Starter
 
     def supervise(self) -> int:
@@ -220,6 +218,7 @@ class _Launch:
             keep = (self._report_pipe, *(fd for fd in (self._note,) if fd >= 0))
             starter = self._starter = _make_starter(keep)
             self._lifeline.watch()
+            self._announce()
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
@@ -233,8 +232,15 @@ class _Launch:
 
             return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")
         finally:
+            if self._announcement is not None:
+                self._announcement.end()
             if starter is not None:
                 starter.end()
+
+    def _announce(self) -> None:
+        from graphflow.supervisor.starts import Announcement
+
+        self._announcement = Announcement(self._file)
 
     def _report(self, **report: Any) -> None:
         if self._report_pipe < 0:  # the command already knows that the graph is up; what comes now goes to the log
@@ -323,6 +329,7 @@ class _Launch:
         from graphflow.supervisor import control as controlling
         from graphflow.supervisor import rundir
         from graphflow.supervisor.mirror import mirror
+        from graphflow.supervisor.reachable import keep_reachable
         from graphflow.supervisor.supervisor import Supervisor
 
         supervisor = Supervisor(plan, context, self._starter, Path(run.logs), step_types)
@@ -337,6 +344,8 @@ class _Launch:
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
+        assert self._announcement is not None
+        self._announcement.end()
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
         classes = {path: str(interface.place) for path, interface in interfaces.items()}
@@ -344,7 +353,7 @@ class _Launch:
         os.close(self._report_pipe)
         self._report_pipe = -1
         linked = asyncio.create_task(context.wait_linked())
-        kept = asyncio.create_task(_keep_reachable(supervisor, control, directory, run))
+        kept = asyncio.create_task(keep_reachable(supervisor, control, directory, run))
         warned = asyncio.create_task(_warn(supervisor, plan, interfaces))
         mirrored = asyncio.create_task(mirror(supervisor, context))
         watching = asyncio.create_task(_watch(supervisor, plan, interfaces)) if self._is_watching else None
@@ -372,36 +381,6 @@ class _Launch:
         for source, fd in ((null, 1), (out, 2)) if self._note < 0 else ((null, 0), (null, 1), (out, 2)):
             os.dup2(source, fd)
         logging.basicConfig(format="%(asctime)s %(levelname)s %(message)s", level=logging.INFO)
-
-
-async def _keep_reachable(
-    supervisor: Supervisor, control: ControlServer, directory: RunDirectory, run: GraphRun
-) -> None:
-    """Make the run directory again when it is taken away, as at a logout; else stop, for no verb could do it.
-
-    Also says so when the guardian has ended, which only its children can see.
-    """
-    import asyncio
-
-    from graphflow.errors import SupervisorError
-
-    guardian = run.guardian
-    while True:
-        if guardian and os.getppid() != guardian:
-            supervisor.note(f"{run.unguarded}; the graph goes on without it")
-            guardian = 0
-        await asyncio.sleep(REACHABLE_EVERY)
-        if directory.is_there(run):
-            continue
-        try:
-            directory.restore()
-            if not is_portable():
-                await control.open(directory.socket)
-            directory.write(run)
-        except (OSError, SupervisorError) as error:
-            supervisor.begin_stop(now=False, reason=f"its run directory was taken away: {error}")
-            return
-        supervisor.note("the run directory was taken away, and was made again")
 
 
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:

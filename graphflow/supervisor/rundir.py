@@ -196,7 +196,7 @@ class RunDirectory:
         except OSError as error:
             raise SupervisorError(f"{lock}: {error.strerror}") from None
         try:
-            _lock(self._lock)
+            lock_file(self._lock)
         except OSError:
             os.close(self._lock)
             self._lock = None
@@ -228,7 +228,7 @@ class RunDirectory:
             for file in self.path.parent.glob("*/names"):
                 claimed = file.read_text(encoding="utf-8").split("\n") if file.parent != self.path else []
                 taken = sorted(set(names).intersection(claimed)) if claimed[:1] == [endpoint] else []
-                if taken and _is_locked(_lock_of(file.parent)):
+                if taken and is_locked(_lock_of(file.parent)):
                     raise SupervisorError(
                         f"already in domain {self.path.parent.name}: {', '.join(taken)} (graph {file.parent.name}). "
                         f"Stop it with: graphflow down --graph {file.parent.name}"
@@ -298,14 +298,14 @@ def _lock_of(directory: Path) -> Path:
     return directory.parents[1] / f"{directory.parent.name}.{directory.name}.lock"
 
 
-def _is_locked(file: Path) -> bool:
+def is_locked(file: Path) -> bool:
     """Whether the process that has locked a file lives."""
     try:
         fd = os.open(file, os.O_RDWR | os.O_CLOEXEC)
     except OSError:
         return False
     try:
-        _lock(fd)
+        lock_file(fd)
     except OSError:
         return True
     finally:
@@ -318,7 +318,7 @@ def _lock_soon(fd: int, file: Path) -> None:
     deadline = time.monotonic() + NAMES_PATIENCE
     while True:
         try:
-            _lock(fd)
+            lock_file(fd)
         except OSError:
             if time.monotonic() > deadline:
                 raise SupervisorError(f"{file} has been locked for {NAMES_PATIENCE:g} s; is a graph stopped?") from None
@@ -327,7 +327,7 @@ def _lock_soon(fd: int, file: Path) -> None:
             return
 
 
-def _lock(fd: int) -> None:
+def lock_file(fd: int) -> None:
     """Lock a file until its descriptor is closed; raises OSError when another process has locked it."""
     if sys.platform == "win32":
         import msvcrt

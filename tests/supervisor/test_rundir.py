@@ -320,7 +320,7 @@ def test_another_graph_that_claims_names_is_waited_for_but_not_for_ever(monkeypa
     monkeypatch.setattr(rundir, "NAMES_PATIENCE", 0.05)
     directory = start()
     with (runtime_root() / "names.lock").open("w") as held:
-        rundir._lock(held.fileno())
+        rundir.lock_file(held.fileno())
         with pytest.raises(SupervisorError, match=r"names.lock has been locked for 0.05 s"):
             directory.claim_names(["/a"])
     directory.claim_names(["/a"])

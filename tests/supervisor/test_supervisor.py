@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 from pathlib import Path
 
@@ -119,15 +118,3 @@ def test_a_stopped_terminal_that_is_killed_takes_its_graph_along(machine: Machin
     machine.until(lambda: rows(machine)["/a"]["state"] == "failed", "it is seen")
     up.process.kill()
     nothing_is_left(machine, [row["pid"] for row in found.values()])
-
-
-@slow
-def test_a_run_directory_that_is_taken_away(machine: Machine, project: Path) -> None:
-    """As at a logout: it is made again, and verbs find the graph as before."""
-    up = machine.start("up", write(project, GOOD), cwd=project)
-    up.wait_for("Stop with Ctrl-C")
-    shutil.rmtree(machine.run_directory / "graphflow")
-    up.wait_for("the run directory was taken away, and was made again")
-    assert rows(machine)["/a"]["state"] == "ready"
-    machine.look("down")
-    assert up.wait() == 0

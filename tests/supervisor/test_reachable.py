@@ -1,0 +1,26 @@
+"""A graph that verbs cannot find any more makes itself known again."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.cases import slow
+from tests.conftest import Machine
+from tests.supervisor.running import GOOD, rows, write
+
+pytestmark = pytest.mark.real
+
+
+@slow
+def test_a_run_directory_that_is_taken_away(machine: Machine, project: Path) -> None:
+    """As at a logout: it is made again, and verbs find the graph as before."""
+    up = machine.start("up", write(project, GOOD), cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    shutil.rmtree(machine.run_directory / "graphflow")
+    up.wait_for("the run directory was taken away, and was made again")
+    assert rows(machine)["/a"]["state"] == "ready"
+    machine.look("down")
+    assert up.wait() == 0

@@ -1,0 +1,79 @@
+"""Graphs that are being started: seen, waited for, and forgotten with their process."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import threading
+from pathlib import Path
+
+import pytest
+
+from graphflow.errors import SupervisorError
+from graphflow.supervisor import starts
+from graphflow.supervisor.rundir import runtime_root
+from graphflow.supervisor.starts import Announcement, Start, starting, wait_started
+from tests.conftest import PROGRAMS, Machine
+from tests.supervisor.running import nothing_is_left, write
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A user who has nothing running."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    return tmp_path
+
+
+def test_a_start_is_seen_until_it_is_done(here: Path) -> None:
+    """With its process and its file; ending it twice is harmless."""
+    announced = Announcement(here / "g.yaml")
+    assert starting() == [Start(os.getpid(), str(here / "g.yaml"))]
+    announced.end()
+    announced.end()
+    assert starting() == []
+    assert not list(runtime_root().iterdir())
+
+
+@pytest.mark.usefixtures("here")
+def test_a_start_that_was_killed() -> None:
+    """Leaves a file that nobody has locked, which is removed."""
+    left = runtime_root() / "4194305.start"
+    left.write_text("/g.yaml")
+    assert starting() == []
+    assert not left.exists()
+
+
+def test_starts_are_waited_for(here: Path) -> None:
+    """Those that are meant, until they are done; without one there is nothing to wait for."""
+    told: list[Start] = []
+    assert not wait_started(told.append)
+    announced = Announcement(here / "g.yaml")
+    assert not wait_started(told.append, here / "other.yaml")
+    ender = threading.Timer(0.01, announced.end)
+    ender.start()
+    assert wait_started(told.append, here / "g.yaml")
+    ender.join()
+    assert told == [Start(os.getpid(), str(here / "g.yaml"))]
+
+
+def test_a_start_that_takes_too_long(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Is an error that says how to break it off, with the exit code of a timeout."""
+    monkeypatch.setattr(starts, "PATIENCE", 0.0)
+    announced = Announcement(here / "g.yaml")
+    with pytest.raises(SupervisorError, match=rf"is not up after 0 s; to break that off: kill {os.getpid()}") as error:
+        wait_started(lambda _: None)
+    assert error.value.exit_code == 4
+    announced.end()
+
+
+@pytest.mark.real
+def test_down_while_a_graph_is_being_started(machine: Machine, project: Path) -> None:
+    """It is waited for and stopped, and the command that starts it fails."""
+    shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")
+    up = machine.start("up", "-d", write(project, "nodes:\n  /s: {class: nodes.slow_import:Late}\n"), cwd=project)
+    machine.until(lambda: bool(list(machine.run_directory.glob("graphflow/*.start"))), "it begins")
+    text = machine.look("down")
+    assert f"waiting for {project}/lab.yaml, which is being started by process " in text
+    assert "graph lab is down" in text
+    assert up.wait() == (0 if "is up" in up.text else 1)
+    nothing_is_left(machine, [])
