@@ -19,6 +19,7 @@ from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.family import state_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
+from graphflow.system import is_portable
 
 _POLL = 0.1
 """Seconds between reads of the log files."""
@@ -28,6 +29,8 @@ _DOWN_LIMIT = 60.0
 """Seconds between two ends of processes when a graph goes down."""
 _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
+_SOCKET_LIMIT = 3.0
+"""Seconds that a supervisor may take to see that its socket was removed, and to make it again."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -308,7 +311,10 @@ def take_down(run: GraphRun, *, now: bool) -> int:
 
 
 def _answers(run: GraphRun) -> bool:
-    """Whether the supervisor answers requests."""
+    """Whether the supervisor answers requests, once it has made its socket again if that was removed."""
+    deadline = time.monotonic() + _SOCKET_LIMIT
+    while not is_portable() and run.is_alive and not Path(run.socket).exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
     try:
         with ControlClient(run.socket) as client:
             client.send(do="hello")

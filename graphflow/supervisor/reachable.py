@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+from pathlib import Path
 
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlServer
@@ -18,7 +19,7 @@ LOOK_EVERY = 2.0
 async def keep_reachable(
     supervisor: Supervisor, control: ControlServer, directory: RunDirectory, run: GraphRun
 ) -> None:
-    """Make the run directory again when it is taken away, as at a logout; else stop, for no verb could do it.
+    """Make what is taken away, as at a logout, again; else stop, for no verb could do it.
 
     Also says so when the guardian has ended, which only its children can see.
     """
@@ -28,14 +29,18 @@ async def keep_reachable(
             supervisor.note(f"{run.unguarded}; the graph goes on without it")
             guardian = 0
         await asyncio.sleep(LOOK_EVERY)
-        if directory.is_there(run):
+        is_there, has_socket = directory.is_there(run), is_portable() or Path(run.socket).is_socket()
+        if is_there and has_socket:
             continue
+        what = "control socket" if is_there else "run directory"
         try:
-            directory.restore()
+            if not is_there:
+                directory.restore()
             if not is_portable():
                 await control.open(directory.socket)
-            directory.write(run)
+            if not is_there:
+                directory.write(run)
         except (OSError, SupervisorError) as error:
-            supervisor.begin_stop(now=False, reason=f"its run directory was taken away: {error}")
+            supervisor.begin_stop(now=False, reason=f"its {what} was taken away: {error}")
             return
-        supervisor.note("the run directory was taken away, and was made again")
+        supervisor.note(f"the {what} was taken away, and was made again")

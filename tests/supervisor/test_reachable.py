@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.system import is_portable
 from tests.cases import slow
 from tests.conftest import Machine
-from tests.supervisor.running import GOOD, rows, write
+from tests.supervisor.running import GOOD, rows, supervisor_of, write
 
 pytestmark = pytest.mark.real
 
@@ -24,3 +25,16 @@ def test_a_run_directory_that_is_taken_away(machine: Machine, project: Path) -> 
     assert rows(machine)["/a"]["state"] == "ready"
     machine.look("down")
     assert up.wait() == 0
+
+
+@pytest.mark.skipif(is_portable(), reason="the portable way has a port")
+def test_a_socket_that_is_removed(machine: Machine, project: Path) -> None:
+    """It is made again; `down` waits for that, and the nodes are stopped as ever."""
+    up = machine.start("up", write(project, GOOD), cwd=project)
+    up.wait_for("Stop with Ctrl-C")
+    Path(supervisor_of(machine)["socket"]).unlink()
+    text = machine.look("down")
+    assert "/a ended" in text
+    assert "killed" not in text
+    assert up.wait() == 0
+    assert "the control socket was taken away, and was made again" in up.text
