@@ -40,6 +40,7 @@ MARKS = {
     "ended": StateMark("○", "dim"),
     "failed": StateMark("✖", "bad"),
     "given_up": StateMark("✖", "bad"),
+    "lost": StateMark("✖", "bad"),
     "foreign": StateMark("◆", "accent"),
 }
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
+from graphflow.graph import project
 from graphflow.graph.console import LAYOUTS, VIEWS, known_views
 from graphflow.tui.actions import carry_out, console_actions, keys_of, shown
 from graphflow.tui.dialogs import Ask, AskToStop, Choice, Item, Note, Pick
@@ -128,6 +130,8 @@ class Deeds(PaneDeeds):
     def restart(self, node: str) -> None:
         """Ask, then restart a node."""
         supervision = self._app.hub.supervision
+        if self._has_no_supervisor():
+            return
         if supervision is None or node not in supervision.nodes:
             self._app.say(
                 f"{node} was not started by this graph's supervisor, so it cannot be restarted here", bad=True
@@ -147,9 +151,20 @@ class Deeds(PaneDeeds):
         else:
             self._ask(f"Restart {node}?", [Choice("r", "restart")], answered, detail)
 
+    def _has_no_supervisor(self) -> bool:
+        """Whether nobody is left who could start or stop a node; says so, and what starts the graph again."""
+        supervision = self._app.hub.supervision
+        if supervision is None or not supervision.is_lost:
+            return False
+        again = f"graphflow up {project.shown(Path(supervision.run.file))}"
+        self._app.say(f"the supervisor has gone; q leaves, and the graph is started again with: {again}", bad=True)
+        return True
+
     def stop_node(self, node: str) -> None:
         """Ask, then stop a node."""
         supervision = self._app.hub.supervision
+        if self._has_no_supervisor():
+            return
         if supervision is None or node not in supervision.nodes:
             self._app.say(f"{node} was not started by this graph's supervisor, so it cannot be stopped here", bad=True)
             return

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +21,8 @@ ASK_EVERY = 1.0
 LINE_LIMIT = 1 << 22
 """Bytes that one line of the supervisor's may have."""
 EVENTS = 500
+_OVER = ("ended", "failed", "given_up")
+"""States of nodes that have ended for good."""
 LEAVE_WITHIN = 1.0
 """Seconds in which a supervisor reads what it was asked last."""
 
@@ -82,7 +85,15 @@ class Supervision:
         if self._is_leaving:
             return
         self.is_lost = True
+        self.nodes = {name: self._without_supervisor(row, why) for name, row in self.nodes.items()}
         self._heard({"event": "lost", "message": why})
+
+    def _without_supervisor(self, row: dict[str, Any], why: str) -> dict[str, Any]:
+        """The last row of a node: of a graph that has ended, so has the node; else nobody tells any more how it is."""
+        if row["state"] in _OVER:
+            return row
+        state = "lost" if self.exit_code is None else "ended"
+        return {**row, "state": state, "pid": None, "since": time.time(), "detail": why if state == "lost" else ""}
 
     async def leave(self) -> None:
         """Hang up once the supervisor has read all requests; what it was asked last counts, too."""

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 def test_every_state_has_a_mark() -> None:
     """Those of processes, failed ones, and nodes of others; all glyphs differ where the words could be cut off."""
-    assert {state.value for state in State} | {"failed", "given_up", "unresponsive", "foreign"} == set(MARKS)
+    assert {state.value for state in State} | {"failed", "given_up", "lost", "unresponsive", "foreign"} == set(MARKS)
     assert MARKS["ready"].glyph != MARKS["failed"].glyph != MARKS["ended"].glyph
 
 

@@ -176,3 +176,15 @@ def test_every_chord_is_used_once() -> None:
     assert len(chords) == len(set(chords))
     assert len(keys) == len(set(keys))
     assert len({a.name for a in console_actions()}) == sum(map(len, CONSOLE.values()))
+
+
+@pytest.mark.parametrize("verb", ["restart", "stop"])
+async def test_a_supervisor_that_has_gone_is_asked_nothing(verb: str) -> None:
+    """Neither to restart a node nor to stop one; what starts the graph again is said."""
+    async with stage(Content("nodes")) as s:
+        assert s.console.hub.supervision is not None
+        s.console.hub.supervision.is_lost = True
+        deeds = s.console.deeds
+        (deeds.restart if verb == "restart" else deeds.stop_node)("/talker")
+        await s.until(lambda: "the supervisor has gone; q leaves" in s.text)
+        assert verb not in [asked["do"] for asked in s.asked]

@@ -84,6 +84,31 @@ async def test_nobody_there(tmp_path: Path) -> None:
     assert "the connection to the supervisor is lost: " in heard[0]["message"]
 
 
+@pytest.mark.parametrize(
+    ("last", "state", "detail"),
+    [(b"", "lost", "the supervisor has gone"), (b'{"event": "end", "exit_code": 0}\n', "ended", "")],
+)
+async def test_nodes_of_a_supervisor_that_has_gone(tmp_path: Path, last: bytes, state: str, detail: str) -> None:
+    """No node is said to run any more; what had failed before still has."""
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "s"))
+        server.listen()
+        one = Supervision(run_at(str(tmp_path / "s")), lambda _: None)
+        one.nodes = {
+            "/a": {"node": "/a", "state": "ready", "pid": 7, "detail": "", "since": 0.0},
+            "/b": {"node": "/b", "state": "failed", "pid": 8, "detail": "signal SIGSEGV", "since": 0.0},
+        }
+        task = asyncio.ensure_future(one.follow())
+        await until(lambda: one.is_connected)
+        connection, _ = server.accept()
+        connection.sendall(last)
+        connection.shutdown(socket.SHUT_WR)
+        await asyncio.wait_for(task, 5.0)
+        connection.close()
+    ends = {name: (row["state"], row["pid"], row["detail"]) for name, row in one.nodes.items()}
+    assert ends == {"/a": (state, None, detail), "/b": ("failed", 8, "signal SIGSEGV")}
+
+
 @pytest.mark.parametrize("portable", ["", "1"])
 async def test_two_consoles(portable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each is told what the other does, the windows of the one are there for the next, and leaving is noticed."""
