@@ -6,7 +6,7 @@ others. Where both are TRANSIENT_LOCAL the network keeps what a late subscriptio
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 from typing import Any, Protocol
 
 from graphflow.qos import Durability, Qos
@@ -29,10 +29,22 @@ class Handed:
         self._message, self._left, self._clone = message, receivers, clone
         self.fields = fields
 
+    @property
+    def payload(self) -> Sized:
+        """Stands for the bytes that a network would carry: the longest field of the message, which is not encoded."""
+        fields = (_sized(getattr(self._message, field.name)) for field in self._message.SCHEMA.fields)
+        return max(fields, key=len, default=b"")
+
     def take(self) -> Any:
         """The message for one receiver, which may change it: the last one gets the copy itself."""
         self._left -= 1
         return self._message if not self._left else self._clone(self._message)
+
+
+def _sized(value: Any) -> Sized:
+    if getattr(value, "nbytes", 0):  # an array, whose own length is that of its first dimension
+        return memoryview(value).cast("B")
+    return value if isinstance(value, Sized) else b""
 
 
 class Receiver(Protocol):

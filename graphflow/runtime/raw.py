@@ -11,15 +11,15 @@ from typing import Any
 from graphflow.errors import DecodeError, UnknownInterface, printable
 from graphflow.msgs import registry
 from graphflow.names import check_full_name
-from graphflow.qos import Durability, History, Qos
+from graphflow.qos import Durability, Qos
 from graphflow.runtime.core import NodeCore, core_of
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent
 from graphflow.runtime.handover import Handed, Receiver
 from graphflow.runtime.host import Host
 from graphflow.runtime.node import Node
-from graphflow.runtime.subscriptions import KEEP_ALL_BOUND, unreadable
-from graphflow.transport.base import Inbox, Sender
+from graphflow.runtime.subscriptions import unreadable
+from graphflow.transport.base import Inbox, Sender, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind
@@ -68,8 +68,7 @@ class RawSubscription(Endpoint):
     def _open(self, key: str) -> None:
         context = self.host.context
         self._read = context.session.read
-        bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
-        self._inbox = Inbox(context.session.bell, bound, self._arrived)
+        self._inbox = open_inbox(self.qos, context.session.bell, self._arrived)
         # What nodes of this process publish comes by hand, as for other subscriptions.
         ignore_local = self.qos.durability is Durability.VOLATILE
         self._declared.append(context.session.open_receiver(key, self.qos, self._inbox, ignore_local=ignore_local))

@@ -13,21 +13,19 @@ from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
-from graphflow.qos import DEFAULT, INFINITE_NS, Durability, History, Liveliness, Qos
+from graphflow.qos import DEFAULT, INFINITE_NS, Durability, Liveliness, Qos
 from graphflow.runtime.endpoints import Endpoint
 from graphflow.runtime.events import OnEvent, SilenceTimer
 from graphflow.runtime.handover import Handed
 from graphflow.runtime.host import Host
 from graphflow.runtime.publishers import alive_key
-from graphflow.transport.base import Closable, Inbox
+from graphflow.transport.base import BYTES_BOUND, Closable, DeepInbox, Inbox, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Entity, Kind
 
 M = TypeVar("M", bound=Message)
 
-KEEP_ALL_BOUND = 10_000
-"""Messages that a KEEP_ALL subscription holds before it counts losses."""
 LOSS_TOLD = 100
 """Messages dropped from the queue from which on the loss of most is told."""
 SOURCES_BOUND = 4096
@@ -97,7 +95,7 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, _Source] = {}
         self._gaps = 0
-        self._has_told_loss = False
+        self._has_told_loss = self._has_told_full = False
         self._deadline: SilenceTimer | None = None
         self._wake: Callable[[], None] = _nothing
         """What a message has called when the subscription is not paused."""
@@ -109,11 +107,10 @@ class TopicSubscription(Endpoint, Generic[M]):
     def _open(self, key: str) -> None:
         context = self.host.context
         self._read = context.session.read
-        bound = KEEP_ALL_BOUND if self.qos.history is History.KEEP_ALL else self.qos.depth
         if self._callback is None:
-            self._inbox = self._new_inbox(bound)
+            self._inbox = self._new_inbox()
         else:
-            self._inbox = Inbox(context.session.bell, bound, _nothing)
+            self._inbox = open_inbox(self.qos, context.session.bell, _nothing)
             tell = (self._invoke, self._finished, self.host.full_name)
             spec = RunnerSpec(self._label, *tell, "subscription", self._refused, lambda: self.dropped)
             self.runner = self.host.runner(spec, self._inbox.items, self._group)
@@ -127,9 +124,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         if not self._ignore_local:
             context.handover.join(key, self)
 
-    def _new_inbox(self, bound: int) -> Inbox:
+    def _new_inbox(self) -> Inbox:
         """Where messages wait for those who iterate."""
-        return Inbox(self.host.context.session.bell, bound, self._arrived)
+        return open_inbox(self.qos, self.host.context.session.bell, self._arrived)
 
     def hand(self, handed: Handed) -> None:
         """Take a message of a publisher of this process."""
@@ -285,6 +282,16 @@ class TopicSubscription(Endpoint, Generic[M]):
         """Tell messages lost on the way from those that the full queue here dropped: both leave gaps."""
         self._gaps += missing
         dropped = self.dropped
+        if dropped and not self._has_told_full and isinstance(self._inbox, DeepInbox):
+            self._has_told_full = True
+            self.host.log.warning(
+                "%s: its queue was full, and dropped the oldest messages, %d so far: it holds %d messages and %d MB; "
+                "do less in the handler, give it a group of its own, or have less sent",
+                self._label,
+                dropped,
+                self._inbox.items.maxlen,
+                BYTES_BOUND >> 20,
+            )
         if not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
             self._has_told_loss = True
             self.host.log.warning(

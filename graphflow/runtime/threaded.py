@@ -23,7 +23,7 @@ from graphflow.runtime.publishers import TopicPublisher
 from graphflow.runtime.service_client import error_of, sequence_of
 from graphflow.runtime.service_events import Introspection, ServiceEvent, ServiceEvents
 from graphflow.runtime.subscriptions import TopicSubscription
-from graphflow.transport.base import Answer, Caller, Inbox, Request, Rings
+from graphflow.transport.base import Answer, Caller, Inbox, Request, Rings, open_inbox
 from graphflow.wire import attachment
 from graphflow.wire.attachment import MessageInfo
 from graphflow.wire.liveliness import Kind
@@ -86,8 +86,8 @@ class ThreadedSubscription(TopicSubscription[Any]):
         self._codec = _AS_IT_IS
         self._bell, self._ready = bell, ready
 
-    def _new_inbox(self, bound: int) -> Inbox:
-        return Inbox(self._bell, bound, self._ready)
+    def _new_inbox(self) -> Inbox:
+        return open_inbox(self.qos, self._bell, self._ready)
 
     @property
     def waiting(self) -> int:

@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from graphflow.qos import Qos
+from graphflow.qos import History, Qos
 from graphflow.system import is_portable
 
 if TYPE_CHECKING:
@@ -21,6 +21,14 @@ if TYPE_CHECKING:
 Payload = bytes | bytearray | memoryview
 EARLY = 0.1
 """Seconds after which the reports so far are passed on although others are missing."""
+
+
+KEEP_ALL_BOUND = 10_000
+"""Messages that a KEEP_ALL subscription holds before it counts losses."""
+DEEP = 100
+"""Messages of a queue from which on its bytes are bounded, too, and it holds none of the network's buffers."""
+BYTES_BOUND = 256 << 20
+"""Bytes of messages that wait in a deep queue."""
 
 
 class Closable(Protocol):
@@ -266,3 +274,46 @@ class Inbox:
             bell.rung.append(self)
             if not bell.pending:
                 bell.ring()
+
+
+class DeepInbox(Inbox):
+    """An inbox for so many messages that their bytes are bounded as well: by `BYTES_BOUND`.
+
+    The loop takes messages without telling, so what waits is counted only when so much has arrived that it may be too
+    much. Then a quarter goes at once: counting costs little per message also while the queue is full.
+    """
+
+    __slots__ = ("_at_most",)
+
+    def __init__(self, bell: Rings, depth: int, ready: Callable[[], None]) -> None:
+        super().__init__(bell, depth, ready)
+        self._at_most = 0
+        """Bytes that wait if nothing was taken since they were counted."""
+
+    def put(self, item: Any) -> None:
+        size = _size(item)
+        if self._at_most + size > BYTES_BOUND:
+            self._make_room()
+        self._at_most += size
+        super().put(item)
+
+    def _make_room(self) -> None:
+        waiting = sum(map(_size, tuple(self.items)))
+        while waiting > BYTES_BOUND * 3 // 4:
+            try:
+                waiting -= _size(self.items.popleft())
+            except IndexError:  # the loop has taken them meanwhile
+                break
+            self.dropped += 1
+        self._at_most = waiting
+
+
+def _size(item: Any) -> int:
+    """Bytes of an arrival's payload."""
+    return len(item.payload)
+
+
+def open_inbox(qos: Qos, bell: Rings, ready: Callable[[], None]) -> Inbox:
+    """The queue of a subscription."""
+    bound = KEEP_ALL_BOUND if qos.history is History.KEEP_ALL else qos.depth
+    return DeepInbox(bell, bound, ready) if bound > DEEP else Inbox(bell, bound, ready)

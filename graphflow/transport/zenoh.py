@@ -25,8 +25,8 @@ import zenoh
 from zenoh.handlers import Callback
 
 from graphflow.domain import rendezvous_endpoint
-from graphflow.qos import Durability, History, Qos, Reliability
-from graphflow.transport.base import EARLY, Answer, Bell, Inbox, Payload
+from graphflow.qos import Durability, Qos, Reliability
+from graphflow.transport.base import EARLY, Answer, Bell, DeepInbox, Inbox, Payload
 from graphflow.transport.config import (
     ANSWERING,
     QUERY_LIMIT_MS,
@@ -45,8 +45,6 @@ QUESTIONS_BOUND = 256
 """Questions to a process that wait to be taken."""
 PAUSE = 0.002
 """Seconds from one question to the next."""
-DEEP = 100
-"""Depth of a queue from which on what it holds is copied out of the buffers of Zenoh."""
 logger = logging.getLogger("graphflow.transport")
 
 ASK_AGAIN = (0.5, 2.0)
@@ -320,8 +318,7 @@ class ZenohSession:
     ) -> _Declared:
         origin = zenoh.Locality.REMOTE if ignore_local else zenoh.Locality.ANY
         if qos.durability is Durability.VOLATILE:
-            is_deep = qos.history is History.KEEP_ALL or qos.depth > DEEP
-            put = _copying(inbox) if is_deep else inbox.put
+            put = _copying(inbox) if isinstance(inbox, DeepInbox) else inbox.put
             # Answers come directly, and so would overtake what waits for the subscription's own thread.
             handler = Callback(put, indirect=False) if in_order else put
             return _Declared(self.raw.declare_subscriber(key, handler, allowed_origin=origin))

@@ -21,9 +21,9 @@ from graphflow.executor.runner import BURST
 from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.qos import Durability, History
-from graphflow.runtime import subscriptions
 from graphflow.runtime.subscriptions import TopicSubscription
 from graphflow.testing import Graph
+from graphflow.transport import base
 from tests.runtime.cast import Log, Speaker, nothing
 
 
@@ -259,7 +259,7 @@ async def test_a_busy_handler_drops_the_oldest_and_counts(graph: Graph) -> None:
 
 async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """KEEP_ALL is not without end: beyond its bound messages are lost and counted."""
-    monkeypatch.setattr(subscriptions, "KEEP_ALL_BOUND", 50)
+    monkeypatch.setattr(base, "KEEP_ALL_BOUND", 50)
     node = Node("n")
     subscribed = node.create_subscription(Int32, "x", None, Qos(depth=1, history=History.KEEP_ALL))
     await graph.start(node)
@@ -269,6 +269,35 @@ async def test_keep_all_keeps_up_to_its_bound(graph: Graph, monkeypatch: pytest.
     await graph.settle()
 
     assert (subscribed.received, subscribed.dropped) == (60, 10)
+
+
+async def test_a_deep_queue_that_is_full_is_told(
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Once, when its bytes are too many: those of messages from elsewhere, and of the same process."""
+    monkeypatch.setattr(base, "BYTES_BOUND", 10_000)
+    node, gate = Node("n"), asyncio.Event()
+
+    async def slow(message: String) -> None:
+        await gate.wait()
+
+    subscribed = node.create_subscription(String, "x", slow, Qos(history=History.KEEP_ALL))
+    own = node.create_publisher(String, "x")
+    await graph.start(node)
+    publisher = graph.publisher(String, "/x")
+    for _ in range(20):
+        publisher.publish(String(data="x" * 900))
+        own.publish(String(data="x" * 900))
+        await graph.settle()
+    waiting = subscribed.statistics()["waiting"]
+    gate.set()
+    await graph.settle()
+
+    assert waiting <= 11
+    assert subscribed.received == 40
+    assert subscribed.dropped == 40 - waiting - 1
+    [record] = [r for r in caplog.records if "its queue was full" in r.getMessage()]
+    assert "it holds 10000 messages and 256 MB" in record.getMessage()
 
 
 def raw_sender(graph: Graph, receiver: TopicSubscription[Any]) -> Callable[[bytes, bytes], None]:

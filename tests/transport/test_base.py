@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from typing import NamedTuple
+
+import pytest
 
 from graphflow.testing.clock import settle
-from graphflow.transport.base import Bell, Inbox
+from graphflow.transport import base
+from graphflow.transport.base import Bell, DeepInbox, Inbox
 
 
 async def test_a_burst_rings_once(graphflow_runner: asyncio.Runner) -> None:
@@ -142,3 +146,28 @@ async def test_a_closed_bell_is_silent(graphflow_runner: asyncio.Runner) -> None
         await settle()
 
         assert calls == []
+
+
+class Arrival(NamedTuple):
+    payload: bytes
+
+
+async def test_a_deep_inbox_is_bounded_by_its_bytes(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The oldest go, a quarter at once; what the loop takes in time is never counted as waiting."""
+    monkeypatch.setattr(base, "BYTES_BOUND", 1000)
+    inbox = DeepInbox(Bell(asyncio.get_running_loop(), threads=False), 500, lambda: None)
+    for n in range(200):
+        inbox.put(Arrival(bytes([n]) * 100))
+        assert sum(len(item.payload) for item in inbox.items) <= 1000
+    assert inbox.items[-1].payload == bytes([199]) * 100
+    assert inbox.dropped == 200 - len(inbox.items)
+    assert len(inbox.items) >= 7
+
+    inbox.items.clear()
+    dropped = inbox.dropped
+    for _ in range(200):
+        inbox.put(Arrival(bytes(100)))
+        inbox.items.popleft()
+    assert inbox.dropped == dropped
