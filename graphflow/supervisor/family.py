@@ -4,7 +4,7 @@ A process whose parent ends goes to the nearest ancestor that has asked for it b
 supervisor and the preload process all have: so whatever a node leaves behind, in its session or in one of its own,
 stays below each of them that lives. If all three are killed at one moment, each worker ends its own (`orphaned`).
 
-Source: prctl(2), PR_SET_CHILD_SUBREAPER and PR_SET_NAME; proc_pid_stat(5).
+Source: prctl(2), PR_SET_CHILD_SUBREAPER and PR_SET_NAME; proc_pid_stat(5), state, ppid, arg_start and arg_end.
 """
 
 from __future__ import annotations
@@ -30,9 +30,28 @@ def adopt_orphans() -> None:
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
-def name_process(name: str) -> None:
-    """Have `top`, `pstree` and `ps -o comm` call this process so, in 15 characters; what it forks is called so, too."""
+def name_process(name: str, title: str) -> None:
+    """Name this process, and what it forks, for those who list processes.
+
+    Args:
+        name: For `top`, `pstree` and `ps -o comm`, which show 15 characters.
+        title: For `ps aux` and `htop`, in place of the command line: as much as that has room for.
+    """
     _prctl(_PR_SET_NAME, name.encode()[:15])
+    if sys.platform == "linux":
+        import ctypes
+
+        start, end = _arguments()
+        if 0 < start < end:  # systems that imitate Linux may not tell
+            text = f"graphflow: {title}".encode()[: end - start - 1]
+            ctypes.memmove(start, text.ljust(end - start, b"\0"), end - start)
+
+
+def _arguments() -> tuple[int, int]:
+    """Where the command line of this process stands in its memory."""
+    with open("/proc/self/stat", "rb") as file:
+        fields = file.read().rpartition(b")")[2].split()  # from the third on
+    return int(fields[45]), int(fields[46])
 
 
 def _prctl(option: int, value: int | bytes) -> None:

@@ -33,7 +33,7 @@ def guard(supervise: Callable[[], int], note: int, descriptors: tuple[int, ...])
         descriptors: What only the supervisor needs.
     """
     family.adopt_orphans()
-    family.name_process("gf-guardian")
+    family.name_process("gf-guardian", "guardian")
     pid = os.fork()
     if pid == 0:
         code = 1

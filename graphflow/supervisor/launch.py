@@ -211,7 +211,7 @@ class _Launch:
         for name in ("SIGINT", "SIGHUP"):
             if hasattr(signal, name):
                 signal.signal(getattr(signal, name), signal.SIG_IGN)
-        family.name_process("gf-supervisor")
+        family.name_process("gf-supervisor", f"supervisor of {self._file}")
         family.adopt_orphans()  # the nodes, should the preload process end
         starter = None
         try:

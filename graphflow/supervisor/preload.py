@@ -105,7 +105,7 @@ class _Preload:
         """Serve requests until the supervisor closes its end."""
         from graphflow.supervisor.worker import STOP_SIGNALS
 
-        family.name_process("gf-preload")
+        family.name_process("gf-preload", "preload process")
         family.adopt_orphans()
         # The command's terminal, or the pipe it writes to, must not be kept open by a graph that goes on.
         self._speak_to(os.devnull)

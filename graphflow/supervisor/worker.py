@@ -214,7 +214,7 @@ def main(job: dict[str, Any], report: Reporter) -> None:
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
     faulthandler.enable(2)
-    family.name_process(job["process"].rpartition("/")[2])
+    family.name_process(job["process"].rpartition("/")[2], " ".join(node["name"] for node in job["nodes"]))
     if "log" in job:
         logfile.write_to(job["log"], lambda why: report.tell(event="log_lost", process=job["process"], why=why))
     if hasattr(signal, "SIGUSR2"):

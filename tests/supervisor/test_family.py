@@ -92,14 +92,22 @@ def test_what_tells_whose_a_process_is(ancestor: subprocess.Popen[str]) -> None:
 
 
 def test_the_name_of_a_process() -> None:
-    """It is cut where the system's room for it ends."""
+    """It is cut where the system's room for it ends, and so is its title; the environment stays as it is."""
     code = """
+import sys
 from graphflow.supervisor import family
-family.name_process("a_name_that_is_too_long")
-print(open("/proc/self/comm").read(), end="")
+family.name_process("a_name_that_is_too_long", sys.argv[1])
+for what in ("comm", "cmdline", "environ"):
+    print(open(f"/proc/self/{what}").read().rstrip("\\n").replace(chr(0), "|"))
 """
-    named = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
-    assert named.stdout == "a_name_that_is_\n"
+    for title, shown in (("/arm/left", "graphflow: /arm/left"), ("x" * 1000, "graphflow: xxx")):
+        command = [sys.executable, "-c", code, title]
+        named = subprocess.run(command, capture_output=True, text=True, timeout=20, env={"COLOUR": "red"})
+        comm, cmdline, environ, _ = named.stdout.split("\n")
+        assert comm == "a_name_that_is_"
+        assert cmdline.rstrip("|").startswith(shown)
+        assert len(cmdline) == sum(len(word) + 1 for word in command)
+        assert environ.startswith("COLOUR=red|")
 
 
 def test_the_state_of_a_process(ancestor: subprocess.Popen[str]) -> None:

@@ -38,7 +38,8 @@ def test_fresh_interpreter_for_variables_that_need_one(machine: Machine, project
     text = "nodes:\n  /a: {class: nodes.lab:Good, env: {PYTHONHASHSEED: 7, COLOUR: blue}}\n"
     machine.run("up", "-d", write(project, text), cwd=project)
     pid = rows(machine)["/a"]["pid"]
-    assert b"graphflow.supervisor.worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    assert b"PYTHONHASHSEED=7" in Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+    assert Path(f"/proc/{pid}/cmdline").read_bytes().rstrip(b"\0") == b"graphflow: /a"
     assert "blue" in machine.look("service", "call", "/a/ask", "std_srvs/srv/Trigger")
     machine.look("down")
     nothing_is_left(machine, [pid])
