@@ -263,7 +263,8 @@ class Search:
         here = {a.serves for a in graph.activities.values()} | {c for q in graph.queues.values() for c in q.calls}
         opening = {service for queue in graph.queues.values() for service in queue.opens}
         wanted = [part.service for part in parts_of(activity.wait) if isinstance(part, Opening)]
-        return any(call.id not in here for call in calls_of(activity.wait)) or not opening.issuperset(wanted)
+        calls = calls_of(activity.wait)
+        return any(c.id not in here or c.servers > 1 for c in calls) or not opening.issuperset(wanted)
 
     # other processes
 

@@ -352,7 +352,7 @@ class _Look:
             return self._closed_world(way, None) if asking is None else self._condition(asking, way)
         if future in ledger.calls:
             call = ledger.calls[future]
-            return Call(call.id, call.service) if self._servers[call.service] < 2 else FREE  # another may answer
+            return Call(call.id, call.service, max(1, self._servers[call.service]))
         if future in ledger.openings:
             service = ledger.openings[future].service
             return FREE if self._servers[service] else Opening(service)  # it is there, and will be reached

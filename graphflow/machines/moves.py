@@ -42,7 +42,7 @@ def _kept_out(deadlock: Deadlock, graph: WaitGraph) -> Iterator[list[QueueView]]
         group = graph.groups.get(edge.group)
         if edge.loop or group is None or not group.name or group.sort:
             continue
-        queues = [queue for queue in queues_of(edge, graph) if not queue.label.startswith("reply ")]
+        queues = [queue for queue in queues_of(edge, graph) if not queue.has_answers]
         # One that holds a slot itself, since it waits for itself in the end, would wait for its own run there, too.
         queues = [queue for queue in queues if (queue.node, queue.handler) not in holders]
         if queues:

@@ -48,15 +48,18 @@ class Index:
         self.graph = graph
         self.holders: dict[str, list[str]] = {}
         """Activities by the group whose slot they hold."""
-        self.serving: dict[str, str] = {}
+        self.serving: dict[str, list[str]] = {}
         """Activities by the call that they answer."""
         for activity in graph.activities.values():
             for group in activity.holds:
                 self.holders.setdefault(group, []).append(activity.id)
             if activity.serves:
-                self.serving[activity.serves] = activity.id
-        self.queued = {call: queue for queue in graph.queues.values() for call in queue.calls}
+                self.serving.setdefault(activity.serves, []).append(activity.id)
+        self.queued: dict[str, list[QueueView]] = {}
         """Queues by the calls that wait in them."""
+        for queue in graph.queues.values():
+            for call in queue.calls:
+                self.queued.setdefault(call, []).append(queue)
         self.opening: dict[str, list[QueueView]] = {}
         """Queues of handlers that may not run yet, by the service that there will be when they may."""
         for queue in graph.queues.values():
@@ -85,10 +88,12 @@ class Index:
     def lacking_for(self, condition: Condition, dead: Dead) -> Lacking:
         """What keeps a condition from being fulfilled."""
         match condition:
-            case Call(id=call):
-                if call in self.serving:
-                    return self._of(self.serving[call], dead)
-                return self.lacking_to_run(self.queued[call], dead) if call in self.queued else ()
+            case Call(id=call, servers=servers):
+                serving, queued = self.ways_of(call)
+                if len(serving) + len(queued) < servers and not any(queue.has_answers for queue in queued):
+                    return ()  # a server that the snapshot does not show may answer
+                ways = [self.lacking_to_run(queue, dead) for queue in queued]
+                return _one_of([*(self._of(one, dead) for one in serving), *ways])
             case Slot(group=group):
                 return (group,) if group in dead.groups else ()
             case Opening(service=service):
@@ -105,6 +110,12 @@ class Index:
                 return _one_of(self.lacking_for(c, dead) for c in conditions)
             case _:
                 return ()
+
+    def ways_of(self, call: str) -> tuple[list[str], list[QueueView]]:
+        """The activities of which one must end, and the queues of which one must be handled, for a call to return."""
+        queued = self.queued.get(call, [])
+        answers = [queue for queue in queued if queue.has_answers]
+        return ([], answers) if answers else (self.serving.get(call, []), queued)
 
     def lacking_to_run(self, queue: QueueView, dead: Dead) -> Lacking:
         """What keeps the next run of a handler from beginning."""
@@ -133,6 +144,7 @@ def _each_of(ways: Iterable[Lacking]) -> Lacking:
 
 
 def _one_of(ways: Iterable[Lacking]) -> Lacking:
+    """What keeps all of several ways barred; empty if there is none, or one is open."""
     things: list[str] = []
     for way in ways:
         if not way:

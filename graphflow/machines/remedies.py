@@ -76,7 +76,7 @@ def _changes(edge: Edge, graph: WaitGraph) -> Iterator[str]:
         yield from _apart_from_the_lock(edge.via.what, graph.activities[edge.to])
     if queue is None or group is None:
         return
-    if queue.label.startswith("reply "):
+    if queue.has_answers:
         yield _text("let replies through:", f"declare the client of {queue.handler} without group=")
     if group.name:
         if group.limit is not None and not isinstance(edge.via, SetBy):

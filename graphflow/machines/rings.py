@@ -172,10 +172,10 @@ class _Waits:
             return
         match condition:
             case Call(id=call):
-                if call in index.serving:
-                    yield Edge(index.serving[call], condition)
-                else:
-                    yield from self._of_queue(index.queued[call], condition)
+                serving, queued = index.ways_of(call)
+                yield from (Edge(one, condition) for one in serving)
+                for queue in queued:
+                    yield from self._of_queue(queue, condition)
             case Slot(group=group):
                 yield Edge(group, condition, group=group)
             case Opening(service=service):

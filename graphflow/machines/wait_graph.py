@@ -23,6 +23,8 @@ class Call:
     id: str
     name: str
     """The name of the service or action."""
+    servers: int = 1
+    """How many servers have the request: each may answer it."""
 
 
 def call_id(gid: bytes, sequence: int) -> str:
@@ -199,9 +201,14 @@ class QueueView:
         return method_of(self.label)
 
     @property
+    def has_answers(self) -> bool:
+        """Whether its items are the answers to calls."""
+        return self.label.startswith("reply ")
+
+    @property
     def work(self) -> str:
         """What its items have done, in words: the method that is run, or what follows an answer."""
-        return f"what follows the answer of {self.handler}" if self.label.startswith("reply ") else self.handler
+        return f"what follows the answer of {self.handler}" if self.has_answers else self.handler
 
 
 @dataclass(frozen=True, slots=True)

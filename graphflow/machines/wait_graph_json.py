@@ -28,7 +28,7 @@ from graphflow.machines.wait_graph import (
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
-VERSION = 6
+VERSION = 7
 DEEPEST = 50
 """How deep conditions may be nested: what comes from the network must not exhaust the stack."""
 
@@ -66,8 +66,8 @@ def _condition(condition: Condition, depth: int = 0) -> Json:
     match condition:
         case All() | AnyOf() if depth >= DEEPEST:
             return None  # the snapshot only says less then
-        case Call(id=call, name=name):
-            return ["call", call, name]
+        case Call(id=call, name=name, servers=servers):
+            return ["call", call, name, servers]
         case Slot(group=group, ticket=ticket):
             return ["slot", group, ticket]
         case Opening(service=service):
@@ -173,8 +173,8 @@ def _read_condition(data: object, depth: int) -> Condition:
     match data:
         case None:
             return FREE
-        case ["call", call, name]:
-            return Call(_text(call), _text(name))
+        case ["call", call, name, servers]:
+            return Call(_text(call), _text(name), _int(servers))
         case ["slot", group, ticket]:
             return Slot(_text(group), _int(ticket))
         case ["open", service]:

@@ -70,6 +70,32 @@ def test_a_call_of_another_group() -> None:
     )
 
 
+ASKED = replace(call("add"), servers=2)
+KEPT_OUT = queue("add", "g", "add")
+
+
+@pytest.mark.parametrize(
+    ("servers", "is_dead"),
+    [
+        ((KEPT_OUT, queue("other", "g", "add")), True),
+        ((KEPT_OUT, run("server", call("back"), serves="add"), queue("back", "g", "back")), True),
+        ((KEPT_OUT,), False),
+        ((KEPT_OUT, queue("other", "h", "add"), group("h")), False),
+        ((KEPT_OUT, run("server", serves="add")), False),
+        ((run("server", serves="add"), replace(KEPT_OUT, label="reply /add")), True),
+    ],
+    ids=["both kept out", "one calls back", "one is not seen", "one is free", "one works", "the answer is kept out"],
+)
+def test_a_call_that_two_servers_have(
+    servers: Sequence[ActivityView | GroupView | QueueView], *, is_dead: bool
+) -> None:
+    """Each may answer; an answer that has come must be let in."""
+    seen = picture(run("tick", ASKED, holds="g"), group("g"), *servers)
+
+    assert ("tick" in deadlocked(seen)) is is_dead
+    assert bool(explained(seen, deadlocked(seen))) is is_dead
+
+
 @pytest.mark.parametrize("length", [2, 3])
 def test_nodes_that_call_each_other(length: int) -> None:
     """Two nodes that cross, and three in a circle, are dead; the ring goes once round."""

@@ -43,7 +43,7 @@ def joint(conditions: st.SearchStrategy[Condition]) -> st.SearchStrategy[Conditi
 
 CONDITIONS: st.SearchStrategy[Condition] = st.recursive(
     st.just(FREE)
-    | st.builds(Call, TEXT, TEXT)
+    | st.builds(Call, TEXT, TEXT, WHOLE)
     | st.builds(Slot, TEXT, WHOLE)
     | st.builds(Opening, TEXT)
     | st.builds(Join, TEXT)
@@ -195,7 +195,7 @@ def test_conditions_that_are_wrong(wait: object) -> None:
 
 
 def nested(levels: int) -> list[Any]:
-    data: list[Any] = ["call", "c", "/add"]
+    data: list[Any] = ["call", "c", "/add", 1]
     for level in range(levels):
         data = ["any" if level % 2 else "all", [data]]
     return data

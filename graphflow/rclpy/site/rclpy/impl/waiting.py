@@ -412,10 +412,9 @@ class _Look:
         if not is_private(level) and may_be_ended(future, self._nodes, programs_files()):
             return FREE
         try:
-            call = Call(endpoint.call_id(sequence), endpoint.name)
+            return Call(endpoint.call_id(sequence), endpoint.name, max(1, self._servers[endpoint.name]))
         except ClosedError:
             return FREE
-        return call if self._servers[endpoint.name] < 2 else FREE  # another may answer
 
     @cached_property
     def _servers(self) -> Counter[str]:

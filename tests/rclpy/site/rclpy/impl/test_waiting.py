@@ -184,6 +184,19 @@ def test_of_two_servers_another_may_answer(
     thread.join(LIMIT)
 
 
+def test_both_servers_are_kept_out(start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture) -> None:
+    """Then no answer can come."""
+
+    class Twice(TwoServers):
+        def __init__(self) -> None:
+            super().__init__()
+            self.create_service(Trigger, "answer", self.answer)
+
+    start(Twice)
+    until(lambda: reports(caplog), "the report")
+    assert "which timer fire of /asker holds" in flat(reports(caplog)[0])
+
+
 def test_a_server_that_nobody_spins(caplog: pytest.LogCaptureFixture, network: object) -> None:
     """While a thread spins its client alone: that its own answers are taken does not help."""
     rclpy.init()
