@@ -10,6 +10,7 @@ from graphflow.machines.remedies import own_group, remedies, remedies_of
 from graphflow.machines.rings import Deadlock, Edge
 from graphflow.machines.wait_graph import (
     ActivityView,
+    AnyOf,
     Call,
     Free,
     GroupView,
@@ -174,6 +175,9 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
         return [f"{who} waits for {wanted(edge, graph)}, which opens when on_start has returned"]
     if not isinstance(edge.via, SetBy):
         return [f"{who} waits for itself"]
+    if beside := deadlock.beside.get(name):
+        what = _all_wanted(graph.activities[name], [edge, *beside], graph)
+        return [f"{who} waits for {what},", "and what could end that is kept out"]
     what = edge.via.what
     if edge.via.is_held:
         return [f"{who} waits for {what}, which it holds itself"]
@@ -192,20 +196,29 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
 
 def _ring(deadlock: Deadlock, graph: WaitGraph) -> Iterator[str]:
     for i, (name, edge) in enumerate(zip(deadlock.ring, deadlock.edges, strict=True)):
-        yield from _member(graph.activities[name], edge, graph)
+        beside = deadlock.beside.get(name, ())
+        yield from _member(graph.activities[name], edge, graph, beside)
         back = " (back to the first)" if i == len(deadlock.ring) - 1 and len(deadlock.ring) > 1 else ""
-        clauses = _reason(graph.activities[name], edge, graph)
+        clauses = _reason(graph.activities[name], edge, graph, is_alone=not beside)
         yield from filled("    -> ", [*clauses[:-1], clauses[-1] + back])
+        for other in beside:
+            yield from filled("    -> ", _reason(graph.activities[name], other, graph, is_alone=False))
 
 
-def _member(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
+def _member(activity: ActivityView, edge: Edge, graph: WaitGraph, beside: Sequence[Edge] = ()) -> list[str]:
     group = group_of(activity, graph)
     deeds = [_held(activity, graph)] if group else []
     deeds += ["blocks the event loop"] if edge.loop and edge.to == activity.id else []
     via = edge if not (isinstance(activity.wait, Call) and isinstance(edge.via, Call)) else Edge("", activity.wait)
-    waits = f"waits for {wanted(via, graph)}"
+    waits = f"waits for {_all_wanted(activity, [via, *beside], graph)}"
     doing = [f"{title(activity)} {', '.join(deeds)}", f"and {waits}"] if deeds else [f"{title(activity)} {waits}"]
     return filled("  ", [*doing, *_where(activity)])
+
+
+def _all_wanted(activity: ActivityView, edges: Sequence[Edge], graph: WaitGraph) -> str:
+    """What an activity waits for, of several things all or any."""
+    joint = " or " if isinstance(activity.wait, AnyOf) else " and "
+    return joint.join(dict.fromkeys(wanted(edge, graph) for edge in edges))
 
 
 def _held(activity: ActivityView, graph: WaitGraph) -> str:
@@ -218,15 +231,19 @@ def _held(activity: ActivityView, graph: WaitGraph) -> str:
     return f"holds {' and '.join(held)}" if held else "runs"
 
 
-def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
-    """Why an activity waits for another, in clauses."""
+def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: bool = True) -> list[str]:
+    """Why an activity waits for another, in clauses.
+
+    Args:
+        is_alone: Whether that is all that it waits for.
+    """
     other = graph.activities[edge.to]
     if edge.loop:
         return ["nothing can arrive while the event loop is blocked", f"by {title(other)}"]
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
         return [f"which {title(other)} holds"]
     if not edge.group:
-        return [f"which {title(other)} must give"]
+        return [f"{'which' if is_alone else wanted(edge, graph)} {title(other)} must give"]
     group = graph.groups[edge.group]
     queues = [queue for queue in queues_of(edge, graph) if edge.group in queue.needs]
     # Of several runs of one handler, only the others could do it.
@@ -240,7 +257,7 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph) -> list[str]:
     if len(queues) > 1:
         deed, needs = deed.removesuffix("s"), "need"
     waiting, dropped = sum(q.waiting for q in queues), sum(q.dropped for q in queues)
-    clauses = _needs(group, [other], f"{deed} it and {needs}")
+    clauses = _needs(group, [other], f"{deed} {'it' if is_alone else edge.via.what} and {needs}")
     if group.sort:
         return [who, *clauses]
     return [who, *clauses[:-1], f"{clauses[-1]};", f"{waiting} queued, {dropped} dropped meanwhile"]

@@ -38,15 +38,25 @@ def moves(deadlock: Deadlock, graph: WaitGraph) -> list[Move]:
 def _kept_out(deadlock: Deadlock, graph: WaitGraph) -> Iterator[list[QueueView]]:
     """For each member of the ring that waits for a named group: the queues that would let it go on."""
     holders = {(graph.activities[name].node, graph.activities[name].handler) for name in deadlock.ring}
-    for edge in deadlock.edges:
-        group = graph.groups.get(edge.group)
-        if edge.loop or group is None or not group.name or group.sort:
+    for name, edge in zip(deadlock.ring, deadlock.edges, strict=True):
+        ways = [_movable(each, holders, graph) for each in (edge, *deadlock.beside.get(name, ()))]
+        if not all(ways):
             continue
-        queues = [queue for queue in queues_of(edge, graph) if not queue.has_answers]
-        # One that holds a slot itself, since it waits for itself in the end, would wait for its own run there, too.
-        queues = [queue for queue in queues if (queue.node, queue.handler) not in holders]
-        if queues:
-            yield queues
+        by_node: dict[str, list[QueueView]] = {}
+        for queue in (queue for way in ways for queue in way):
+            by_node.setdefault(queue.node, []).append(queue)
+        if len(by_node) == 1:
+            yield from by_node.values()
+
+
+def _movable(edge: Edge, holders: set[tuple[str, str]], graph: WaitGraph) -> list[QueueView]:
+    """The queues that would let a member of a ring go on, if what they wait for is a named group."""
+    group = graph.groups.get(edge.group)
+    if edge.loop or group is None or not group.name or group.sort:
+        return []
+    queues = [queue for queue in queues_of(edge, graph) if not queue.has_answers]
+    # One that holds a slot itself, since it waits for itself in the end, would wait for its own run there, too.
+    return [queue for queue in queues if (queue.node, queue.handler) not in holders]
 
 
 def queues_of(edge: Edge, graph: WaitGraph) -> list[QueueView]:

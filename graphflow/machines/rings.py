@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
 
@@ -57,6 +57,8 @@ class Deadlock:
     """Whether the deadlock is certain only if the source code shows everything that sets what a member waits for."""
     is_partial: bool = False
     """Whether the failure of something alive, one of several things waited for, could still end the deadlock."""
+    beside: Mapping[str, tuple[Edge, ...]] = field(default_factory=dict)
+    """What a member waits for as well, with the same `await`, and cannot get either: by member."""
 
 
 def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
@@ -73,13 +75,15 @@ def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:
     found: list[tuple[float, Deadlock]] = []
     for stuck in filter(None, knots):  # of the others, each only waits for another
         certain = reduced(guess_free, stuck)
-        ring = _Waits(guess_free, certain).ring() if certain else _Waits(index, stuck).ring()
+        inner = _Waits(guess_free, certain) if certain else _Waits(index, stuck)
+        ring = inner.ring()
         members = {name for name, _ in ring}
         behind = sorted(waits.behind(stuck, alone) - members)
         victims = tuple(name for name in behind if not graph.activities[name].is_inner)
         names, edges = tuple(name for name, _ in ring), tuple(edge for _, edge in ring)
         age = max(graph.activities[name].age for name in members)
-        found.append((age, Deadlock(names, edges, victims, not certain, not members <= firm)))
+        beside = {name: others for name, edge in ring if (others := inner.beside(name, edge))}
+        found.append((age, Deadlock(names, edges, victims, not certain, not members <= firm, beside)))
     return [deadlock for _, deadlock in sorted(found, key=lambda pair: (-pair[0], pair[1].ring))]
 
 
@@ -128,6 +132,12 @@ class _Waits:
             found.update(new)
             todo += new
         return found & self.dead.activities
+
+    def beside(self, name: str, chosen: Edge) -> tuple[Edge, ...]:
+        """Why an activity cannot proceed besides one reason: an edge for each other thing that it waits for."""
+        others = {edge.via: edge for edge in self._edges[name] if edge.via != chosen.via and not edge.loop}
+        holders = self._index.holders
+        return tuple(replace(e, to=min(holders[e.group])) if e.group else e for e in others.values())
 
     def ring(self) -> list[tuple[str, Edge]]:
         """A ring through some of them, the shortest through one, beginning with the one that has waited longest.

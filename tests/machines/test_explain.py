@@ -15,6 +15,7 @@ from graphflow.machines.rings import Deadlock, Edge, explained
 from graphflow.machines.wait_graph import (
     FREE,
     ActivityView,
+    All,
     AnyOf,
     Call,
     Condition,
@@ -92,6 +93,23 @@ def test_a_ring_and_who_is_behind_it() -> None:
     assert lines[2] == "    -> which task run of /arm must give"
     assert lines[4] == "    -> which timer tick of /arm must give (back to the first)"
     assert lines[5] == "  behind them: timer look of /arm   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"
+
+
+@pytest.mark.parametrize(("kind", "word"), [(All, "and"), (AnyOf, "or")])
+def test_several_things_that_one_waits_for(kind: type[All | AnyOf], word: str) -> None:
+    """All are named, each with what keeps it out, and one change covers them."""
+    left, right = SetBy("self.left", ("l",)), SetBy("self.right", ("r",))
+    tick = replace(TICK, wait=kind((left, right)), left=None)
+    queues = [replace(ADD, id=name[0], label=f"timer on_{name}", calls=()) for name in ("left", "right")]
+
+    lines = report(tick, MOTION, *queues)
+
+    both = f"self.left {word} self.right"
+    assert lines[0] == f"LIKELY DEADLOCK: timer tick of /arm waits for {both}, and what could end that is kept out"
+    assert f"holds group 'motion' and waits for {both}" in lines[1]
+    for line, side in zip(lines[2:4], ("left", "right"), strict=True):
+        assert line.startswith(f"    -> timer on_{side} of /arm sets self.{side} and needs group 'motion' of /arm,")
+    assert "  give on_left and on_right a group of their own, in the graph file under nodes:" in lines
 
 
 @pytest.mark.parametrize(

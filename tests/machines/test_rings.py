@@ -180,8 +180,19 @@ def test_a_ring_behind_another(ages: tuple[float, float]) -> None:
     ahead = run("stuck", call("stuck_call"), holds="stuck_group", age=ages[1])
     seen = picture(*BACKGROUND[1:], ahead, behind, group("g"), queue("s", "g", "c"))
 
-    found = {d.ring: d.victims for d in explained(seen, deadlocked(seen))}
-    assert found == {("behind",): (), ("stuck",): ("waits_on_stuck",)}
+    found = {d.ring: d for d in explained(seen, deadlocked(seen))}
+    assert {ring: d.victims for ring, d in found.items()} == {("behind",): (), ("stuck",): ("waits_on_stuck",)}
+    assert not any(d.beside for d in found.values())
+
+
+def test_what_one_waits_for_as_well() -> None:
+    """Each other part that is dead has an edge to what holds it."""
+    me = run("me", All((call("c"), call("d"), LIVE)), holds="g")
+    seen = picture(me, group("g"), queue("s", "g", "c"), queue("t", "g", "d"))
+
+    [found] = explained(seen, deadlocked(seen))
+    ways = {edge.via: edge for edge in (*found.edges, *found.beside["me"])}
+    assert ways == {call("c"): Edge("me", call("c"), "s", "g"), call("d"): Edge("me", call("d"), "t", "g")}
 
 
 def test_inner_runs_are_no_victims() -> None:
