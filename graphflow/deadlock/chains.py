@@ -55,6 +55,19 @@ class Chains:
         waits = all(run.number in hops and self._awaits(run, hops[run.number]) for run in holders)
         return holders if waits and len(holders) >= limit else []
 
+    def between(self, holders: list[Run], asked: bytes) -> tuple[list[int], int]:
+        """What a request has come through on its way from those that wait for it.
+
+        Returns:
+            The numbers of this process's runs on that way, and how many runs there are of other processes.
+        """
+        numbers = {run.number for run in holders}
+        way = chain.hops(asked[attachment.SIZE :])
+        here = [hop.process == self._process for hop in way]
+        first = min((i for i, hop in enumerate(way) if here[i] and hop.run in numbers), default=0)
+        own = [hop.run for hop, is_own in zip(way, here, strict=True) if is_own and hop.run not in numbers]
+        return own, here[first:].count(False)
+
     def _awaits(self, run: Run, hop: chain.Hop) -> bool:
         """Whether a run still waits for the call that it was seen waiting for: it may have given up."""
         call = self._ledger.calls.get(waiter_of(run))

@@ -181,7 +181,9 @@ class Search:
         graph, zid = self.snapshot.take(), self._process.session.zid
         ids = [f"{zid}:{run.number}" for run in holders]
         found = [graph.activities[name] for name in ids if name in graph.activities]
-        text = hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph)
+        own, others = self._chains.between(holders, asked)
+        way = [graph.activities[name] for name in (f"{zid}:{number}" for number in own) if name in graph.activities]
+        text = hopeless(service, graph.queues[f"{zid}:q{runner.number}"], found, graph, way, others)
         times = self._count((service, *_lines(found)))
         return text if times == 1 else again(text.partition("\n")[0], times)
 

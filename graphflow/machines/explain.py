@@ -29,8 +29,20 @@ def explanation(deadlock: Deadlock, graph: WaitGraph) -> str:
     return "\n".join([*lines, *_any_of(remedies(deadlock, graph))])
 
 
-def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph: WaitGraph) -> str:
-    """Why a call to `service` can never be answered: all slots are held by activities that wait for it."""
+def hopeless(
+    service: str,
+    queue: QueueView,
+    holders: list[ActivityView],
+    graph: WaitGraph,
+    between: Sequence[ActivityView] = (),
+    others: int = 0,
+) -> str:
+    """Why a call to `service` can never be answered: all slots are held by activities that wait for it.
+
+    Args:
+        between: What serves the holders' calls, directly or for each other, and makes this one in the end.
+        others: How many of those there are in other processes, besides.
+    """
     [group] = [graph.groups[name] for name in queue.needs if graph.groups[name].name] or [graph.groups[queue.needs[0]]]
     if not holders:  # they have gone meanwhile
         return (
@@ -43,7 +55,11 @@ def hopeless(service: str, queue: QueueView, holders: list[ActivityView], graph:
     for holder in holders:
         lines += _member(holder, edge, graph)
         is_direct = isinstance(holder.wait, Call) and holder.wait.name in ("", service)
-        way = "" if is_direct else f"which calls {service} in the end, and "
+        way_to_it = between if holder is holders[-1] else ()
+        for server in way_to_it:
+            lines += [f"    -> which {title(server)} must give", *_member(server, Edge("", server.wait), graph)]
+        told = f", after {others} more callback{'s' * (others > 1)}" * bool(others)
+        way = "" if is_direct or (way_to_it and not others) else f"which calls {service} in the end{told}, and "
         lines += filled("    -> ", [f"{way}{queue.label} of {queue.node}", *_needs(group, [holder], "waits for")])
     return "\n".join([*lines, *_any_of(remedies_of(holders[0], edge, graph))])
 

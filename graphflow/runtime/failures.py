@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable
+from pathlib import PurePath
 from typing import NamedTuple
 
 from graphflow.deadlock.user_code import place_in, users_part
@@ -24,7 +25,7 @@ class ErrorBudget(NamedTuple):
 def report(log: logging.Logger, label: str, error: BaseException) -> None:
     """Log an error: graphflow's own as a sentence, any other with its traceback."""
     if isinstance(error, DeadlockError):
-        log.error("%s", error)  # which says what it is, and where
+        log.error("%s", _with_line(label, error))
     elif isinstance(error, GraphflowError):
         place = place_in(error)
         log.error("%s: %s%s", label, error, place and f" ({place})")
@@ -33,6 +34,13 @@ def report(log: logging.Logger, label: str, error: BaseException) -> None:
     else:
         trace = (type(error), error, users_part(error))
         log.error("%s: %s: %s", label, type(error).__name__, error, exc_info=trace)
+
+
+def _with_line(label: str, error: DeadlockError) -> str:
+    """What a deadlock is, and where; the line of a handler that only passes the error on is not in it yet."""
+    head, newline, rest = str(error).partition("\n")
+    place = PurePath(place_in(error)).name
+    return f"{head}; {label} waited in {place}{newline}{rest}" if place and f"{place} " not in rest else str(error)
 
 
 class Failures:

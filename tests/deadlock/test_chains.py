@@ -176,3 +176,15 @@ async def test_chains_that_are_not_true(graphflow_runner: asyncio.Runner, change
     told = b"noise" if change == "none" else chain.extended(b"", hop._replace(**{change: others[change]}))
 
     assert play.chains.holders(server, attachment.pack(1, 0, GID) + told) == []
+
+
+async def test_what_a_call_has_come_through(graphflow_runner: asyncio.Runner) -> None:
+    """The runs behind the one that holds the slot: those of this process by number, those of others counted."""
+    play = Play()
+    group = HandlerGroup(1)
+    caller, middle, server = play.caller(group), play.caller(kind="service"), play.server(group)
+    await begin(caller, Item(chain.extended(b"", chain.Hop(b"waits on", 1, GID, 9))))
+    await begin(middle, Item(chain.extended(play.carried[0], chain.Hop(b"elsewher", 3, GID, 4))))
+
+    [holder], [between] = play.chains.holders(server, play.asked()), middle.active
+    assert play.chains.between([holder], play.asked()) == ([between.number], 1)

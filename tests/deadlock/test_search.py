@@ -235,9 +235,10 @@ async def test_a_service_that_calls_its_caller_back(graph: Graph, caplog: Caplog
     assert str(error) == f"{head}; explained in the log of /b"
     await graph.clock.advance(5.0)
     [whole] = [r.getMessage() for r in caplog.records if r.levelname == "ERROR"]
-    assert whole.startswith(f"{head}\n  subscription ask of /a holds group 'work'")
+    line = at("stuck: Echo asks back").strip("( ").removesuffix(" in")
+    assert whole.startswith(f"{head}; on_forward waited in {line}\n  subscription ask of /a holds group 'work'")
     assert at("stuck: Echo asks") in whole
-    assert "-> which calls /a/answer in the end, and service answer of /a waits for group 'work'" in flat(whole)
+    assert "-> which calls /a/answer in the end, after 1 more callback, and service answer of /a" in flat(whole)
 
 
 async def test_a_service_that_calls_its_caller_back_is_reported(graph: Graph, caplog: Caplog) -> None:

@@ -423,6 +423,24 @@ def test_a_call_that_comes_back_by_others() -> None:
     assert lines[2].startswith("    -> which calls /last in the end, and service add of /arm waits for group 'motion'")
 
 
+@pytest.mark.parametrize(
+    ("others", "words"),
+    [(0, ""), (1, "which calls /last in the end, after 1 more callback, and "), (2, "after 2 more callbacks, and ")],
+)
+def test_the_way_of_a_call_that_comes_back(others: int, words: str) -> None:
+    """What this process knows of it has a line each; the rest is counted."""
+    server = replace(TICK, id="s", label="service add", holds=(), wait=Call("d", "/last"), place=Place("/b.py", 7))
+    lines = hopeless("/last", ADD, [TICK], picture(TICK, server, MOTION, ADD), [server], others).splitlines()
+
+    assert lines[2:4] == [
+        "    -> which service add of /arm must give",
+        "  service add of /arm waits for the response of service /last   (b.py:7 in tick, for 0.25 s, "
+        "times out in 7.8 s)",
+    ]
+    assert lines[4].startswith("    -> ")
+    assert f"{words}service add of /arm waits for group 'motion'" in lines[4]
+
+
 def test_a_deadlock_that_comes_again() -> None:
     """One line is enough."""
     assert again("LIKELY DEADLOCK: timer tick waits", 3) == "LIKELY DEADLOCK again (3 times so far): timer tick waits"

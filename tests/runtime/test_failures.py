@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from graphflow import ErrorBudget, Node, timer
-from graphflow.errors import TooManyErrors
+from graphflow.errors import DeadlockError, TooManyErrors
 from graphflow.interface import OnError
 from graphflow.runtime.core import core_of
 from graphflow.testing import Graph
@@ -95,3 +97,26 @@ async def test_an_error_about_a_handler_needs_no_traceback(graph: Graph, caplog:
     assert [(r.getMessage(), r.exc_info) for r in caplog.records] == [
         ("add: TypeError: the handler returned True", None)
     ]
+
+
+async def test_a_deadlock_that_comes_by(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """What only passes it on says its line, too; what is explained in the text does not say it again."""
+    texts = iter(
+        ["DEADLOCK: a waits for itself", "DEADLOCK: a waits for itself\n  b waits   (x.py:1 in b)\nThis ends it:"]
+    )
+
+    async def passing_on() -> None:
+        raise DeadlockError(next(texts))
+
+    node = Node("n")
+    node.create_timer(1.0, passing_on, on_error="log")
+    await graph.start(node)
+    await graph.clock.advance(2.0)
+
+    first, second = (r.getMessage() for r in caplog.records)
+    assert re.fullmatch(r"DEADLOCK: a waits for itself; passing_on waited in test_failures\.py:\d+", first)
+    assert re.fullmatch(r"DEADLOCK: a waits for itself; passing_on waited in \S+\n  b waits .*\nThis ends it:", second)
+    place = first.rpartition(" ")[2]
+    texts = iter([f"DEADLOCK: a waits for itself\n  b waits   ({place} in b)"])
+    await graph.clock.advance(1.0)
+    assert caplog.records[-1].getMessage() == f"DEADLOCK: a waits for itself\n  b waits   ({place} in b)"
