@@ -4,7 +4,7 @@ Nothing is done while nothing waits. A call, or work that finds no slot, arms a 
 so does the start of a task; what still waits then is looked at, and again at growing intervals. Deadlocks within a
 process show in one snapshot of it. For others all processes are asked twice, as `machines.reduction` explains.
 Every process that has a part in a deadlock finds it; the one with the lowest id reports it, and says when it is
-over. The process that finds it first makes that one look at once.
+over, and the others say where to read that. The process that finds it first makes that one look at once.
 """
 
 from __future__ import annotations
@@ -346,6 +346,9 @@ class Search:
         held = frozenset((a.id, a.wait) for a in core if a.process == mine)
         if held and first != mine and told not in self._foreign:
             self._foreign[told] = Foreign(first, who, processes, held)
+            own = " and ".join(f"{title(a)} ({a.line} in {a.function})" for a in core if a.process == mine)
+            there = next((a.node for a in core if a.process == first), "another process")
+            logger.warning("%s waits in a deadlock: the log of %s explains it, and says when it is over", own, there)
             if not self._is_watching:
                 self._is_watching = True
                 self._process.on_change(self._changed)

@@ -164,7 +164,7 @@ def ring_of(names: str, **options: Any) -> list[Peer]:
 async def test_a_ring_through_several_processes(
     graph: Graph, caplog: Caplog, names: str, policy: DeadlockPolicy
 ) -> None:
-    """All members find it, one reports it, and no call is ended: each might have been answered (rows 3, 6, 29)."""
+    """All members find it, one reports it, and the others say which: no call is ended (rows 3, 6, 29)."""
     graph.deadlock = policy
     peers = ring_of(names)
     await graph.start(*peers)
@@ -179,6 +179,15 @@ async def test_a_ring_through_several_processes(
         mine, other = peer.full_name, peer.other.name.removesuffix("/answer")
         assert f"subscription ask of {mine} holds group 'work' and waits for the response of service {other}/a" in text
         assert f"service answer of {other} waits for group 'work' of {other}, which subscription ask" in text
+    pointers = [r.getMessage() for r in caplog.records if "waits in a deadlock" in r.getMessage()]
+    [reporter] = {line.partition("the log of ")[2].partition(" explains")[0] for line in pointers}
+    line = at("stuck: Peer").strip("( ")
+    assert sorted(pointers) == sorted(
+        f"subscription ask of {peer.full_name} ({line} ask) waits in a deadlock: "
+        f"the log of {reporter} explains it, and says when it is over"
+        for peer in peers
+        if peer.full_name != reporter
+    )
     await graph.clock.advance(7.0)
     assert reports(caplog) == [report]
     assert all(peer.context.search.pulls > 1 and peer.outcomes == [] for peer in peers)
