@@ -169,6 +169,20 @@ def shielded(outer: Any) -> Any:
     return None
 
 
+def awaited_tasks(task: Any) -> Iterator[Any]:
+    """The tasks whose end a suspended task waits for, one of them or all."""
+    joint = (joint_wait(frame) for frame in frames_of(task))
+    todo = [waiter_of(task), *(future for wait in joint if wait is not None for future in wait.tasks)]
+    while todo:
+        future = todo.pop()
+        if hasattr(future, "get_coro"):
+            if not future.done():
+                yield future
+        elif future is not None:
+            together = gathered(future)
+            todo += [shielded(future)] if together is None else together.tasks
+
+
 def stands_for_others(future: Any) -> bool:
     """Whether a future ends as others do, which may have been made later: it is a task, or asyncio made it of some."""
     return hasattr(future, "get_coro") or gathered(future) is not None or shielded(future) is not None

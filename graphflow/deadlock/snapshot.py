@@ -11,7 +11,6 @@ import asyncio
 import queue
 import threading
 from collections import Counter
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -26,6 +25,7 @@ from graphflow.deadlock.protocols import Subject, Surroundings
 from graphflow.deadlock.source import Unknown
 from graphflow.deadlock.user_code import Pause, where
 from graphflow.deadlock.watchdog import Watchdog
+from graphflow.deadlock.ways import Subtask, Way, subtasks
 from graphflow.errors import DecodeError
 from graphflow.executor.activity import Activity
 from graphflow.executor.clock import ClockTimeout, WallClock
@@ -126,6 +126,8 @@ class _Look:
         """When the activity being looked at gives up waiting."""
         self._pause: Pause | None = None
         """Where the loop pauses in which it waits."""
+        self._inner: dict[str, tuple[Subject, Subtask]] = {}
+        """Tasks below activities that are inside a lock, by id."""
 
     @cached_property
     def _servers(self) -> Counter[str]:
@@ -155,6 +157,8 @@ class _Look:
             for task in list(node.tasks):
                 self._add_task(node, task)
             self._add_start(node)
+        while unseen := self._inner.keys() - self._activities.keys():
+            self._add_inner(min(unseen))
         blocker = self._blocker()
         blocked = {} if blocker is None else {self._zid: blocker}
         self._memory.forget(self._seen)
@@ -228,6 +232,10 @@ class _Look:
         name = task.get_name().removeprefix(f"{node.full_name}.")
         self._add(self.task_id(task), f"task {name}", node, task, (), "")
 
+    def _add_inner(self, id_: str) -> None:
+        node, inner = self._inner[id_]
+        self._add(id_, f"task {method_of(inner.task)}", node, inner.task, (), "", below=inner)
+
     def _add(
         self,
         id_: str,
@@ -238,9 +246,10 @@ class _Look:
         serves: str,
         *,
         is_inner: bool = False,
+        below: Subtask | None = None,
     ) -> None:
-        self._limit_ns = self._pause = None
-        wait = self._condition(task, _Way(node, task))
+        self._pause, self._limit_ns = None, below and below.limit_ns
+        wait = self._condition(task, Way(node, task, is_bounded=below is not None and below.is_bounded))
         self._seen.add((id_, wait))
         age, left = self._times(id_, wait, task)
         found = where(self._frames_of(task), node.instance, self._pause)
@@ -292,7 +301,7 @@ class _Look:
 
     # conditions
 
-    def _condition(self, task: Any, way: _Way) -> Condition:
+    def _condition(self, task: Any, way: Way) -> Condition:
         """What a task or an activity ultimately waits for; `way` leads to it."""
         if id(task) in way.tasks or task.done():
             return FREE
@@ -306,7 +315,7 @@ class _Look:
         frames = self._frames_of(task)
         limit_ns = self._limit_of(task)
         is_bounded = way.is_bounded or limit_ns is not None or aio.may_give_up(task)
-        way = _Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
+        way = Way(way.node, way.root, (*way.frames, *frames), way.tasks | {id(task)}, is_bounded)
         if limit_ns is not None:
             self._limit_ns = min(limit_ns, self._limit_ns or limit_ns)
         for frame in reversed(frames):
@@ -315,7 +324,7 @@ class _Look:
                 return self._of_joint_wait(together, way)
         return self._of_future(waiter, way)
 
-    def _of_joint_wait(self, wait: aio.JointWait, way: _Way) -> Condition:
+    def _of_joint_wait(self, wait: aio.JointWait, way: Way) -> Condition:
         ends = [f for f in wait.tasks if f.done() and (wait.wants == "any" or (wait.fails_early and aio.has_failed(f)))]
         if ends:
             return FREE  # the waiter's next step is due
@@ -342,7 +351,7 @@ class _Look:
         seconds = min(found, default=None)
         return None if seconds is None else self._now_ns + to_ns(max(0.0, seconds - self._process.loop.time()))
 
-    def _of_future(self, future: Any, way: _Way) -> Condition:
+    def _of_future(self, future: Any, way: Way) -> Condition:
         ledger = self._ledger
         if future in ledger.threads:
             sent = next((task for task in map(aio.sent_to_loop, reversed(way.frames)) if task is not None), None)
@@ -381,7 +390,7 @@ class _Look:
                 return Join(self.task_id(task))
         return None
 
-    def _closed_world(self, way: _Way, waiter: Any) -> Condition:
+    def _closed_world(self, way: Way, waiter: Any) -> Condition:
         """A wait for something that, as far as the source code shows, only handlers of the node bring about."""
         found = setters(list(way.frames), waiter, way.node, is_bounded=way.is_bounded)
         if found is None or found.is_shared(way.node, self._nodes) or any(task.done() for task in found.tasks):
@@ -392,7 +401,7 @@ class _Look:
             ends.insert(0, self._set_by(found, way))
         return ends[0] if len(ends) == 1 else AnyOf(tuple(ends))
 
-    def _or_cancelled(self, condition: Condition, thing: Any, way: _Way) -> Condition:
+    def _or_cancelled(self, condition: Condition, thing: Any, way: Way) -> Condition:
         """The wait for a task or goal of the node's, which others of its handlers may cancel."""
         if condition is FREE:
             return FREE
@@ -402,7 +411,7 @@ class _Look:
             return FREE
         return condition if found is None else AnyOf((condition, self._set_by(found, way)))
 
-    def _set_by(self, found: Setters, way: _Way) -> Condition:
+    def _set_by(self, found: Setters, way: Way) -> Condition:
         node = way.node
         runners = [r for n, r in self._runners if n is node and handler_of(r) in found.handlers]
         # Runs under way count too, even those that have released their slot.
@@ -426,10 +435,18 @@ class _Look:
         return SetBy(found.what, tuple(queues), tuple(activities), is_held, found.deed, found.gives_up)
 
     def _inside(self, lock: Any) -> list[Any]:
-        """The activities that have entered a lock, or a condition that has it, by `with`, and not left it."""
-        activities: list[Any] = [run for _, runner in self._runners for run in list(runner.active)]
-        activities += [task for node in self._nodes for task in list(node.tasks)]
-        return [task for task in activities for _ in range(aio.times_inside(task, lock))]
+        """The activities, and tasks below them, that are inside of a lock, or of its condition, by `with`."""
+        activities: list[tuple[Subject, Any]] = [(node, run) for node, r in self._runners for run in list(r.active)]
+        activities += [(node, task) for node in self._nodes for task in list(node.tasks)]
+        known = {id(task) for _, task in activities}
+        found = [task for _, task in activities for _ in range(aio.times_inside(task, lock))]
+        for node, activity in activities:
+            for inner in subtasks(activity, self._limit_of):
+                if id(inner.task) not in known and (times := aio.times_inside(inner.task, lock)):
+                    known.add(id(inner.task))
+                    self._inner[self.task_id(inner.task)] = node, inner
+                    found += [inner.task] * times
+        return found
 
     # the loop
 
@@ -456,7 +473,7 @@ class _Look:
     def _add_blocker(self, node: Subject, runner: Runner, run: Run | None, item: Any) -> str:
         stack = stack_of(self._ledger.thread)
         id_ = self.run_id(run) if run is not None else f"{self._zid}:d{runner.number}.{runner.runs}"
-        way = _Way(node, run, tuple(stack))
+        way = Way(node, run, tuple(stack))
         self._pause = None
         if self._ledger.blocking is None:
             wait = self._closed_world(way, None)
@@ -480,18 +497,3 @@ class _Look:
             called=found.called,
         )
         return id_
-
-
-@dataclass(frozen=True, slots=True)
-class _Way:
-    """How a wait was reached: from a run of a handler, through the tasks that it waits for."""
-
-    node: Subject
-    root: Any
-    """The activity."""
-    frames: tuple[Frame, ...] = ()
-    """The frames of all of them, the outermost first."""
-    tasks: frozenset[int] = frozenset()
-    """The ids of those tasks."""
-    is_bounded: bool = False
-    """Whether one of them gives up after some time, or may."""

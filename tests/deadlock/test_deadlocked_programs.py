@@ -186,6 +186,61 @@ class Feeder(Robot):
         self.plates.get_nowait()
 
 
+class PermitsTwiceInEach(Robot):
+    """Each of two parts takes one of two permits, and then wants another."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.permits = asyncio.Semaphore(2)
+
+    async def part(self) -> None:
+        async with self.permits:
+            await self.clock.sleep(0.1)
+            async with self.permits:  # stuck: PermitsTwiceInEach
+                pass
+
+    async def go(self, _: String) -> None:
+        await asyncio.gather(self.part(), self.part())
+
+
+class PermitsInTime(PermitsTwiceInEach):
+    async def go(self, _: String) -> None:
+        async with self.clock.timeout(5.0), asyncio.TaskGroup() as group:
+            group.create_task(self.part())
+            group.create_task(self.part())
+
+
+class PermitsInTurn(PermitsTwiceInEach):
+    """There is one more than are held."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.permits = asyncio.Semaphore(3)
+
+
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        (PermitsTwiceInEach, "LIKELY DEADLOCK: task part of /robot waits for self.permits, which it holds itself;"),
+        (PermitsInTime, "WAITS IN VAIN: task part of /robot waits for self.permits, which it holds itself,"),
+        (PermitsInTurn, ""),
+    ],
+)
+async def test_the_parts_of_a_gather(graph: Graph, caplog: Caplog, program: type[Robot], words: str) -> None:
+    """Each holds for itself what it has entered."""
+    graph.deadlock = "report"
+    await graph.start(program())
+    await say(graph, "/go")
+    await graph.clock.advance(2.0)
+
+    texts = [*reports(caplog), *in_vain(caplog)]
+    assert len(texts) == bool(words)
+    for told in map(flat, texts):
+        assert told.startswith(words)
+        assert f"waits for self.permits {at('stuck: PermitsTwiceInEach')}part, for" in told
+        assert "behind them: subscription go of /robot" in told
+
+
 class SemaphoreAcquired(Robot):
     def __init__(self) -> None:
         super().__init__()

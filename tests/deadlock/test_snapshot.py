@@ -232,6 +232,13 @@ class Waiter:
         async with self.lock:
             await asyncio.sleep(60)
 
+    async def enter_twice(self, _: object) -> None:
+        async with self.lock, self.lock:
+            pass
+
+    async def gather(self, item: object) -> None:
+        await asyncio.gather(self.enter_twice(item), self.enter(item))
+
 
 @pytest.mark.parametrize(("name", "age"), [("on_go", 7), ("on_ask", 0)])
 async def test_the_age_of_what_only_the_source_tells(
@@ -273,6 +280,19 @@ async def test_who_holds_a_lock(graphflow_runner: asyncio.Runner) -> None:
     first, second = scene.snapshot.take().activities.values()
     assert first.wait == FREE
     assert second.wait == SetBy("self.lock", (), (first.id,), is_held=True, deed="releases")
+    await runner.cancel()
+
+
+async def test_who_holds_a_lock_below_a_handler(graphflow_runner: asyncio.Runner) -> None:
+    """A task that a handler waits for is shown if it is inside of a lock: it may leave that before the handler ends."""
+    scene = Scene(Waiter())
+    runner = scene.own("gather")
+    await begin(runner, "message")
+
+    handler, task = scene.snapshot.take().activities.values()
+    held = SetBy("self.lock", (), (task.id,), is_held=True, deed="releases")
+    assert handler.wait == All((held, held))
+    assert (task.label, task.wait, task.holds, task.left) == ("task enter_twice", held, (), None)
     await runner.cancel()
 
 
