@@ -199,6 +199,8 @@ def _alone(deadlock: Deadlock, graph: WaitGraph) -> list[str]:
         return [f"{who} waits for {what}, which it holds itself"]
     if edge.loop:
         return [f"{who} waits for {what},", "and what could end that needs the event loop, which it blocks"]
+    if not edge.group and not edge.queue and edge.to == name:
+        return [f"{who} waits for {what},", f"which its own code {edge.via.deed} only after that"]
     others = [queue for queue in queues_of(edge, graph) if queue.handler != graph.activities[name].handler]
     if not others:
         return [f"{who} waits for {what},", f"which only another run of it {edge.via.deed}"]
@@ -258,6 +260,8 @@ def _reason(activity: ActivityView, edge: Edge, graph: WaitGraph, *, is_alone: b
         return ["nothing can arrive while the event loop is blocked", f"by {title(other)}"]
     if isinstance(edge.via, SetBy) and edge.via.is_held and not edge.group:
         return [f"which {title(other)} holds"]
+    if isinstance(edge.via, SetBy) and not edge.group and edge.to == activity.id:
+        return [f"which {title(other)} itself {edge.via.deed} further on"]
     if not edge.group:
         return [f"{'which' if is_alone else wanted(edge, graph)} {title(other)} must give"]
     group = graph.groups[edge.group]

@@ -95,6 +95,19 @@ def test_a_ring_and_who_is_behind_it() -> None:
     assert lines[5] == "  behind them: timer look of /arm   (arm.py:12 in tick, for 0.25 s, times out in 7.8 s)"
 
 
+def test_what_one_offers_only_further_on() -> None:
+    """Its own code would bring it about, after the wait."""
+    tick = replace(TICK, wait=SetBy("service /later", (), ("tick",), deed="offers"), holds=(), left=None)
+
+    assert report(tick) == [
+        "LIKELY DEADLOCK: timer tick of /arm waits for service /later, which its own code offers only after that",
+        "  timer tick of /arm waits for service /later   (arm.py:12 in tick, for 0.25 s)",
+        "    -> which timer tick of /arm itself offers further on",
+        "This ends it:",
+        "  make service /later before arm.py:12 waits for it",
+    ]
+
+
 @pytest.mark.parametrize(("kind", "word"), [(All, "and"), (AnyOf, "or")])
 def test_several_things_that_one_waits_for(kind: type[All | AnyOf], word: str) -> None:
     """All are named, each with what keeps it out, and one change covers them."""

@@ -417,6 +417,40 @@ class FixedSpinsIntoAFuture(SpinsIntoAFuture):
     group = MutuallyExclusiveCallbackGroup
 
 
+class WaitsForAService(Waits):
+    """Another callback of it offers that."""
+
+    def tick(self) -> None:
+        self.create_client(Trigger, "opened").wait_for_service()  # stuck: WaitsForAService
+        self.done.set()
+
+    def arrive(self) -> None:
+        self.create_service(Trigger, "opened", lambda request, response: response)
+
+
+class FixedWaitsForAService(WaitsForAService):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class TriesForAnAction(Waits):
+    """A second at a time, and it offers that itself when it has got it."""
+
+    def tick(self) -> None:
+        client = ActionClient(self, Fibonacci, "opened")
+        while rclpy.ok() and not client.wait_for_server(timeout_sec=1.0):  # stuck: TriesForAnAction
+            self.get_logger().debug("not yet")
+        self.actions = ActionServer(self, Fibonacci, "opened", lambda goal: Fibonacci.Result())
+        self.done.set()
+
+
+class FixedTriesForAnAction(TriesForAnAction):
+    def tick(self) -> None:
+        self.actions = ActionServer(self, Fibonacci, "opened", lambda goal: Fibonacci.Result())
+        assert ActionClient(self, Fibonacci, "opened").wait_for_server()
+        self.done.set()
+
+
 class TakesFromAQueue(Waits):
     def tick(self) -> None:
         self.items.get()  # stuck: TakesFromAQueue
@@ -758,6 +792,8 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (ServesByCalling, FixedServesByCalling, "make on_second async def, and await client.call_async(request),"),
     (WaitsForEvent, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (WaitsInAGroup, FixedWaitsInAGroup, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (WaitsForAService, FixedWaitsForAService, "return from fire instead of waiting for service /opened in planted.py:"),
+    (TriesForAnAction, FixedTriesForAnAction, "make action /opened before planted.py:"),
     (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),

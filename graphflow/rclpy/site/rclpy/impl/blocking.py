@@ -27,8 +27,8 @@ _FUTURES = (
 )
 """Functions that block until a future is done, which they call `future`."""
 _SLEEP = Rate.sleep.__code__
-_SEARCHED = (*_FUTURES, _SLEEP)
-
+_OPENINGS = (Client.wait_for_service.__code__, ActionClient.wait_for_server.__code__)
+_SEARCHED = (*_FUTURES, _SLEEP, *_OPENINGS)
 
 _JOIN = threading.Thread.join.__code__
 _RESULT = concurrent.futures.Future.result.__code__
@@ -43,6 +43,8 @@ class Blocked(NamedTuple):
     lock: Entering | None = None
     thread: int | None = None
     """The identity of a thread whose end, or whose work in a pool, is waited for."""
+    service: str = ""
+    """The full name of a service for whose server it waits; of an action, that of a part of it."""
     timeout: float | None = None
     """Seconds until it gives up, from when it began."""
 
@@ -56,6 +58,8 @@ def blocked(level: Level) -> Blocked:
             limit = timeout if isinstance(timeout, (int, float)) and timeout >= 0 else None
             if frame.f_code is _SLEEP:
                 return Blocked(timer=names["self"]._timer)
+            if frame.f_code in _OPENINGS:
+                return Blocked(service=_service_of(names["self"]), timeout=limit)
             if names.get("future") is not None:
                 return Blocked(future=names["future"], timeout=limit)
         if frame.f_code in (_JOIN, _RESULT):
@@ -66,6 +70,11 @@ def blocked(level: Level) -> Blocked:
     if users is None:
         return Blocked()
     return Blocked(future=_polled(users), lock=entered_at(users) if users is level.frames[-1] else None)
+
+
+def _service_of(client: Client | ActionClient) -> str:
+    endpoint = client._endpoint if isinstance(client, Client) else client._graphflow_goals
+    return str(endpoint.name)
 
 
 def is_private(level: Level) -> bool:

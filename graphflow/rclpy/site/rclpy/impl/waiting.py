@@ -18,10 +18,12 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from graphflow.deadlock.asyncio_frames import know_futures
+from graphflow.deadlock.closed_world import Setters
 from graphflow.deadlock.fresh import know_messages
 from graphflow.deadlock.held import setters
 from graphflow.deadlock.user_code import Pause, where
 from graphflow.errors import ClosedError
+from graphflow.machines.explain import offer
 from graphflow.machines.wait_graph import (
     FREE,
     ActivityView,
@@ -54,9 +56,11 @@ from rclpy.impl.entities import (
     role_of,
     served,
 )
+from rclpy.impl.group_rows import group_rows
 from rclpy.impl.groups import ATTEMPTS, called, executors, is_exclusive, threads_of
 from rclpy.impl.held_up import HeldUp
 from rclpy.impl.locks import Entering, is_inside, is_kept
+from rclpy.impl.openings import opening_of, tries_forever
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
 from rclpy.impl.subjects import Subject
@@ -127,7 +131,7 @@ class Waiting:
         with self._lock:
             for _ in range(ATTEMPTS):
                 try:
-                    return _Look(self).plain()
+                    return _Look(self).rows()
                 except RuntimeError:  # something changed its size meanwhile
                     continue
         return {}
@@ -199,6 +203,10 @@ class _Look:
             if run not in on_threads and not run.ended():
                 self._add_suspended(run)
         return WaitGraph(self._activities, self._groups, self._queues)
+
+    def rows(self) -> dict[str, list[dict[str, Any]]]:
+        """The callback groups of each node, with their callbacks, for people."""
+        return group_rows(self._nodes, self._roles, list(self._runs), self._spun)
 
     # groups
 
@@ -388,6 +396,10 @@ class _Look:
             return FREE if joined is None else Join(self._id(joined.thread, "t")), found.timeout
         if found.lock is not None:
             return self._of_lock(found.lock, level, run), None
+        if found.service:
+            innermost = level.innermost
+            left = None if innermost is None or tries_forever(innermost) else found.timeout
+            return self._of_opening(found.service, level, node, run, gives_up=left is not None), left
         return self._closed_world(level, None, node, run), limit_of(level)
 
     def _of_future(self, future: Future[Any], level: Level, node: Any, run: Run | None) -> Condition:
@@ -432,53 +444,46 @@ class _Look:
             return FREE
         return SetBy(entering.text, (), (inside[0][0],), True, "releases")
 
-    def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
-        """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
+    def _of_opening(self, service: str, level: Level, node: Any, run: Run | None, *, gives_up: bool) -> Condition:
+        """A wait for a server that, as far as the source code shows, only code makes that cannot run meanwhile."""
+        own, tasks, subject = self._world(node)
+        others = [other for other in self._nodes if other is not node]
+        found = None if self._servers[service] else opening_of(service, level.frames, subject, others, programs_files())
+        if found is None or (found.handlers and any(type(other) is type(node) for other in others)):
+            return FREE
+        setters_ = Setters(offer(service), found.handlers, deed="offers", gives_up=gives_up)
+        condition = self._set_by(setters_, own, tasks, node, run)
+        if not found.is_own:
+            return condition
+        stack = next((stack for stack in self._stacks if level in stack.levels), None)
+        mine = self._id(run) if run is not None else self._id(stack.thread, "t") if stack is not None else ""
+        return replace(condition, activities=(*condition.activities, mine))
+
+    def _world(self, node: Any) -> tuple[list[tuple[Any, str]], list[Run], Any]:
+        """What a node's callbacks are, by entity; the tasks that run methods of it; and it as a subject."""
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
         tasks = [task for task in self._runs if getattr(task.called, "__self__", None) is node]
-        subject = Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
-        found = setters(level.frames, future, subject)  # type: ignore[arg-type]
+        return own, tasks, Subject(node, [*(handler for _, handler in own), *(name_of(task.called) for task in tasks)])
+
+    def _closed_world(self, level: Level, future: Any, node: Any, run: Run | None) -> Condition:
+        """A wait for something that, as far as the source code shows, only callbacks of the node bring about."""
+        own, tasks, subject = self._world(node)
+        found = setters(level.frames, future, subject)
         others = [Subject(other) for other in self._nodes if other is not node]
         is_known = found is not None and found.handlers and found.lock is None
         if found is None or not is_known or found.is_shared(subject, others):  # type: ignore[arg-type]
             return FREE
         self._pause = found.pause
+        return self._set_by(found, own, tasks, node, run)
+
+    def _set_by(
+        self, found: Setters, own: list[tuple[Any, str]], tasks: list[Run], node: Any, run: Run | None
+    ) -> SetBy:
         queues = {self._id(entity, "q") for entity, handler in own if handler in found.handlers}
         others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]
         active = sorted(self._id(r) for r in others_runs if self._role(r).handler in found.handlers)
         return SetBy(found.what, tuple(sorted(queues)), tuple(active), deed=found.deed, gives_up=found.gives_up)
-
-    # for people
-
-    def plain(self) -> dict[str, list[dict[str, Any]]]:
-        """The callback groups of each node, with their callbacks."""
-        found: dict[str, list[dict[str, Any]]] = {}
-        for node in self._nodes:
-            rows: dict[Any, dict[str, Any]] = {}
-            for entity in entities_of(node):
-                role = self._roles[entity]
-                if role.is_inner:
-                    continue
-                row = rows.setdefault(entity.callback_group, _plain(entity.callback_group, node))
-                running = sum(run.entity is entity for run in self._runs)
-                numbers = {"running": running, "waiting": arrived(entity)[1], "runs": None, "errors": 0}
-                row["handlers"].append({"handler": role.handler, "kind": role.kind, **numbers})
-            executor = node.executor
-            if executor is not None:
-                limit = threads_of(executor)
-                name = f"{type(executor).__name__}{'' if executor in self._spun else ' (not spinning)'}"
-            else:
-                limit, name = 0, "no executor"
-            about = {"name": name, "limit": limit, "when_full": "wait", "thread": False, "sort": "executor"}
-            found[_name(node)] = [*rows.values(), {**about, "handlers": []}]
-        return found
-
-
-def _plain(group: Any, node: Any) -> dict[str, Any]:
-    """A callback group as plain data, with nothing in it yet."""
-    about = {"name": called(group, node), "limit": 1 if is_exclusive(group) else None, "when_full": "wait"}
-    return {**about, "thread": False, "sort": "callback", "handlers": list[Any]()}
 
 
 def _holds(stack: Stack, lock: object) -> bool:
