@@ -13,16 +13,19 @@ from contextlib import suppress
 from typing import Any
 
 from example_interfaces.action import Fibonacci
-from geometry_msgs.msg import Twist, Vector3
-from std_msgs.msg import String
+from geometry_msgs.msg import TransformStamped, Twist, Vector3
+from std_msgs.msg import Header, String
 from std_srvs.srv import Trigger
+from tf2_ros import Buffer, StaticTransformBroadcaster, TransformListener
 
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.task import Future
+from rclpy.time import Time
 from tests.rclpy.store import Store
 
 
@@ -451,6 +454,25 @@ class FixedTriesForAnAction(TriesForAnAction):
         self.done.set()
 
 
+class LooksUpATransform(Waits):
+    """In the thread in which its listener would hear it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.buffer = Buffer(node=self)
+        self.listener = TransformListener(self.buffer, self)
+        self.broadcaster = StaticTransformBroadcaster(self)
+
+    def tick(self) -> None:
+        self.broadcaster.sendTransform(TransformStamped(header=Header(frame_id="map"), child_frame_id="base"))
+        self.buffer.lookup_transform("map", "base", Time(), Duration(seconds=30))  # stuck: LooksUpATransform
+        self.done.set()
+
+
+class FixedLooksUpATransform(LooksUpATransform):
+    threads = 2
+
+
 class TakesFromAQueue(Waits):
     def tick(self) -> None:
         self.items.get()  # stuck: TakesFromAQueue
@@ -794,6 +816,7 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (WaitsInAGroup, FixedWaitsInAGroup, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
     (WaitsForAService, FixedWaitsForAService, "return from fire instead of waiting for service /opened in planted.py:"),
     (TriesForAnAction, FixedTriesForAnAction, "make action /opened before planted.py:"),
+    (LooksUpATransform, FixedLooksUpATransform, "spin with MultiThreadedExecutor(num_threads=2)"),
     (PollsAFlag, FixedPollsAFlag, "spin with MultiThreadedExecutor(num_threads=2)"),
     (TakesFromAQueue, FixedWaitsForEvent, "spin with MultiThreadedExecutor(num_threads=2)"),
     (AwaitsAFuture, FixedAwaitsAFuture, "callback_group=ReentrantCallbackGroup()"),

@@ -12,6 +12,7 @@ from tf2_msgs.srv import FrameGraph
 from tf2_py import BufferCore
 
 from rclpy.duration import Duration
+from rclpy.impl.buffers import know_buffer
 from rclpy.task import Future
 from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 
@@ -156,3 +157,6 @@ class Buffer(BufferCore, BufferInterface):
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         await self.wait_for_transform_full_async(*asked)
         return self.lookup_transform_full_core(*asked)
+
+
+know_buffer(Buffer._graphflow_wait, "set_transform", "set_transform_static")

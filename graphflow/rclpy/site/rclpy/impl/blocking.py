@@ -15,6 +15,7 @@ from graphflow.deadlock.user_code import is_users
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
+from rclpy.impl.buffers import BufferWait, buffer_wait
 from rclpy.impl.locks import Entering, entered_at, function_of
 from rclpy.impl.stacks import Level
 from rclpy.task import Future
@@ -43,6 +44,7 @@ class Blocked(NamedTuple):
     lock: Entering | None = None
     thread: int | None = None
     """The identity of a thread whose end, or whose work in a pool, is waited for."""
+    buffer: BufferWait | None = None
     service: str = ""
     """The full name of a service for whose server it waits; of an action, that of a part of it."""
     timeout: float | None = None
@@ -62,6 +64,8 @@ def blocked(level: Level) -> Blocked:
                 return Blocked(service=_service_of(names["self"]), timeout=limit)
             if names.get("future") is not None:
                 return Blocked(future=names["future"], timeout=limit)
+        if (wait := buffer_wait(frame)) is not None:
+            return Blocked(buffer=wait, timeout=wait.timeout)
         if frame.f_code in (_JOIN, _RESULT):
             names = frame.f_locals
             thread = names["self"].ident if frame.f_code is _JOIN else _worker_of(names["self"])

@@ -55,8 +55,8 @@ def role_of(entity: Any) -> Role:
     code = getattr(callback, "__code__", None)
     is_inner = code is not None and is_ours(code.co_filename)
     is_inner |= kind == "waitable" and type(entity).__module__.startswith("rclpy.")
-    if is_inner and isinstance(entity, Service):
-        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # such as change_state
+    if is_inner and isinstance(entity, (Service, Subscription)):
+        return Role(kind, entity._endpoint.name.rpartition("/")[2], is_inner=True)  # such as change_state, or tf
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 

@@ -43,6 +43,7 @@ from graphflow.wire.liveliness import Kind
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.impl.blocking import blocked, is_private, limit_of
+from rclpy.impl.buffers import BufferWait
 from rclpy.impl.enders import may_be_ended, programs_files
 from rclpy.impl.entities import (
     Role,
@@ -396,9 +397,10 @@ class _Look:
             return FREE if joined is None else Join(self._id(joined.thread, "t")), found.timeout
         if found.lock is not None:
             return self._of_lock(found.lock, level, run), None
+        if found.buffer is not None:
+            return self._of_buffer(found.buffer), found.timeout
         if found.service:
-            innermost = level.innermost
-            left = None if innermost is None or tries_forever(innermost) else found.timeout
+            left = None if level.innermost is None or tries_forever(level.innermost) else found.timeout
             return self._of_opening(found.service, level, node, run, gives_up=left is not None), left
         return self._closed_world(level, None, node, run), limit_of(level)
 
@@ -444,10 +446,17 @@ class _Look:
             return FREE
         return SetBy(entering.text, (), (inside[0][0],), True, "releases")
 
+    def _of_buffer(self, wait: BufferWait) -> Condition:
+        """A wait for what only listeners bring that cannot run meanwhile."""
+        fillers = set(filter(wait.is_filled_by, self._owners))
+        if not fillers or wait.may_be_filled_by(programs_files()):
+            return FREE
+        queues, active = (self._id(e, "q") for e in fillers), (self._id(r) for r in self._runs if r.entity in fillers)
+        return SetBy(wait.what, tuple(sorted(queues)), tuple(sorted(active)), deed="hears", gives_up=True)
+
     def _of_opening(self, service: str, level: Level, node: Any, run: Run | None, *, gives_up: bool) -> Condition:
         """A wait for a server that, as far as the source code shows, only code makes that cannot run meanwhile."""
-        own, tasks, subject = self._world(node)
-        others = [other for other in self._nodes if other is not node]
+        (own, tasks, subject), others = self._world(node), [other for other in self._nodes if other is not node]
         found = None if self._servers[service] else opening_of(service, level.frames, subject, others, programs_files())
         if found is None or (found.handlers and any(type(other) is type(node) for other in others)):
             return FREE
