@@ -50,6 +50,49 @@ def log_level(word: str) -> int:
     return words[word.lower()]
 
 
+class Console(logging.Handler):
+    """Writes records to stderr in ROS 2's format, wherever stderr leads at that moment: in a notebook, to the cell.
+
+    Until `is_wanted`, it is the handler of last resort: it writes warnings and errors that no other handler gets.
+    Python's own would not, since it takes `Rosout` for a handler that shows them.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.setFormatter(ConsoleFormatter())
+        self.is_wanted = False
+
+    @classmethod
+    def installed(cls) -> Console:
+        """The one of this process, made when it is first asked for."""
+        logger = logging.getLogger("graphflow")
+        for handler in logger.handlers:
+            if isinstance(handler, cls):
+                return handler
+        console = cls()
+        logger.addHandler(console)
+        return console
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if not self.is_wanted and _is_shown(record):
+            return
+        try:
+            sys.stderr.write(f"{self.format(record)}\n")
+            sys.stderr.flush()
+        except Exception:  # as in every handler of Python's: logging must not fail its caller
+            self.handleError(record)
+
+
+def _is_shown(record: logging.LogRecord) -> bool:
+    """Whether the program has a handler of its own for a record."""
+    logger: logging.Logger | None = logging.getLogger(record.name)
+    while logger is not None:
+        if not all(isinstance(handler, Console | Rosout) for handler in logger.handlers):
+            return True
+        logger = logger.parent if logger.propagate else None
+    return False
+
+
 def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
     """Write graphflow's log records to stderr in ROS 2's format, and what Python warns of forgotten awaits with them.
 
@@ -58,16 +101,11 @@ def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
     Args:
         is_quiet: Whether only what is wrong with the program itself is written.
     """
-    logger = logging.getLogger("graphflow")
-    logger.setLevel(level)
+    logging.getLogger("graphflow").setLevel(level)
     unawaited.watch()
-    if not any(isinstance(h.formatter, ConsoleFormatter) for h in logger.handlers):
-        handler = logging.StreamHandler(sys.stderr)
-        handler.setFormatter(ConsoleFormatter())
-        logger.addHandler(handler)
-    for known in logger.handlers:
-        if isinstance(known.formatter, ConsoleFormatter):
-            known.setLevel(logging.CRITICAL + 1 if is_quiet else logging.NOTSET)
+    console = Console.installed()
+    console.is_wanted = True
+    console.setLevel(logging.CRITICAL + 1 if is_quiet else logging.NOTSET)
 
 
 class Rosout(logging.Handler, Part):
@@ -93,6 +131,7 @@ class Rosout(logging.Handler, Part):
     def open(self) -> None:
         self._thread = threading.get_ident()
         self._publisher.open()
+        Console.installed()
         self._host.log.addHandler(self)
 
     def detach(self) -> None:

@@ -6,6 +6,8 @@ import io
 import logging
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr
+from unittest.mock import patch
 
 import pytest
 
@@ -13,7 +15,7 @@ from graphflow import GraphflowError, Node, Qos
 from graphflow.msgs.rcl_interfaces.msg import Log
 from graphflow.qos import Durability
 from graphflow.runtime.logger import ROOT, node_logger
-from graphflow.runtime.rosout import ConsoleFormatter, log_level, setup_console
+from graphflow.runtime.rosout import Console, ConsoleFormatter, log_level, setup_console
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
 
@@ -199,6 +201,76 @@ def test_the_console_is_set_up_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     assert stream.getvalue().count("\n") == 1
     assert stream.getvalue().endswith("[talker]: this\n")
+
+
+class Shows(logging.Handler):
+    """A handler of the program's own."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """It may show the record anywhere."""
+
+
+@contextmanager
+def unconfigured() -> Iterator[io.StringIO]:
+    """Logging as in a program that has not configured it; gives what is written to stderr."""
+    root, own = logging.getLogger(), logging.getLogger("graphflow")
+    stream = io.StringIO()
+    # Within the test, since pytest has handlers of its own for each phase.
+    with patch.object(root, "handlers", []), patch.object(own, "handlers", []), redirect_stderr(stream):
+        yield stream
+
+
+async def test_warnings_and_errors_are_seen_without_any_configuration(graph: Graph) -> None:
+    """A program of one's own need not configure logging: /rosout does not count as a place where they are seen."""
+    node = Node("talker")
+    with unconfigured() as stderr:
+        await graph.start(node)
+        node.log.info("not this")
+        node.log.warning("this")
+        node.log.getChild("part").error("and this")
+        logging.getLogger("graphflow").error("and of the process, this")
+
+    assert [line.rpartition("] [")[2] for line in stderr.getvalue().splitlines()] == [
+        "talker]: this",
+        "talker.part]: and this",
+        "graphflow]: and of the process, this",
+    ]
+
+
+@pytest.mark.parametrize("where", ["", "graphflow", "graphflow.node.talker"])
+async def test_a_program_that_configures_logging_is_obeyed(graph: Graph, where: str) -> None:
+    """Its handler gets the records, wherever it hangs, also when it came later; nothing is written beside it."""
+    node, handler = Node("talker"), Shows()
+    with unconfigured() as stderr:
+        await graph.start(node)
+        logging.getLogger(where).addHandler(handler)
+        node.log.error("elsewhere")
+    node.log.removeHandler(handler)
+
+    assert stderr.getvalue() == ""
+
+
+async def test_the_console_follows_stderr(graph: Graph) -> None:
+    """A notebook replaces it, and a program may redirect it for a while."""
+    node = Node("talker")
+    with unconfigured() as stderr:
+        await graph.start(node)
+        with redirect_stderr(io.StringIO()) as later:
+            node.log.error("to the cell")
+
+    assert stderr.getvalue() == ""
+    assert later.getvalue().endswith("[talker]: to the cell\n")
+
+
+def test_a_console_of_last_resort_can_be_wanted() -> None:
+    """A node may run before the console is set up: there is one console, and no line is written twice."""
+    with unconfigured() as stderr:
+        console = Console.installed()
+        setup_console()
+        node_logger("/talker").info("this")
+        assert Console.installed() is console
+
+    assert stderr.getvalue().count("[talker]: this\n") == 1
 
 
 @pytest.mark.parametrize(

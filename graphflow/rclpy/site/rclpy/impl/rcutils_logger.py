@@ -9,7 +9,7 @@ from types import CodeType, FrameType, SimpleNamespace
 from typing import Any
 
 from graphflow.runtime.logger import ROOT, node_logger
-from graphflow.runtime.rosout import setup_console
+from graphflow.runtime.rosout import Console, setup_console
 from rclpy.impl.logging_severity import LoggingSeverity
 
 
@@ -175,7 +175,7 @@ class RcutilsLogger:
             site.compare(name, severity, options)
         if not self.is_enabled_for(severity) or (options and not site.is_due()):
             return False
-        if not python_logging.getLogger("graphflow").handlers:
+        if not Console.installed().is_wanted:
             setup_console()
         logger = self._logger if name == self.name else RcutilsLogger(name)._logger
         code = frame.f_code
