@@ -45,8 +45,9 @@ class Company:
                 for end in self._ends.values():
                     end.cancel()
         finally:
+            self._context.session.leave()
             for node in reversed(self.nodes):
-                await core_of(node).stop(withdraw=False)
+                await core_of(node).stop()
 
     async def _see_through(self, asked: asyncio.Task[bool]) -> None:
         while self._ends and not asked.done():

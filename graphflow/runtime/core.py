@@ -364,13 +364,8 @@ class NodeCore:
         finally:
             self.failure_taken = True
 
-    async def stop(self, *, withdraw: bool = True) -> None:
-        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything.
-
-        Args:
-            withdraw: False when the context is closed right after, which withdraws all at once and cannot be delayed
-                by peers that are going away too.
-        """
+    async def stop(self) -> None:
+        """Leave the network: cancel handlers and tasks, wait for their cleanup, withdraw everything."""
         context = self._context
         if context is None:
             return
@@ -382,11 +377,10 @@ class NodeCore:
             # Even when this wait is cancelled: nothing stays open.
             if self._rosout is not None:
                 self._rosout.detach()
-            if withdraw:
-                for part in list(reversed(self.parts)):
-                    part.close()
-                if self._token is not None:
-                    self._token.close()
+            for part in list(reversed(self.parts)):
+                part.close()
+            if self._token is not None:
+                self._token.close()
             if self._ended is not None and not self._ended.done():
                 self._ended.cancel()
             if self in context.nodes:  # two callers may stop a node

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from asyncio import Future
 from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
@@ -53,6 +54,8 @@ class Endpoint(Part):
         """How the endpoint is announced; None until the node runs."""
         self.matched: dict[str, Entity] = {}
         """The counterparts in the graph that this endpoint reaches, by token."""
+        self._awaited: set[Future[None]] = set()
+        """Futures of those that wait for counterparts; done when one comes or goes."""
         self._type_hash = type_hash
         self._declared: list[Closable] = []
         self._on_event = on_event
@@ -124,6 +127,9 @@ class Endpoint(Part):
             closable.close()
         if self._event_runner is not None:
             self._event_runner.cancel()
+        for awaited in self._awaited:
+            if not awaited.done():
+                awaited.set_exception(ClosedError(f"{self.name} was closed while its counterparts were waited for"))
         self.matched.clear()
         self.entity = None
         self.host.forget(self)
@@ -132,10 +138,15 @@ class Endpoint(Part):
         """Wait until `count` counterparts are reached: for a publisher, that many subscriptions.
 
         Raises:
-            ClosedError: The node is not running.
+            ClosedError: The node is not running, or stopped meanwhile.
         """
         self._announced()
-        await self.host.context.wait_for(lambda: len(self.matched) >= count)
+        while len(self.matched) < count:
+            self._awaited.add(change := self.host.context.loop.create_future())
+            try:
+                await change
+            finally:
+                self._awaited.discard(change)
 
     def event_total(self, kind: QosEventKind) -> int:
         """How often a kind of event has happened since the start."""
@@ -155,6 +166,9 @@ class Endpoint(Part):
             else:
                 del self.matched[other.token]
             step = 1 if change.alive else -1
+            for awaited in self._awaited:
+                if not awaited.done():
+                    awaited.set_result(None)
             self._tell("matched", int(change.alive), step, len(self.matched), other.node_name)
             self._matched(other, change.alive)
         if change.alive and judged.complaint:

@@ -41,7 +41,9 @@ async def running(*nodes: Node, context: Context | None = None) -> AsyncGenerato
         for node in nodes:
             core = core_of(node)
             await core.start(context)
-            stack.push_async_callback(core.stop, withdraw=not own)
+            stack.push_async_callback(core.stop)
+        if own:
+            stack.callback(context.session.leave)
         try:
             async with asyncio.TaskGroup() as group:
                 watchers = [group.create_task(core_of(node).wait_ended()) for node in nodes]

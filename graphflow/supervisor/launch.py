@@ -362,6 +362,7 @@ class _Launch:
             await control.wait_followed()
             return code
         finally:
+            context.session.leave()
             linked.cancel()
             kept.cancel()
             warned.cancel()

@@ -101,4 +101,4 @@ async def mirror(supervisor: Supervisor, context: Context) -> None:
             await asyncio.sleep(SETTLE)
     finally:
         stop()
-        await core_of(node).stop(withdraw=False)
+        await core_of(node).stop()

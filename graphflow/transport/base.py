@@ -167,6 +167,11 @@ class Session(Protocol):
     def key_of(self, arrival: Any) -> str:
         """The key on which an arrival was published."""
 
+    def leave(self) -> None:
+        """Begin to close: what is closed from now on may stay declared until `close`, which withdraws all at once and
+        cannot be delayed by peers that are going away too.
+        """
+
     async def close(self) -> None: ...
 
 

@@ -329,6 +329,9 @@ class MemorySession:
             for request in list(self._network.requests.pop(id(inbox), ())):
                 request.abandon()
 
+    def leave(self) -> None:
+        """Nothing takes time here."""
+
     async def close(self) -> None:
         for declared in reversed(self._declared):
             declared.close()

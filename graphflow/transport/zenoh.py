@@ -54,11 +54,14 @@ ASK_AGAIN = (0.5, 2.0)
 class _Declared:
     """A Zenoh declaration, until closed."""
 
-    def __init__(self, *declarations: Any) -> None:
-        self._declarations = declarations
+    def __init__(self, session: ZenohSession, *declarations: Any) -> None:
+        self._session, self._declarations = session, declarations
 
     def close(self) -> None:
         declarations, self._declarations = self._declarations, ()
+        if self._session.left is not None:
+            self._session.left.append(declarations)
+            return
         for declaration in declarations:
             try:
                 declaration.undeclare()
@@ -74,11 +77,11 @@ class _Questions(_Declared):
     """
 
     def __init__(
-        self, session: zenoh.Session, key: str, take: Callable[[zenoh.Query], None], *, complete: bool = False
+        self, session: ZenohSession, key: str, take: Callable[[zenoh.Query], None], *, complete: bool = False
     ) -> None:
         channel: Any = zenoh.handlers.RingChannel(QUESTIONS_BOUND)
-        queryable: Any = session.declare_queryable(key, channel, complete=complete)
-        super().__init__(queryable)
+        queryable: Any = session.raw.declare_queryable(key, channel, complete=complete)
+        super().__init__(session, queryable)
         threading.Thread(target=self._take_turns, args=(queryable.handler, take), name=ANSWERING).start()
 
     def _take_turns(self, handler: Any, take: Callable[[zenoh.Query], None]) -> None:
@@ -98,16 +101,16 @@ class _Questions(_Declared):
 class _ZenohSender(_Declared):
     """A plain publisher, which knows whether there are listeners."""
 
-    def __init__(self, publisher: Any, bell: Bell, changed: Callable[[], None] | None) -> None:
+    def __init__(self, session: ZenohSession, publisher: Any, changed: Callable[[], None] | None) -> None:
         self._publisher, self._lock, self._is_wanted = publisher, threading.Lock(), False
-        self._inbox = None if changed is None else Inbox(bell, 1, changed)
+        self._inbox = None if changed is None else Inbox(session.bell, 1, changed)
         # What changes is looked up when it is asked for. A callback needs the GIL on a thread of those that `config`
         # speaks of, and there would be one for each publisher at once when a peer leaves.
         channel: Any = zenoh.handlers.RingChannel(1)
         handler = channel if self._inbox is None else Callback(self._matching, indirect=False)
         listener = publisher.declare_matching_listener(handler)
         self._news = listener.handler.try_recv if self._inbox is None else _nothing
-        super().__init__(listener, publisher)
+        super().__init__(session, listener, publisher)
         self.put = publisher.put
         # Earlier listeners may have been reported by now, but their leaving never will be.
         if publisher.matching_status.matching:
@@ -139,8 +142,8 @@ class _KeepingSender(_Declared):
 
     is_wanted = True
 
-    def __init__(self, publisher: Any) -> None:
-        super().__init__(publisher)
+    def __init__(self, session: ZenohSession, publisher: Any) -> None:
+        super().__init__(session, publisher)
         self.put = publisher.put
 
 
@@ -221,16 +224,16 @@ class _ZenohRequest:
 
 
 class _ZenohCaller(_Declared):
-    def __init__(self, querier: zenoh.Querier, bell: Bell, changed: Callable[[], None]) -> None:
+    def __init__(self, session: ZenohSession, querier: zenoh.Querier, changed: Callable[[], None]) -> None:
         def deliver() -> None:
             while inbox.items:
                 self.has_server = inbox.items.popleft().matching
             changed()
 
-        inbox = Inbox(bell, None, deliver)
+        inbox = Inbox(session.bell, None, deliver)
         listener = querier.declare_matching_listener(Callback(inbox.put, indirect=False))
-        super().__init__(listener, querier)
-        self._querier, self._bell = querier, bell
+        super().__init__(session, listener, querier)
+        self._querier, self._bell = querier, session.bell
         # What the listener reports comes later than this, and in order.
         self.has_server: bool = querier.matching_status.matching  # type: ignore[attr-defined]
 
@@ -288,6 +291,8 @@ class ZenohSession:
         self.zid = str(self.raw.info.zid())
         self.bell = Bell(loop)
         self.loop = loop
+        self.left: list[tuple[Any, ...]] | None = None
+        """Declarations that the session's end will withdraw; kept, since Zenoh withdraws one that nobody refers to."""
 
     def open_sender(
         self, key: str, qos: Qos, changed: Callable[[], None] | None = None, *, only_others: bool = False
@@ -301,7 +306,7 @@ class ZenohSession:
         if qos.durability is Durability.VOLATILE:
             reach = zenoh.Locality.REMOTE if only_others else zenoh.Locality.ANY
             publisher = self.raw.declare_publisher(key, allowed_destination=reach, **options)
-            return _ZenohSender(publisher, self.bell, changed)
+            return _ZenohSender(self, publisher, changed)
         ext = load_ext()
         publisher = ext.declare_advanced_publisher(
             self.raw,
@@ -311,7 +316,7 @@ class ZenohSession:
             sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5) if reliable else None,
             **options,
         )
-        return _KeepingSender(publisher)
+        return _KeepingSender(self, publisher)
 
     def open_receiver(
         self, key: str, qos: Qos, inbox: Inbox, *, ignore_local: bool = False, in_order: bool = False
@@ -321,7 +326,7 @@ class ZenohSession:
             put = _copying(inbox) if isinstance(inbox, DeepInbox) else inbox.put
             # Answers come directly, and so would overtake what waits for the subscription's own thread.
             handler = Callback(put, indirect=False) if in_order else put
-            return _Declared(self.raw.declare_subscriber(key, handler, allowed_origin=origin))
+            return _Declared(self, self.raw.declare_subscriber(key, handler, allowed_origin=origin))
         ext = load_ext()
         reliable = qos.reliability is Reliability.RELIABLE
         again = _AskingAgain(self, key, inbox) if reliable else None
@@ -334,15 +339,15 @@ class ZenohSession:
             subscriber_detection=True,
             allowed_origin=origin,
         )
-        return _Declared(subscriber) if again is None else _Declared(subscriber, again)
+        return _Declared(self, subscriber) if again is None else _Declared(self, subscriber, again)
 
     def open_server(self, key: str, inbox: Inbox, *, is_paced: bool = False) -> _Declared:
         def arrived(query: zenoh.Query) -> None:
             inbox.put(_ZenohRequest(query, key))
 
         if is_paced:
-            return _Questions(self.raw, key, arrived, complete=True)
-        return _Declared(self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
+            return _Questions(self, key, arrived, complete=True)
+        return _Declared(self, self.raw.declare_queryable(key, Callback(arrived, indirect=False), complete=True))
 
     def open_caller(self, key: str, changed: Callable[[], None]) -> _ZenohCaller:
         querier = self.raw.declare_querier(
@@ -352,10 +357,10 @@ class ZenohSession:
             timeout=QUERY_LIMIT_MS / 1000,
             congestion_control=zenoh.CongestionControl.DROP,
         )
-        return _ZenohCaller(querier, self.bell, changed)
+        return _ZenohCaller(self, querier, changed)
 
     def announce(self, token: str) -> _Declared:
-        return _Declared(self.raw.liveliness().declare_token(token))
+        return _Declared(self, self.raw.liveliness().declare_token(token))
 
     def watch(self, key: str, changed: Callable[[str, bool], None]) -> _Declared:
         def deliver() -> None:
@@ -367,14 +372,14 @@ class ZenohSession:
 
         inbox = Inbox(self.bell, None, deliver)
         subscriber = self.raw.liveliness().declare_subscriber(key, Callback(inbox.put, indirect=False), history=True)
-        return _Declared(subscriber)
+        return _Declared(self, subscriber)
 
     def open_report(self, key: str, report: Callable[[], bytes]) -> _Declared:
         def asked(query: zenoh.Query) -> None:
             with query:
                 query.reply(key, report())
 
-        return _Questions(self.raw, key, asked)  # on a thread: the loop may be blocked
+        return _Questions(self, key, asked)  # on a thread: the loop may be blocked
 
     def ask_reports(self, key: str, limit: float, told: Callable[[list[bytes], bool], None]) -> None:
         found: list[bytes] = []
@@ -409,7 +414,7 @@ class ZenohSession:
 
         inbox = Inbox(self.bell, None, deliver)
         listener = self.raw.info.declare_transport_events_listener(Callback(inbox.put, indirect=False))
-        return _Declared(listener)
+        return _Declared(self, listener)
 
     def routers(self) -> list[str]:
         """Ids of the routers this session is connected to."""
@@ -421,6 +426,9 @@ class ZenohSession:
 
     def key_of(self, arrival: Any) -> str:
         return str(arrival.key_expr)
+
+    def leave(self) -> None:
+        self.left = []
 
     async def close(self) -> None:
         await in_thread(lambda: close_session(self.raw))

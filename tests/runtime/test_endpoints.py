@@ -148,6 +148,17 @@ async def test_a_wait_for_counterparts_can_be_cancelled(graph: Graph) -> None:
     assert len(speaker.matched) == 1
 
 
+async def test_a_wait_for_counterparts_ends_with_the_node(graph: Graph) -> None:
+    """They will never come."""
+    node, speaker = await speaking(graph)
+    waiting = asyncio.create_task(speaker.wait_matched())
+    await graph.settle()
+    await graph.stop(node)
+
+    with pytest.raises(ClosedError, match="/chatter was closed while its counterparts were waited for"):
+        await waiting
+
+
 async def test_what_is_not_open_reaches_nobody(graph: Graph) -> None:
     """Before the start and after the stop the error says where it can be used."""
     node, speaker = await speaking(graph)

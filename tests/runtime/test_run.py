@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 from typing import Any
+from unittest.mock import AsyncMock
 
 import pytest
 
-from graphflow import Context, GraphflowError, Node, Param, Publisher, task, timer
+from graphflow import Client, Context, GraphflowError, Node, Param, Publisher, Subscription, service, task, timer
 from graphflow.errors import ClosedError
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.company import Company
@@ -63,6 +65,54 @@ async def test_nodes_run_for_the_length_of_the_block(graphflow_runner: asyncio.R
         await settle()
         assert context.cache.nodes() == ["/talker"]
     await context.close()
+
+
+class Adder(Node):
+    """A service that answers after a second."""
+
+    @service(AddTwoInts, "add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        await self.clock.sleep(1.0)
+        return AddTwoInts.Response()
+
+
+class Using(Node):
+    """Something to wait for in a task of the program's own."""
+
+    add = Client(AddTwoInts, "add")
+    missing = Client(AddTwoInts, "missing")
+    heard = Subscription(String, "heard")
+    out = Publisher(String, "out")
+
+    async def read(self) -> None:
+        async for _ in self.heard:
+            pass
+
+
+@pytest.mark.parametrize("is_own", [True, False], ids=["own", "given"])
+async def test_nothing_waits_for_nodes_that_were_left(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, is_own: bool
+) -> None:
+    """Tasks of the program's own learn of the end, whoever closes the context, and what still arrives is no error."""
+    context, node, failures = context_of(), Using(), list[dict[str, Any]]()
+    context.loop.set_exception_handler(lambda _, failure: failures.append(failure))
+    if is_own:
+        monkeypatch.setattr(Context, "open", AsyncMock(return_value=context))
+    async with running(Adder(), node, context=None if is_own else context):
+        await node.add.wait_ready()
+        call = asyncio.create_task(node.add.call(AddTwoInts.Request(), timeout=None))
+        await settle()
+        late = asyncio.create_task(node.add.call(AddTwoInts.Request(), timeout=None))
+        others = [asyncio.create_task(wait()) for wait in (node.missing.wait_ready, node.out.wait_matched, node.read)]
+        await asyncio.sleep(0)
+    if not is_own:
+        await context.close()
+    await settle()
+
+    assert all(task.done() for task in (call, late, *others))
+    ends = [type(task.exception()) for task in (call, late, *others)]
+    assert ends == [ClosedError, ClosedError, ClosedError, ClosedError, type(None)]
+    assert failures == []
 
 
 async def test_an_error_of_the_block_leaves_it_as_it_is(graphflow_runner: asyncio.Runner) -> None:

@@ -183,6 +183,34 @@ async def test_publishers_end_while_their_listeners_do(
     assert took < 8  # Zenoh itself gives up after ten
 
 
+async def test_a_session_that_leaves_withdraws_all_at_once(
+    graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
+) -> None:
+    """What is closed while it leaves is gone for others when the session is, and not one by one before."""
+    loop = asyncio.get_running_loop()
+    mine, other = ZenohSession(loop), ZenohSession(loop)
+    seen: dict[str, bool] = {}
+    other.watch("@x/*", seen.__setitem__)
+
+    async def see(wanted: dict[str, bool]) -> None:
+        async with asyncio.timeout(LIMIT):
+            while seen != wanted:
+                await asyncio.sleep(0.01)
+
+    tokens = [mine.announce(f"@x/{i}") for i in range(3)]
+    await see(dict.fromkeys(("@x/0", "@x/1", "@x/2"), True))
+    tokens[0].close()
+    await see({"@x/0": False, "@x/1": True, "@x/2": True})
+    mine.leave()
+    tokens.pop(1).close()
+    last = mine.announce("@x/last")  # which overtakes nothing
+    await see({"@x/0": False, "@x/1": True, "@x/2": True, "@x/last": True})
+    await mine.close()
+    await see(dict.fromkeys(("@x/0", "@x/1", "@x/2", "@x/last"), False))
+    last.close()
+    await other.close()
+
+
 async def test_an_answer_does_not_overtake_what_was_published_before_it(
     graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
 ) -> None:
