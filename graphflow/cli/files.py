@@ -27,6 +27,8 @@ def find_graph(text: str) -> Path:
     """
     path = Path(text)
     if path.is_file():
+        if path.suffix == ".py" and not is_launch_file(path):
+            _refuse_source(path)
         return path
     from graphflow.graph import installed
     from graphflow.graph.project import bundled_graphs
@@ -43,6 +45,31 @@ def find_graph(text: str) -> Path:
     near = [str(p) for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))]
     what = "is a folder" if path.is_dir() else "there is no such file"
     raise UsageFault(f"{text}: {what}{did_you_mean(text, [*near, *bundled, *others])}")
+
+
+def _refuse_source(file: Path) -> None:
+    """Say what to do with a Python file that describes nodes, where a graph is wanted.
+
+    Raises:
+        UsageFault: It has nodes.
+    """
+    from graphflow.graph.executables import node_classes_in
+    from graphflow.graph.workspace import uses_ros
+
+    classes = [] if uses_ros(file) else list(node_classes_in(file))
+    if not classes and not uses_ros(file):
+        return
+    from graphflow.graph.project import module_of
+
+    _, module = module_of(file)
+    several = f"; it has {', '.join(classes)}" if len(classes) > 1 else ""
+    run = f"graphflow run {f'{module}:{classes[0]}' if several else file}"
+    named = (
+        f"; a graph file names it: nodes: {{/{classes[0].lower()}: {{class: {module}:{classes[0]}}}}}"
+        if classes
+        else ""
+    )
+    raise UsageFault(f"{file} is a node and no graph file{several}; run it with: {run}{named}")
 
 
 _graph = click.argument("graph", metavar="GRAPH.yaml")
@@ -89,19 +116,17 @@ def _difference(one: Plan, other: Plan) -> Iterator[str]:
 def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     """Report every mistake in a graph file and in what it names. Node classes are imported, nothing is started.
 
-    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. Of a
-    Python file or a folder, the nodes that are written for rclpy are read, and nothing is imported. A launch file in
-    Python is run, in a process of its own.
+    Deadlocks visible in the source are reported too: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
+    remarks: names that nothing in the graph answers to. Of a Python file or a folder, node classes are imported, and
+    the nodes that are written for rclpy only read. A launch file in Python is run, in a process of its own.
     """
-    if graph.endswith(".py") and not _is_launch_file(Path(graph)):
-        return _check_rclpy([Path(graph), *map(Path, args)], as_json=as_json)
-    try:
-        path = find_graph(graph)
-    except UsageFault:
-        if not Path(graph).is_dir() or not _has_rclpy(Path(graph)):
-            raise
-        return _check_rclpy([Path(graph), *map(Path, args)], as_json=as_json)
+    if Path(graph).is_dir() or (graph.endswith(".py") and not is_launch_file(Path(graph))):
+        from graphflow.cli.sources import check_sources
+
+        return check_sources([Path(graph), *map(Path, args)], as_json=as_json)
+    path = find_graph(graph)
     from graphflow.errors import GraphFileError
+    from graphflow.graph.loose import loose_ends
     from graphflow.graph.static import findings
 
     try:
@@ -109,57 +134,40 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     except GraphFileError as error:
         problems = sorted(error.problems)
         if as_json:
-            output.as_json({"problems": [_problem(problem) for problem in problems], "deadlocks": []})
+            output.as_json({"problems": [_problem(problem) for problem in problems], "remarks": [], "deadlocks": []})
         else:
             output_problems(problems)
         return exits.USAGE
     ways = findings(resolved, found)
+    remarks = [*resolved.remarks, *map(str, sorted(loose_ends(resolved, found)))]
     certain = [way for way in ways if way.grade == "CERTAIN"]
     if as_json:
         deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
-        output.as_json({"problems": [], "deadlocks": deadlocks})
+        output.as_json({"problems": [], "remarks": remarks, "deadlocks": deadlocks})
         return exits.FAILED if certain else exits.OK
-    for text in (*resolved.remarks, *ways):
+    for text in (*remarks, *ways):
         output.talk(str(text))
     possible = [way for way in ways if way.grade in ("POSSIBLE", "IF THIS BRANCH RUNS")]
-    told = [_count(certain, "deadlock")] * bool(certain) + [_count(possible, "possible deadlock")] * bool(possible)
+    unresolved = [way for way in ways if way.grade == "unresolved"]
+    told = [
+        _count(things, what)
+        for things, what in (
+            (certain, "deadlock"),
+            (possible, "possible deadlock"),
+            (unresolved, "unresolved call"),
+            (remarks, "remark"),
+        )
+        if things
+    ]
     more = f"no mistakes, {', '.join(told)}" if told else "no problems"
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
 
 
-def _is_launch_file(file: Path) -> bool:
+def is_launch_file(file: Path) -> bool:
     """Whether a Python file is a launch file of ROS's."""
     named = file.name.endswith((".launch.py", "_launch.py"))
     return file.is_file() and (named or b"def generate_launch_description" in found_bytes(file))
-
-
-def _has_rclpy(folder: Path) -> bool:
-    """Whether some code below a folder is written for rclpy."""
-    from graphflow.graph.rclpy_source import files_in
-    from graphflow.graph.workspace import uses_ros
-
-    return any(map(uses_ros, files_in(folder)))
-
-
-def _check_rclpy(paths: Sequence[Path], *, as_json: bool) -> int:
-    """Report deadlocks that the source of rclpy nodes shows, of files and of all below folders."""
-    from graphflow.graph.rclpy_source import findings_in
-
-    for path in paths:
-        if not path.exists():
-            raise UsageFault(f"there is no file {path}")
-    ways = [way for path in paths for way in findings_in(path)]
-    certain = [way for way in ways if way.grade == "CERTAIN"]
-    if as_json:
-        deadlocks = [{"grade": way.grade, "text": str(way), **_place(way.place)} for way in ways]
-        output.as_json({"problems": [], "deadlocks": deadlocks})
-    else:
-        output.lines(str(way) for way in ways)
-        count = _count(ways, "deadlock")
-        what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
-        output.data(f"{what}: {f'{count} in the source' if ways else 'no deadlocks to be seen in the source'}")
-    return exits.FAILED if certain else exits.OK
 
 
 def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:

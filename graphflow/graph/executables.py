@@ -73,7 +73,7 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     if module is None and package in (root.name, _project_name(root)):
         module = f"nodes.{executable}"
     file = root / f"{module.replace('.', '/')}.py" if module is not None else None
-    classes = _classes(file) if file is not None and file.is_file() and not uses_ros(file) else []
+    classes = list(node_classes_in(file)) if file is not None and file.is_file() and not uses_ros(file) else []
     if len(classes) == 1:
         return Executable(f"{module}:{classes[0]}", executable)
     outside = package_of(package)
@@ -336,10 +336,10 @@ def _project(root: Path) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def _classes(file: Path) -> list[str]:
-    """Classes of a file that are nodes by what they derive from."""
+def node_classes_in(file: Path) -> dict[str, int]:
+    """Classes of a file that are nodes by what they derive from, and the line of each."""
     definitions = [node for node in _parsed(file).body if isinstance(node, ast.ClassDef)]
-    return [node.name for node in definitions if any(ast.unparse(base).endswith("Node") for base in node.bases)]
+    return {node.name: node.lineno for node in definitions if any(ast.unparse(b).endswith("Node") for b in node.bases)}
 
 
 def _parsed(file: Path) -> ast.Module:

@@ -125,7 +125,7 @@ class Expansion:
             scope = replace(scope, templates={**scope.templates, **templates.entries})
         for key, item in entries.items():
             if key not in TOP_KEYS:
-                self._problems.add(item.at, unknown_key(key, TOP_KEYS))
+                self._problems.add(item.at, unknown_key(key, TOP_KEYS, item.plain()))
         overridden = entries.get("override")
         if overridden is not None and "include" not in entries:
             self._problems.add(overridden.at, "override: goes with include:, whose nodes it changes")

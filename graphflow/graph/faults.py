@@ -97,7 +97,7 @@ def validated(model: type[M], src: Source, problems: Problems) -> M | None:
                 others = "; a program has pkg: and exec:, or command:" if path[-1] == "class" else ""
                 problems.add(src.key_place(path[:-1]), f"the key {str(path[-1])!r} is missing{others}")
         elif fault["type"] == "extra_forbidden":
-            problems.add(src.key_place(path), unknown_key(str(path[-1]), _known_keys(model, path)))
+            problems.add(src.key_place(path), unknown_key(str(path[-1]), _known_keys(model, path), fault["input"]))
         elif fault["type"] == "value_error":
             problems.add(src.place(path), str(fault["ctx"]["error"]))
         elif path in wanted:
@@ -139,17 +139,31 @@ def _is_model(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
-def unknown_key(key: str, known: Collection[str]) -> str:
-    """What to say of a key that is not known, and which was probably meant."""
+def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
+    """What to say of a key that is not known, and which was probably meant.
+
+    Args:
+        value: What is written under it.
+    """
     head = key.partition(":")[0]
-    ours, why = _OF_ROS.get(key, ("", ""))
-    if ours in known:
-        return f"unknown key {key!r}; {why or f'it is called {ours!r} here'}"
+    if "nodes" in known and _is_node(key, value):
+        return f"unknown key {key!r}; nodes are written under nodes:, indented"
+    for ours, why in (_OF_ROS.get(key, ("", "")), _OF_GROUPS.get(key, ("", ""))):
+        if ours in known:
+            return f"unknown key {key!r}; {why or f'it is called {ours!r} here'}"
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"
     return f"unknown key {key!r}{did_you_mean(key, known)}"
 
 
+def _is_node(key: str, value: object) -> bool:
+    return key.startswith("/") or (isinstance(value, dict) and not {"class", "exec", "command"}.isdisjoint(value))
+
+
+_OF_GROUPS = {"ns": ("namespace", "")}
+_IN_A_NAMESPACE = (
+    "the namespace is part of the node's name, as in /robot1/talker, or stands in a group: namespace: robot1"
+)
 _OF_ROS = {
     "package": ("pkg", ""),
     "executable": ("exec", ""),
@@ -160,6 +174,9 @@ _OF_ROS = {
     "respawn_delay": ("restart", "write restart: {policy: always, delay: SECONDS}"),
     "output": ("pkg", "what any node prints is logged and shown"),
     "name": ("pkg", "a node is called as its key"),
+    "ns": ("pkg", _IN_A_NAMESPACE),
+    "namespace": ("pkg", _IN_A_NAMESPACE),
+    "required": ("critical", ""),
 }
 """Words of ROS's launch files in Python for a node: the key that is meant, and what to say other than that."""
 

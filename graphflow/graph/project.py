@@ -34,6 +34,15 @@ def project_root(path: Path) -> Path:
     return folder.parent if folder.name == "graphs" and (folder.parent / "nodes").is_dir() else folder
 
 
+def module_of(file: Path) -> tuple[Path, str]:
+    """The folder that a file's classes are imported from, and its name there: seen from the working directory, if it
+    is below that.
+    """
+    here, path = project_root(Path.cwd()), file.resolve()
+    root = here if path.is_relative_to(here) else project_root(path)
+    return root, ".".join(path.relative_to(root).with_suffix("").parts)
+
+
 def add_interfaces(root: Path) -> None:
     """Make the messages, services and actions in a project's `interfaces/` available, and those of its workspace."""
     folder = root / "interfaces"

@@ -388,10 +388,11 @@ async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> N
     """Once the graph is up, report what is odd in its files, and the deadlocks that its source shows."""
     import asyncio
 
+    from graphflow.graph.loose import loose_ends
     from graphflow.graph.static import findings, warnings
 
     await supervisor.up.wait()
-    for remark in plan.remarks:
+    for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
         supervisor.note(remark)
     if plan.deadlock != "off":
         ways = await asyncio.to_thread(findings, plan, interfaces)

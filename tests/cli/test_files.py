@@ -128,7 +128,7 @@ def test_two_plans(machine: Machine) -> None:
 
 def test_checks_for_programs(machine: Machine, tmp_path: Path) -> None:
     """Problems and deadlocks with their places; the exit code is the same."""
-    assert json.loads(machine.look("check", "--json", GRAPHS[0])) == {"problems": [], "deadlocks": []}
+    assert json.loads(machine.look("check", "--json", GRAPHS[0])) == {"problems": [], "remarks": [], "deadlocks": []}
     wrong = tmp_path / "g.yaml"
     wrong.write_text("nodes: {a: {clas: x:Y}}\n")
     (problem,) = json.loads(machine.look("check", "--json", str(wrong), code=2))["problems"]

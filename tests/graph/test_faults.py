@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from graphflow.errors import GraphFileError, Place
 from graphflow.graph import source
-from graphflow.graph.faults import Problems, example, validated
+from graphflow.graph.faults import _IN_A_NAMESPACE, Problems, example, validated
 from graphflow.graph.model import GraphFile
+from graphflow.graph.resolve import resolve
 
 HERE, THERE = Place("f.yaml", 1, 1), Place("f.yaml", 2, 1)
 
@@ -71,6 +74,10 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
         ),
         ("{pkg: p, exec: e, output: screen}", ["unknown key 'output'; what any node prints is logged and shown"]),
         ("{pkg: p, exec: e, name: n}", ["unknown key 'name'; a node is called as its key"]),
+        (
+            "{class: x:Y, ns: /a}",
+            [f"unknown key 'ns'; {_IN_A_NAMESPACE}"],
+        ),
         ("{class: x:Y, respawn: true}", ["unknown key 'respawn'; write restart: always"]),
         ("{pkg: p}", ["an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file"]),
         ("{pkg: p, exec: e, class: x:Y}", ["write class:, or pkg: and exec:, not both"]),
@@ -87,6 +94,15 @@ def test_words_of_ros_launch_files(node: str, said: list[str]) -> None:
     found = {fault.partition(": ")[2] for fault in faults(f"nodes:\n  a: {node}")}
     assert found >= set(said)
     assert not any("missing" in fault for fault in found)
+
+
+@pytest.mark.parametrize("name", ["/talker", "talker"])
+def test_nodes_that_are_not_below_nodes(name: str) -> None:
+    """A key that is a node by its name or by what is written under it."""
+    text = f"unknown key {name!r}; nodes are written under nodes:, indented"
+    assert faults(f"{name}: {{class: a:B}}\n") == [f"1:1: {text}"]
+    with pytest.raises(GraphFileError, match=text):
+        resolve(source.read(f"{name}: {{class: a:B}}\n", "f.yaml"), Path("/nowhere/f.yaml"), [], {})
 
 
 def test_a_place_that_is_known_to_be_wrong_is_complained_of_once() -> None:

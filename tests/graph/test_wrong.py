@@ -132,7 +132,10 @@ steps:
     ("words", "message"),
     [
         (["graphs/rign.yaml"], "error: graphs/rign.yaml: there is no such file; did you mean 'graphs/ring.yaml'?"),
-        (["graphs"], "error: graphs: is a folder"),
+        (
+            ["graphs"],
+            "error: graphs: no node in it, of graphflow or of rclpy; its graph files are checked one by one: ",
+        ),
         (["graphs/key_typo.yaml", "rate"], "command line: 'rate': an argument is written name:=value"),
     ],
 )

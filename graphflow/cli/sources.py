@@ -1,0 +1,120 @@
+"""`graphflow check FILE.py|FOLDER`: nodes in source, without a graph file."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from graphflow.cli import exits, output
+from graphflow.errors import Place, Problem, UsageFault
+from graphflow.graph import static
+from graphflow.graph.check import check
+from graphflow.graph.executables import node_classes_in
+from graphflow.graph.plan import Plan, PlannedNode
+from graphflow.graph.project import add_interfaces, module_of, shown
+from graphflow.graph.rclpy_source import files_in, findings_in
+from graphflow.graph.static import Finding
+from graphflow.graph.workspace import uses_ros
+from graphflow.interface import Interface
+from graphflow.supervisor.classes import read_interfaces
+from graphflow.supervisor.probe import probe
+
+
+def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
+    """Report mistakes of node classes and deadlocks that their source shows, of files and of all below folders.
+
+    Classes of graphflow's are imported; what is written for rclpy is only read.
+
+    Raises:
+        UsageFault: There is no such file, or no node in any.
+    """
+    problems: list[Problem] = []
+    ways: list[Finding] = []
+    nodes = read = 0
+    for path in paths:
+        if not path.exists():
+            raise UsageFault(f"there is no file {path}")
+        for file in files_in(path):
+            if (fault := _unreadable(file)) is not None:
+                problems.append(fault)
+            elif uses_ros(file):
+                read += 1
+                ways += findings_in(file)
+            elif classes := node_classes_in(file):
+                nodes += len(classes)
+                wrong, seen = _checked(file, classes)
+                problems += wrong
+                ways += seen
+    if not (nodes or read or problems):
+        raise UsageFault(f"{' '.join(map(str, paths))}: no node in it, of graphflow or of rclpy{_graphs_in(paths)}")
+    _tell(paths, problems, ways, nodes, as_json=as_json)
+    if problems:
+        return exits.USAGE
+    return exits.FAILED if any(way.grade == "CERTAIN" for way in ways) else exits.OK
+
+
+def _unreadable(file: Path) -> Problem | None:
+    try:
+        ast.parse(file.read_text(encoding="utf-8"))
+    except SyntaxError as error:
+        return Problem(Place(shown(file), error.lineno or 1, error.offset or 1), f"SyntaxError: {error.msg}")
+    except (OSError, ValueError) as error:
+        return Problem(Place(shown(file)), f"cannot be read: {error}")
+    return None
+
+
+def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[Finding]]:
+    """The mistakes in the classes of a file, which are imported, and the deadlocks that a graph of them could have."""
+    root, module = module_of(file)
+    add_interfaces(root)
+    lines = {f"{module}:{name}": line for name, line in classes.items()}
+    interfaces = read_interfaces(probe(lines, str(root)))
+    nodes = []
+    for class_path, line in lines.items():
+        interface, place = interfaces[class_path], Place(shown(file), line, 1)
+        name = interface.node_name if isinstance(interface, Interface) else class_path
+        nodes.append(PlannedNode(f"/{name}", class_path, place, place))
+    plan = Plan(module, shown(file), str(root), tuple(nodes))
+    alone = [check(Plan(module, plan.file, plan.root, (node,)), interfaces) for node in nodes]
+    # Calls to other nodes are known in a graph only.
+    ways = [way for way in static.findings(plan, interfaces) if way.grade != "unresolved"]
+    # A module that cannot be imported is so for each of its classes.
+    return list({problem.message: problem for found in reversed(alone) for problem in found}.values()), ways
+
+
+def _tell(paths: Sequence[Path], problems: list[Problem], ways: list[Finding], nodes: int, *, as_json: bool) -> None:
+    if as_json:
+        deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in ways]
+        told = [{"message": problem.message, **place_of(problem.place)} for problem in problems]
+        output.as_json({"problems": told, "remarks": [], "deadlocks": deadlocks})
+        return
+    for problem in problems:
+        output.talk(str(problem))
+    output.lines(str(way) for way in ways)
+    what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
+    counts = [*_counts(problems, ways)]
+    if nodes:
+        counts.insert(0, f"{nodes} node class{'es' * (nodes != 1)}")
+    output.data(
+        f"{what}: {', '.join(counts) if problems or ways or nodes else 'no deadlocks to be seen in the source'}"
+    )
+
+
+def _counts(problems: list[Problem], ways: list[Finding]) -> Iterator[str]:
+    if problems:
+        yield f"{len(problems)} problem{'s' * (len(problems) != 1)}"
+    if ways:
+        yield f"{len(ways)} deadlock{'s' * (len(ways) != 1)} in the source"
+    if not problems and not ways:
+        yield "no problems"
+
+
+def place_of(place: Place) -> dict[str, str | int]:
+    """A place as JSON."""
+    return {"file": place.file, "line": place.line, "column": place.column}
+
+
+def _graphs_in(paths: Sequence[Path]) -> str:
+    near = sorted(str(file) for path in paths if path.is_dir() for file in path.glob("*.yaml"))
+    return f"; its graph files are checked one by one: {', '.join(near[:5])}" if near else ""

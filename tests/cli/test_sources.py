@@ -1,0 +1,94 @@
+"""`graphflow check` of nodes without a graph file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import PROJECT, Machine
+
+NODES = """\
+from graphflow import Node, Publisher, timer
+from graphflow.msgs.std_msgs.msg import String
+
+
+class Talker(Node):
+    out = Publisher(String, "chatter")
+
+    @timer(1.0)
+    async def tick(self) -> None:
+        self.out.publish(String())
+
+
+class Other(Node):
+    out = Publisher(String, "chatter")
+"""
+RCLPY = "from rclpy.node import Node\n\nclass Mover(Node):\n    pass\n"
+
+
+@pytest.fixture
+def here(machine: Machine, tmp_path: Path) -> Machine:
+    """A machine with nodes in `nodes/`."""
+    (tmp_path / "pyproject.toml").touch()
+    for name, text in (("nodes/talk.py", NODES), ("ros/move.py", RCLPY), ("graphs/g.yaml", "nodes: {}\n")):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return machine
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("nodes", "nodes: 2 node classes, no problems\n"),
+        ("nodes/talk.py", "nodes/talk.py: 2 node classes, no problems\n"),
+        ("ros", "ros: no deadlocks to be seen in the source\n"),
+        (".", ".: 2 node classes, no problems\n"),
+    ],
+)
+def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told: str) -> None:
+    """Of a file or a folder, of graphflow's nodes and of rclpy's: the line says which were looked at."""
+    assert here.look("check", path, cwd=tmp_path) == told
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("class Other(Node):", "class Other(Node:", "nodes/talk.py:13:17: SyntaxError"),
+        ('(String, "chatter")', '(String, "chat ter")', "'chat ter' is not a topic or service name"),
+        ("import String", "import Strang", "package 'std_msgs' has no msg 'Strang'"),
+    ],
+)
+def test_mistakes_in_source(here: Machine, tmp_path: Path, old: str, new: str, told: str) -> None:
+    """What cannot be read, imported or declared has its place, and the exit code is 2."""
+    (tmp_path / "nodes/talk.py").write_text(NODES.replace(old, new))
+    text = here.look("check", "nodes", cwd=tmp_path, code=2)
+    assert told in text
+    assert "no problems" not in text
+    found = json.loads(here.look("check", "nodes", "--json", cwd=tmp_path, code=2))
+    assert told.rpartition(": ")[2] in found["problems"][0]["message"]
+
+
+def test_deadlocks_in_source(machine: Machine) -> None:
+    """A class that waits for itself needs no graph for that."""
+    text = machine.look("check", str(PROJECT / "nodes/deadlock/self_call.py"), code=1)
+    assert "CERTAIN: timer tick of /narcissus awaits /narcissus/add" in text
+    assert "1 node class, 1 deadlock in the source" in text
+
+
+def test_a_folder_without_nodes(here: Machine, tmp_path: Path) -> None:
+    """Its graph files are named."""
+    assert "its graph files are checked one by one: graphs/g.yaml" in here.look("check", "graphs", cwd=tmp_path, code=2)
+
+
+@pytest.mark.parametrize("verb", ["up", "plan", "launch"])
+def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str) -> None:
+    """It is said how a node is run, and how a graph file names it; a node of rclpy's runs as a file."""
+    text = here.look(verb, "nodes/talk.py", cwd=tmp_path, code=2)
+    assert (
+        "nodes/talk.py is a node and no graph file; it has Talker, Other; run it with: graphflow run nodes.talk:Talker"
+        in text
+    )
+    assert "nodes: {/talker: {class: nodes.talk:Talker}}" in text
+    assert here.look(verb, "ros/move.py", cwd=tmp_path, code=2).endswith("run it with: graphflow run ros/move.py\n")
