@@ -10,6 +10,7 @@ from importlib import metadata
 import click
 
 from graphflow.cli import exits, output
+from graphflow.cli.supervised import supervised
 from graphflow.cli.verbs import Verbs
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
@@ -90,10 +91,13 @@ def _graph() -> tuple[Findings, Findings, int]:
         others = [
             name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
         ]
+        managed = supervised(view.cache.nodes())
+        silent = concurrency.unresponsive(read, view)
         faults = {
             "deadlocks": read.reports,
             "stalls": read.stalls,
-            "unresponsive": concurrency.unresponsive(read, view),
+            "unresponsive": silent,
+            "supervised": [text for text in managed.faults if not _is_told(text, silent)],
             "blocked": [
                 f"{who}: the event loop has been blocked for {seconds:.1f} s; see its log"
                 for who, seconds in read.blocked
@@ -101,6 +105,7 @@ def _graph() -> tuple[Findings, Findings, int]:
             "misfits": list(complaints(view.cache)),
             "health": health.faults,
         }
+        unseen = [*managed.unseen, *concurrency.hidden(read, view)]
     late = [
         f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
         for who, n, most in read.late
@@ -110,7 +115,7 @@ def _graph() -> tuple[Findings, Findings, int]:
         if read.unreadable
         else []
     )
-    notes = {"late": late, "hints": health.hints, "silent": others, "unreadable": unread}
+    notes = {"late": late, "hints": health.hints, "silent": others, "unreadable": unread, "unseen": unseen}
     return faults, notes, sum(not is_hidden(name) for name in read.nodes)
 
 
@@ -125,9 +130,22 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
     output.lines([*notes["late"], *notes["hints"], *notes["rclpy"]])
     if notes["silent"]:
         output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(notes['silent'])}")
-    output.lines(notes["unreadable"])
+    output.lines([*notes["unreadable"], *notes["unseen"]])
     if not any(faults.values()) and not notes["late"]:
-        output.data(f"{count} node{'s' if count != 1 else ''}, nothing wrong")
+        output.data(f"{count} node{'s' if count != 1 else ''}, {_verdict(notes)}")
+
+
+def _verdict(notes: Findings) -> str:
+    """The last line, where there is no fault: nothing is certain of what was not seen."""
+    if notes["silent"] or notes["unreadable"] or notes["unseen"]:
+        return "nothing wrong in what could be seen; the lines above say what could not"
+    return "no fault; the lines above may be meant so" if notes["hints"] else "nothing wrong"
+
+
+def _is_told(text: str, silent: list[str]) -> bool:
+    """Whether a node that its supervisor speaks of is among those that did not answer."""
+    node = text.partition(" ")[0]
+    return any(node in told.split() for told in silent)
 
 
 def _environment() -> Mapping[str, str]:

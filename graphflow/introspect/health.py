@@ -199,10 +199,24 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
             who = sorted({e.node_name for e in cache.endpoints(here, name) if not is_hidden(e.node_name)})
             if not who or is_hidden(name) or name in _EVERYBODYS:
                 continue
-            best = next((other for other in sorted(offered) if _is_misspelt(name, other)), "")
             text = f"{' and '.join(who)} {listens} {name}, which nobody {speaks}"
-            (near if best else far).append(f"{text}; did you mean {best}?" if best else text)
+            best = next((other for other in sorted(offered) if _is_misspelt(name, other)), "")
+            if best:
+                near.append(f"{text}; did you mean {best}?")
+            else:
+                far.append(f"{text}{_nearest(cache, name, here, there)}")
     return near, far
+
+
+def _nearest(cache: GraphCache, name: str, here: Kind, there: Kind) -> str:
+    """What is offered instead: the name most like one that nobody offers, else those that carry its type."""
+    type_ = {e.type for e in cache.endpoints(here, name)}
+    same = sorted(
+        {e.name for e in cache.endpoints(there) if e.type in type_ and not is_hidden(e.name)} - {*_EVERYBODYS}
+    )
+    like = nearest(name, same)
+    of_its_type = [like] if like else same[:TOLD_BOUND]
+    return f"; of that type there is {', '.join(of_its_type)}" if of_its_type else ""
 
 
 def _is_misspelt(name: str, other: str) -> bool:

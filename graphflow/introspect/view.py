@@ -41,8 +41,8 @@ class View:
     def __init__(self, domain: int) -> None:
         self.domain = domain
         self._client = Client()
-        self.cache = GraphCache(self._client.tokens(watch_key(domain)))
         self._calls = 0
+        self.refresh()
 
     def __enter__(self) -> Self:
         return self
@@ -54,6 +54,8 @@ class View:
 
     def refresh(self) -> None:
         """Read the graph again."""
+        # Both at one moment: a process that does not answer is forgotten by the router a few seconds later.
+        self._processes = self._client.tokens(process.watch_key(self.domain))
         self.cache = GraphCache(self._client.tokens(watch_key(self.domain)))
 
     def node(self, name: str) -> str:
@@ -151,8 +153,8 @@ class View:
         return f"session {', '.join(sorted(zids))}, not a graphflow process"
 
     def processes(self) -> dict[str, ProcessToken]:
-        """The graphflow processes in the domain, by session."""
-        tokens = map(process.parse, self._client.tokens(process.watch_key(self.domain)))
+        """The graphflow processes in the domain, by session, as they were when the graph was read."""
+        tokens = map(process.parse, self._processes)
         return {token.zid: token for token in tokens if token is not None}
 
     def _no_answer(self, name: str, type_name: str, hash_: str) -> str:

@@ -28,7 +28,7 @@ class ProcessToken(NamedTuple):
     @property
     def why_silent(self) -> str:
         """What may keep the process from answering, and what to do about it."""
-        if self.host == host_name() and _state(self.pid) in ("T", "t"):
+        if self.host == host_name() and is_stopped(self.pid):
             return f"it is stopped: kill -CONT {self.pid}"
         return "it is stopped, or something holds its interpreter, or it cannot be reached"
 
@@ -68,6 +68,11 @@ def parse(text: str) -> ProcessToken | None:
         return None
     pid = whole_number(parts[5])
     return None if pid is None else ProcessToken(parts[3], parts[4], pid, parts[6])
+
+
+def is_stopped(pid: int) -> bool:
+    """Whether a process of this machine is stopped, as by Ctrl-Z or a debugger; False where the system does not say."""
+    return _state(pid) in ("T", "t")
 
 
 def _state(pid: int) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -28,11 +30,15 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
     found = json.loads(standing.look("wtf", "--json", code=1))
     assert [text[: len(STANDING_FAULT)] for text in found.pop("misfits")] == [STANDING_FAULT]
     found.pop("late")
-    assert found.pop("hints") == ["/office/clerk calls /bank/add, which nobody offers"]
+    assert found.pop("hints") == [
+        "/office/clerk calls /bank/add, which nobody offers; of that type there is /office/clerk/add"
+    ]
     others = (
         "deadlocks",
         "stalls",
         "unresponsive",
+        "supervised",
+        "unseen",
         "blocked",
         "silent",
         "rclpy",
@@ -51,6 +57,27 @@ def test_nothing_runs(machine: Machine) -> None:
     )
     assert "PACKAGE VERSIONS" in machine.look("doctor", "-r")
     assert "no such command 'now'" in machine.look("doctor", "now", code=2)
+
+
+def test_a_stopped_process(machine: Machine, tmp_path: Path) -> None:
+    """It is told at once, and still when the network has forgotten it; a program that is no node is told likewise."""
+    (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}, /p: {command: [sleep, '99']}}\n")
+    machine.run("up", "-d", "g.yaml", cwd=tmp_path)
+    pids = {row["node"]: row["pid"] for row in json.loads(machine.look("ps", "--json"))}
+    assert machine.look("doctor") == "1 node, nothing wrong\n"
+    for pid in pids.values():
+        os.kill(pid, signal.SIGSTOP)
+    try:
+        text = machine.look("doctor", code=1)
+        assert f"/talker (process {pids['/talker']}) did not answer: it is stopped: kill -CONT" in text
+        assert f"/p (process {pids['/p']}) is stopped: kill -CONT {pids['/p']}" in text
+        assert "nothing wrong" not in text
+        machine.until(lambda: "/talker" not in machine.look("node", "list"), "the network forgets it")
+        assert f"/talker (process {pids['/talker']}) is stopped: kill -CONT" in machine.look("doctor", code=1)
+    finally:
+        for pid in pids.values():
+            os.kill(pid, signal.SIGCONT)
+        machine.run("down", cwd=tmp_path)
 
 
 @slow
@@ -93,6 +120,8 @@ def test_hints_as_faults(machine: Machine) -> None:
     """If they are wanted to be."""
     node = machine.start("run", "listener")
     machine.until(lambda: "/listener" in machine.look("node", "list", code=None), "it runs")
-    assert "listens to /chatter, which nobody publishes" in machine.look("doctor")
+    text = machine.look("doctor")
+    assert "listens to /chatter, which nobody publishes" in text
+    assert "1 node, no fault; the lines above may be meant so" in text
     machine.look("doctor", "-iw", code=1)
     assert node.end() == 0

@@ -112,8 +112,8 @@ def test_where_nobody_speaks() -> None:
         "/goto calls /spwan, which nobody offers; did you mean /spawn?",
     ]
     assert told.hints == [
-        "/two listens to /scan2, which nobody publishes",
-        "/sim listens to /turtle1/cmd_vel, which nobody publishes",
+        "/two listens to /scan2, which nobody publishes; of that type there is /scan1",
+        "/sim listens to /turtle1/cmd_vel, which nobody publishes; of that type there is /turtle1/pose",
     ]
 
 
