@@ -38,6 +38,7 @@ from graphflow.runtime.parameter_services import ParameterEvents, ParameterServi
 from graphflow.runtime.params import ParameterChange, Parameters
 from graphflow.runtime.rosout import Rosout
 from graphflow.runtime.services import ServiceServer
+from graphflow.runtime.slips import slips
 from graphflow.runtime.slow_hooks import when_slow
 from graphflow.runtime.surroundings import unused_remaps
 from graphflow.wire.liveliness import Entity, Kind
@@ -294,6 +295,8 @@ class NodeCore:
         try:
             await self._open(context)
             self.warn_unused_remaps()
+            for slip in slips(type(self.instance)):
+                self.log.warning("%s", slip)
             await self._begin()
         except BaseException:  # cancellation included: nothing stays open
             await self.stop()

@@ -16,7 +16,7 @@ from graphflow.machines.goal import GoalRules
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.names import Remap, Resolution, Resolver
 from graphflow.qos import SERVICES, Qos
-from graphflow.runtime import declared, surroundings
+from graphflow.runtime import declared, surroundings, unrun
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.actions import ActionServer
 from graphflow.runtime.checks import (
@@ -96,6 +96,7 @@ class Node(SpeaksRos):
         enable_logger_service: bool = True,
         **params: Any,
     ) -> None:
+        unrun.made()
         given = surroundings.take(self)
         rules = [*given.remaps, *(r if isinstance(r, Remap) else Remap.parse(r) for r in remap)]
         own_name = given.name or name or declared.default_name(type(self))
@@ -125,6 +126,7 @@ class Node(SpeaksRos):
         if "__firstlineno__" not in vars(cls):
             cls.__firstlineno__ = declared.class_line()
         declared.check_attributes(cls, Node)
+        unrun.defined(cls)
         declared.interface_of(cls)  # a wrong declaration is an error of the import, not of a later run
 
     def __repr__(self) -> str:

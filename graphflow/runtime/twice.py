@@ -20,6 +20,14 @@ from graphflow.runtime.declare import Param
 
 _DECLARING = {"subscription", "service", "timer", "action", "task"}
 _DECLARING |= {"Publisher", "Subscription", "Client", "ActionClient", "Param", "Group"}
+_OF_NODES = {
+    "name": 'choose another attribute; the node\'s own name is given by super().__init__("bob") or node_name = "bob"',
+    **dict.fromkeys(
+        ("namespace", "full_name", "context", "clock", "group", "endpoints", "is_running", "derivations"),
+        "choose another name",
+    ),
+}
+"""Attributes of every node that are only read, and what to do instead."""
 _PARTS = {"setter", "getter", "deleter", "overload"}
 """Decorators of functions that are meant to have one name."""
 
@@ -33,14 +41,14 @@ def check_names(cls: type) -> None:
     """
     names = {**declared.handlers(cls), **{k: v for k, v in declared.held(cls).items() if not isinstance(v, Param)}}
     for parent in cls.__mro__:
-        found = _definition(parent) if is_users_module(parent.__module__) else None
+        found = definition_of(parent) if is_users_module(parent.__module__) else None
         if found is not None:
             definition, file = found
             _check_body(definition, file)
             _check_assignments(definition, file, names.keys())
 
 
-def _definition(cls: type) -> tuple[ast.ClassDef, str] | None:
+def definition_of(cls: type) -> tuple[ast.ClassDef, str] | None:
     """The source of a class and its file; None if there is none, or it cannot be told from others."""
     file = getattr(sys.modules.get(cls.__module__), "__file__", None) or ""
     try:
@@ -92,6 +100,10 @@ def _check_assignments(definition: ast.ClassDef, file: str, names: Collection[st
                 continue  # its `self` is something else
             if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and is_own(node):
                 name, place = node.attr, Place(file, node.lineno)
+                if name in _OF_NODES:
+                    raise DeclarationError(
+                        f"{place}: every node has self.{name}, which cannot be set; {_OF_NODES[name]}"
+                    )
                 if name in names:
                     raise DeclarationError(
                         f"{place}: self.{name} is what {definition.name} declares by that name; "

@@ -1,0 +1,114 @@
+"""Slips in a class that Python runs without an error."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from graphflow import DeclarationError, Node
+from graphflow.runtime.slips import slips
+from graphflow.testing import Graph
+
+HEAD = """\
+from graphflow import Node, Param, Publisher, subscription, timer
+from graphflow.msgs.example_interfaces.srv import AddTwoInts
+from graphflow.msgs.geometry_msgs.msg import Twist
+from graphflow.msgs.std_msgs.msg import Int32, String
+
+
+class Robot(Node):
+    rate = Param(1.0)
+    out = Publisher(Int32, "out")
+
+"""
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[type[Node]]:
+    """Makes the class `Robot` of a module with these lines in its body."""
+
+    def made(body: str) -> type[Node]:
+        file = tmp_path / "slip_module.py"
+        file.write_text(HEAD + "".join(f"    {line}\n" for line in body.splitlines()))
+        spec = importlib.util.spec_from_file_location("slip_module", file)
+        assert spec is not None
+        assert spec.loader is not None
+        sys.modules["slip_module"] = module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module.Robot  # type: ignore[no-any-return]
+
+    yield made  # type: ignore[misc]
+    sys.modules.pop("slip_module", None)
+
+
+LOOKS = "nothing calls Robot.{}, which looks like a handler: declare it, as with {} above it"
+SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ("async def heard(self, message: String) -> None: ...", LOOKS.format("heard", SUBSCRIPTION)),
+        ("def add(self, request: AddTwoInts.Request): ...", LOOKS.format("add", SERVICE)),
+        ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
+        ("def timer_callback(self): ...", LOOKS.format("timer_callback", "@timer(1.0)")),
+        ("def work(self):\n    self.rat = 2.0", "self.rat is set and never read; did you mean self.rate?"),
+        ("def work(self):\n    m = String()\n    m.dat = 'x'", "String has no field 'dat'; did you mean 'data'?"),
+        (
+            "@subscription(String, 't')\ndef heard(self, m: String) -> None:\n    m.dat = 'x'",
+            "String has no field 'dat'",
+        ),
+        ("def work(self):\n    m = Int32()\n    m.data = 'x'", "Int32.data: expected int32, got 'x'"),
+        (
+            "def work(self):\n    m = Twist()\n    m.linear = 3",
+            "Twist.linear: expected geometry_msgs/msg/Vector3, got 3",
+        ),
+    ],
+)
+def test_slips(robot: object, body: str, told: str) -> None:
+    """Each with its line."""
+    [text] = slips(robot(body))  # type: ignore[operator]
+    place, _, rest = text.partition(": ")
+    assert place.partition("slip_module.py:")[2].isdigit()
+    assert rest.startswith(told)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "async def on_start(self) -> None: ...",
+        "@timer(1.0)\nasync def tick(self) -> None: ...",
+        "def on_pose(self, m: String) -> None: ...\nasync def on_start(self) -> None:\n    self.use(self.on_pose)",
+        "def work(self):\n    self.rats = 2.0\n    return self.rats",
+        "def work(self):\n    self.position = 2.0",
+        "def work(self, m):\n    m.dat = 'x'",
+        "def work(self):\n    m = String()\n    m.data = 'x'",
+        "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'",
+        "def helper(self, pose): ...",
+    ],
+)
+def test_what_is_no_slip(robot: object, body: str) -> None:
+    """Hooks, methods that are passed on, attributes that are read, messages whose type is not known."""
+    assert slips(robot(body)) == ()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("name", ["name", "context", "clock", "group"])
+def test_what_every_node_has_cannot_be_set(robot: object, name: str) -> None:
+    """The line is told before a node is made."""
+    cls = robot(f"def work(self):\n    self.{name} = 'bob'")  # type: ignore[operator]
+    with pytest.raises(
+        DeclarationError, match=rf"slip_module\.py:12: every node has self\.{name}, which cannot be set"
+    ):
+        cls.interface()
+
+
+async def test_a_node_tells_them_when_it_starts(graph: Graph, robot: object, caplog: pytest.LogCaptureFixture) -> None:
+    """Once for each start, as warnings."""
+    await graph.start(robot("def on_pose(self, message): ...")())  # type: ignore[operator]
+    assert [record.levelname for record in caplog.records if "nothing calls Robot.on_pose" in record.message] == [
+        "WARNING"
+    ]
