@@ -76,8 +76,10 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
             classes: a node that has been made has its names and values.
 
     Raises:
+        RuntimeError: An event loop is running here, as in a notebook.
         SystemExit: With 1 and a message when a node failed, with 2 when the arguments are wrong.
     """
+    _refuse_running_loop(nodes)
     setup_console()
     try:
         ros = parse_ros_args(sys.argv[1:] if args is None else args)
@@ -110,6 +112,23 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None) -> None:
             raise
         print_error(error)
         raise SystemExit(2 if isinstance(error, UsageFault) else 1) from None
+
+
+def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
+    """See that no event loop runs in this thread.
+
+    Raises:
+        RuntimeError: One does; the text says what to write there.
+    """
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return
+    names = ", ".join(f"{node.__name__}()" if isinstance(node, type) else node.name for node in nodes)
+    raise RuntimeError(
+        "graphflow.run starts an event loop, and one is running here, as in a notebook; write "
+        f"async with graphflow.running({names}): ..."
+    )
 
 
 def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:

@@ -20,7 +20,7 @@ from tests.conftest import PROJECT
 from tests.docs.test_docs import PAGES, blocks
 
 PUBLIC_MODULES = (
-    *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.", "graphflow.bag."),
+    *("graphflow.msgs.", "graphflow.testing.", "graphflow.qos.", "graphflow.bag.", "graphflow.nodes."),
     *(f"graphflow.tui.{name}." for name in graphflow.tui.__all__),
 )
 """What users import beside `graphflow` itself; `graphflow.qos` has ROS 2's named profiles, `tui` the views."""

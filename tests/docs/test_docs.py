@@ -14,6 +14,7 @@ The first word behind a block's fence is its kind, further words say more:
     wrong         a graph file with mistakes
     fragment      a part of a graph file
     net           a net profile
+    cell          a cell of a notebook, run by test_notebooks.py
     ros2          code for ROS 2, to compare with: it must parse
     up=PATH       this graph file runs in another terminal
 
@@ -59,7 +60,7 @@ from tests.conftest import LIMIT, PROJECT, Machine, Program
 
 PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").glob("*.md"))]
 KINDS = {
-    "python": {"file", "raises", "ros2"},
+    "python": {"file", "raises", "ros2", "cell"},
     "yaml": {"file", "wrong", "fragment", "net"},
     "xml": {"file"},
     "msg": {"file"},
@@ -203,6 +204,8 @@ async def test_python(page: Path, project: Path, graphflow_runner: Any) -> None:
     lines = [""] * len(source)  # so that a traceback names the line of the page
     own: list[Block] = []
     for block in blocks(page, "python"):
+        if "cell" in block.options:
+            continue
         if "ros2" in block.options:
             ast.parse(block.text)
         elif "file" in block.options:

@@ -50,6 +50,12 @@ def context_of(clock: ManualClock | None = None) -> Context:
 # running
 
 
+async def test_run_refuses_a_running_loop(graphflow_runner: asyncio.Runner) -> None:
+    """As in a notebook; it says what to write there."""
+    with pytest.raises(RuntimeError, match=r"write async with graphflow\.running\(Talker\(\)\): \.\.\."):
+        run(Talker)
+
+
 async def test_nodes_run_for_the_length_of_the_block(graphflow_runner: asyncio.Runner) -> None:
     """They are up in it and stopped after it; a context that was given stays open."""
     one, two, context = Talker("one"), Talker("two"), context_of()
