@@ -15,6 +15,7 @@ from typing import Any
 
 from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
+from graphflow.bag.missing import check_messages, remarks
 from graphflow.bag.reader import Bag
 from graphflow.bag.typed import learn
 from graphflow.errors import BagError, InvalidName
@@ -87,6 +88,8 @@ class Player:
         """Messages sent."""
         self.refused: list[str] = []
         """Topics that are not played, each with its reason."""
+        self.absent = remarks([bag], options.choice, {*options.remaps, *options.clock_topics})
+        """Sentences about names in the options that the bag does not have."""
         self.now_ns = bag.contents.start_ns
         """Where in the bag it is, nanoseconds since 1970."""
         self._steps = 0
@@ -95,12 +98,9 @@ class Player:
         self._topics = dict(self._chosen())
         self._publishers: dict[str, raw.RawPublisher] = {}
         if not self._topics:
-            why = (
-                f": {'; '.join(self.refused)}"
-                if self.refused
-                else f"; it has {', '.join(bag.contents.topics) or 'none'}"
-            )
-            raise BagError(f"{bag.path}: there is nothing to play{why}")
+            why = "; ".join(self.refused or self.absent) or f"it has {', '.join(bag.contents.topics) or 'none'}"
+            raise BagError(f"{bag.path}: there is nothing to play: {why}")
+        check_messages([bag], self._topics, (), *self._span)
         for name, topic in self._topics.items():
             self._publishers[name] = raw.advertise(
                 node,
@@ -134,6 +134,12 @@ class Player:
                     self.refused.append(f"{name}: {error}")
                 else:
                     yield name, topic
+
+    @property
+    def _span(self) -> tuple[int, int | None]:
+        """The part of the bag to play: from one time up to another, nanoseconds since 1970."""
+        start_ns = self._bag.contents.start_ns + to_ns(self._options.start_offset)
+        return start_ns, None if self._options.duration is None else start_ns + to_ns(self._options.duration)
 
     @property
     def end_ns(self) -> int:
@@ -178,8 +184,7 @@ class Player:
             BagError: The bag cannot be read on.
         """
         await self._node.clock.sleep(self._options.delay)
-        start_ns = self._bag.contents.start_ns + to_ns(self._options.start_offset)
-        for number, record in enumerate(self._bag.records(self._topics, start_ns, None)):
+        for number, record in enumerate(self._bag.records(self._topics, *self._span)):
             if count and number == count:
                 return
             self.now_ns = record.log_ns
@@ -194,9 +199,7 @@ class Player:
     # playing
 
     async def _play_once(self) -> None:
-        whole, options = self._bag.contents, self._options
-        start = whole.start_ns + to_ns(options.start_offset)
-        end = None if options.duration is None else start + to_ns(options.duration)
+        start, end = self._span
         while True:
             self._sought = None
             await self._play(start, end)

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from graphflow.bag.choice import Choice
+from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import asked
 from graphflow.bag.writer import FLUSH_EVERY, BagWriter
@@ -104,6 +104,12 @@ class Recorder:
     def topics(self) -> int:
         """How many topics are recorded."""
         return len(self._subscriptions)
+
+    @property
+    def missing(self) -> list[str]:
+        """Topics that were named and have not appeared."""
+        events = {f"{service}{EVENTS}" for service in self._choice.services}
+        return sorted((self._choice.topics | events) - self._subscriptions.keys())
 
     @property
     def size(self) -> int:

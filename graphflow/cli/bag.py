@@ -263,11 +263,19 @@ def echo(path: Path, topics: tuple[str, ...], count: int | None, csv: bool, json
     """Show the messages of a bag."""
     from itertools import islice
 
-    from graphflow.bag.typed import read
+    from graphflow.bag.choice import Choice
+    from graphflow.bag.missing import check_messages, remarks
+    from graphflow.bag.reader import Bag
+    from graphflow.bag.typed import said as messages
     from graphflow.introspect import echo as texts
 
     use_project()
-    for said in islice(read(path, _names(topics) or None), count):
+    found, named = Bag(path), _names(topics)
+    absent = remarks([found], Choice(topics=named))
+    wanted = named & found.contents.topics.keys() if named else found.contents.topics.keys()
+    check_messages([found], wanted, absent)
+    _note(path, absent)
+    for said in islice(messages(found.records(wanted)), count):
         data = texts.plain(said.message)
         if json_:
             output.as_json({"topic": said.topic, "time_ns": said.time_ns, "message": data})
@@ -355,10 +363,17 @@ def merge(paths: tuple[Path, ...], **options: Any) -> int:
     return _copied(paths, "merged", options)
 
 
+def _note(path: Path, absent: list[str]) -> None:
+    """Tell of names that a bag does not have, where there is something else to do."""
+    for remark in absent:
+        output.talk(f"note: {path}: {remark}")
+
+
 def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Any = None) -> int:
     from graphflow.bag.choice import Choice
     from graphflow.bag.copying import beside, copy, times
     from graphflow.bag.info import size, topics_of
+    from graphflow.bag.missing import check_messages, remarks
     from graphflow.bag.reader import Bag
     from graphflow.bag.writer import BagWriter
 
@@ -366,8 +381,12 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     start_ns, end_ns = times(bags, options.get("start"), options.get("end"))
     remaps = _remaps(options.get("remaps", ()))
     folder = options["folder"] or beside(paths[0], word)
+    every = choice or Choice(all=True, hidden=True, all_services=True)
+    absent = remarks(bags, every, remaps)
+    wanted = {name for bag in bags for name, topic in bag.contents.topics.items() if every.wants(name, topic.type)}
+    check_messages(bags, wanted, absent, start_ns, end_ns)
+    _note(paths[0], absent)
     with BagWriter(folder, compression=options["compression"], max_size=options["max_bag_size"]) as writer:
-        every = choice or Choice(all=True, hidden=True, all_services=True)
         copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns)
     output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")
     return exits.OK

@@ -54,6 +54,8 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
     player = Player(node, bag, options)
     for line in player.refused:
         output.talk(f"not played: {line}")
+    for line in player.absent:
+        output.talk(f"note: {bag.path}: {line}")
     _serve(node, player)
 
     def key(word: str) -> None:

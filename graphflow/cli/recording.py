@@ -21,12 +21,14 @@ from graphflow.cli.keys import pressed
 from graphflow.cli.visiting import visit
 from graphflow.errors import BagError, UsageFault
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
-from graphflow.names import check_node_name
+from graphflow.names import check_node_name, did_you_mean
 from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
 TOLD_EVERY = 1.0
 """Seconds between two looks at how it goes, at a terminal."""
+SILENT = 2.0
+"""Seconds after which it is told that topics have not appeared."""
 
 
 @dataclass
@@ -107,6 +109,7 @@ async def _record(node: Node, writer: BagWriter, choice: Choice, options: Record
         else:
             _tell(node, f"Recording into {writer.folder}")
         shown = asyncio.ensure_future(_show(recorder, began)) if sys.stderr.isatty() else None
+        warned = asyncio.ensure_future(_warn_later(node, recorder))
         try:
             async with asyncio.timeout(options.duration):
                 await recorder.run()
@@ -118,11 +121,12 @@ async def _record(node: Node, writer: BagWriter, choice: Choice, options: Record
             output.error(str(error))
             code = exits.FAILED
         finally:
+            warned.cancel()
             if shown is not None:
                 shown.cancel()
                 output.progress("")
     _sum_up(node, recorder, writer, time.monotonic() - began)
-    return code
+    return code if recorder.topics else exits.FAILED
 
 
 def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -> None:
@@ -135,8 +139,21 @@ def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -
         output.talk(f"WARNING: {recorder.dropped:,} messages were dropped: they came faster than they could be written")
     if recorder.lost:
         output.talk(f"WARNING: {recorder.lost:,} messages never arrived, by the numbers of their publishers")
+    _warn_of_missing(node, recorder)
     if not recorder.topics:
         output.talk("no topic was there to be recorded; `graphflow topic list` shows those that are")
+
+
+async def _warn_later(node: Node, recorder: Recorder) -> None:
+    await node.clock.sleep(SILENT)
+    _warn_of_missing(node, recorder)
+
+
+def _warn_of_missing(node: Node, recorder: Recorder) -> None:
+    """Tell of topics that were named and have not appeared."""
+    for name in recorder.missing:
+        near = did_you_mean(name, (t for t in node.context.cache.topics() if t not in recorder.missing))
+        output.talk(f"WARNING: topic [{name}] does not appear to be published yet{near}")
 
 
 async def _show(recorder: Recorder, began: float) -> None:

@@ -50,6 +50,9 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
     machine.look("bag", "merge", "news", "bag_filtered", "-o", "both", cwd=folder)
     assert Bag(folder / "both").contents.message_count == 31
 
+    text = machine.look("bag", "filter", "bag", "--topics", "/map", "--topics", "/mapp", "-o", "map", cwd=folder)
+    assert text.startswith("note: bag: no topic /mapp; did you mean '/map'?\nmap: 1 messages of 1 topic, ")
+
     file = folder / "bag" / "bag_0.mcap"
     file.write_bytes(file.read_bytes()[:-300])
     assert "graphflow bag recover mends it" in machine.look("bag", "info", "bag", cwd=folder)
@@ -72,10 +75,15 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("record a//b", 2, "a//b"),
         ("filter bag -m /a:/b -o new", 2, "'/a:/b' is no remap rule; write OLD:=NEW"),
         ("echo bag --csv -n 0", 2, "0 is not in the range"),
+        ("echo bag /chater", 1, "error: bag: no topic /chater; did you mean '/chatter'?"),
+        ("filter bag --topics /topp -o new", 1, "error: bag: no topic /topp; there is /chatter, /count, /map"),
+        ("filter bag -e nothing -o new", 1, "error: bag: no topic matches; there is /chatter, /count, /map"),
+        ("filter bag --start 9 -o new", 1, "no message of /chatter, /count, /map from 9 s on; it lasts 1.95 s"),
         ("ply bag", 2, "did you mean 'play'?"),
     ],
 )
 def test_words_that_do_not_fit(machine: Machine, folder: Path, words: str, code: int, told: str) -> None:
-    """Say what to write instead."""
+    """Say what to write instead; nothing is written."""
     assert told in machine.look("bag", *words.split(), cwd=folder, code=code)
+    assert [file.name for file in folder.iterdir() if (file / "metadata.yaml").exists()] == ["bag"]
     assert [file.name for file in folder.iterdir() if file.name not in ("state", "run")] == ["bag"]
