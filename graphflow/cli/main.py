@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from io import TextIOWrapper
 from typing import NoReturn
 
 import click
@@ -125,13 +126,14 @@ def cli(ctx: click.Context, /, domain: int | None, wire: str | None, connect: tu
 
 def _open_standard_streams() -> None:
     """Put nothing in the place of a standard stream that is closed: the next file that is opened would be it."""
-    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
         try:
             os.fstat(number)
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number, which this is
         if getattr(sys, name) is None:
-            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115 - for good
+            raw = open(number, "wb" if number else "rb", closefd=False)  # noqa: SIM115 - for good
+            setattr(sys, name, (output.Closed if number == 1 else TextIOWrapper)(raw, encoding="utf-8"))
 
 
 def _forget_output() -> None:

@@ -5,6 +5,8 @@ Names, messages and errors may come from other processes: nothing that a termina
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -20,15 +22,30 @@ def is_terminal() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM", "") not in ("", "dumb")
 
 
+class Closed(io.TextIOWrapper):
+    """Takes the place of a standard output that was closed at the start: nodes may print, and nobody reads it."""
+
+
+def _write(text: str, *, flush: bool = True) -> None:
+    """Write to standard output.
+
+    Raises:
+        OSError: There is none.
+    """
+    if isinstance(sys.stdout, Closed):
+        raise OSError(errno.EBADF, "standard output is closed; to throw away what is printed: > /dev/null")
+    print(text, end="", flush=flush)
+
+
 def data(text: str) -> None:
     """A line of what was asked for."""
-    print(harmless(text), flush=True)
+    _write(f"{harmless(text)}\n")
 
 
 def lines(texts: Iterable[str]) -> None:
     """Several lines of what was asked for."""
     for text in texts:
-        print(harmless(text))
+        _write(f"{harmless(text)}\n", flush=False)
     sys.stdout.flush()
 
 
@@ -43,7 +60,7 @@ def listing(names: Iterable[str], *, json: bool) -> None:
 def colored(head: str, colour: int, texts: Iterable[str]) -> None:
     """Several lines, each with a head in a colour of the terminal, from 31 to 36."""
     for text in texts:
-        print(f"\x1b[{colour}m{harmless(head)}\x1b[0m{uncoloured(text)}")
+        _write(f"\x1b[{colour}m{harmless(head)}\x1b[0m{uncoloured(text)}\n", flush=False)
     sys.stdout.flush()
 
 
@@ -92,7 +109,7 @@ def as_json(value: Any) -> None:
     """What was asked for, for programs."""
     import json
 
-    print(json.dumps(value, default=_plain), flush=True)
+    _write(f"{json.dumps(value, default=_plain)}\n")
 
 
 def _plain(value: Any) -> Any:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import click
@@ -158,6 +160,22 @@ def test_how_a_command_ends(
     err = capsys.readouterr().err
     assert err.endswith(text)
     assert "Traceback" not in err
+
+
+@pytest.mark.real
+@pytest.mark.parametrize(
+    ("streams", "code", "told"),
+    [
+        (">&-", 1, "error: standard output is closed; to throw away what is printed: > /dev/null\n"),
+        ("2>&-", 0, ""),
+        ("<&-", 0, ""),
+    ],
+)
+def test_a_standard_stream_that_is_closed(streams: str, code: int, told: str) -> None:
+    """What was asked for has to be readable somewhere; the rest may be missing."""
+    command = f"{sys.executable} -m graphflow schema {streams}"
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=30)
+    assert (done.returncode, done.stderr) == (code, told)
 
 
 def test_an_error_that_is_not_ours_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
