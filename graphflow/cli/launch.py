@@ -36,6 +36,7 @@ def launch() -> None:
       -s, --show-args                      show the file's arguments and start nothing
       -p, --print                          show what would run and start nothing
       -n, --noninteractive, --no-console   show logs instead of the console
+      --detach                             leave it running in the background
     """  # noqa: D301 - click wants the character
 
 
@@ -44,17 +45,30 @@ def launch() -> None:
 @click.option("-s", "--show-args", is_flag=True, help="Show the file's arguments and start nothing.")
 @click.option("-p", "--print", "is_shown", is_flag=True, help="Show what would run and start nothing.")
 @click.option("-n", "--noninteractive", "--no-console", is_flag=True, help="Show logs instead of the console.")
-@click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands.")
+@click.option("--detach", is_flag=True, help="Leave it running in the background, as `up -d` does.")
+@click.option("-d", "--debug", is_flag=True, help="For ROS 2's commands: there is no more to show.")
 @click.option("-a", "--show-all-subprocesses-output", is_flag=True, help="For ROS 2's commands: it is shown.")
-def start(words: tuple[str, ...], show_args: bool, is_shown: bool, noninteractive: bool, **unused: bool) -> int:  # noqa: ARG001
+def start(words: tuple[str, ...], **options: bool) -> int:
     """Start a file, of a package if one is named."""
     from graphflow.cli.files import plan
     from graphflow.cli.graphs import up
 
     file, given = _file_of(words)
-    options = [] if is_shown else ["-s"] if show_args else ["--no-console"] if noninteractive else []
+    is_shown = options["is_shown"]
+    if options["debug"]:
+        output.talk("note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background")
+    flags = {
+        "--show-args": options["show_args"],
+        "--no-console": options["noninteractive"],
+        "--detach": options["detach"],
+    }
     verb, top = plan if is_shown else up, click.get_current_context().find_root()
-    code = verb.main([*options, file, *given], prog_name=verb.name, standalone_mode=False, parent=top)
+    code = verb.main(
+        [*(flag for flag, is_on in flags.items() if is_on and not is_shown), file, *given],
+        prog_name=verb.name,
+        standalone_mode=False,
+        parent=top,
+    )
     return code if isinstance(code, int) else exits.OK
 
 

@@ -117,3 +117,19 @@ def test_a_folder_with_a_link_to_itself_is_searched_once(tmp_path: Path) -> None
     (tmp_path / "a" / "round").symlink_to(tmp_path)
     (tmp_path / "elsewhere").symlink_to(tmp_path / "a" / "b")
     assert [file.name for file in _files_below(tmp_path)] == ["f.launch.py"]
+
+
+def test_debug_is_not_detach(machine: Machine, tmp_path: Path) -> None:
+    """`-d` is ROS's word for another thing than that of `up -d`, and is told to do nothing."""
+    file = tmp_path / "a.launch.xml"
+    file.write_text(XML)
+    told = machine.look("launch", "-d", "-p", str(file))
+    assert "note: -d is ROS's --debug, which shows no more here; --detach leaves the graph in the background" in told
+
+
+def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
+    """As by `up --detach`."""
+    file = tmp_path / "a.launch.xml"
+    file.write_text(XML)
+    assert "Stop with: graphflow down" in machine.run("launch", "--detach", str(file), cwd=tmp_path)
+    machine.run("down")
