@@ -175,7 +175,9 @@ def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
             raise UsageFault("the console needs a terminal; --web shows it in a browser")
         return show(run, run.domain, prefix)
     if find_spec("textual_serve") is None:
-        raise UsageFault("--web needs the extra `web`: pip install 'graphflow-zenoh[web]'")
+        from graphflow.introspect.installation import requirement
+
+        raise UsageFault(f"--web needs the extra `web`: pip install {requirement('web')}")
     words = [*COMMAND, "attach", "--graph", run.graph, *(["--prefix", prefix] if prefix else [])]
     go_to(run.domain, run.endpoint)
     output.talk(

@@ -47,7 +47,10 @@ mypy_path = "typings" # where `graphflow interface stubs` writes what editors re
     "README.md": """\
 # @name
 
-    pip install -e '.[dev]'              once: what it needs
+    pip install @requirement -e '.[dev]'
+
+installs what it needs, once. Then:
+
     graphflow up graphs/@name.yaml       run it, until Ctrl-C
     graphflow run greeter                run the one node
     graphflow topic echo /greeting       in a second terminal: what it says
@@ -148,12 +151,13 @@ def check_new(folder: Path) -> None:
 def written(folder: Path) -> Iterator[Path]:
     """Write a project, and give each of its files."""
     from graphflow.graph.schema import schema_text
+    from graphflow.introspect.installation import requirement
 
     word = folder.name
     for path, text in _FILES.items():
         file = folder / path.replace("@name", word)
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text.replace("@name", word), encoding="utf-8")
+        file.write_text(text.replace("@name", word).replace("@requirement", requirement()), encoding="utf-8")
         yield file
     schema = folder / "graphs" / "graph.schema.json"
     schema.write_text(schema_text(), encoding="utf-8")

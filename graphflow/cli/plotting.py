@@ -55,8 +55,9 @@ class PlotOptions:
             try:
                 import matplotlib  # noqa: F401
             except ImportError:
-                hint = "pip install 'graphflow-zenoh[plot]'"
-                raise UsageFault(f"--svg and --png need the extra `plot`: {hint}") from None
+                from graphflow.introspect.installation import requirement
+
+                raise UsageFault(f"--svg and --png need the extra `plot`: pip install {requirement('plot')}") from None
 
     @property
     def is_live(self) -> bool:

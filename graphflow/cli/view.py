@@ -37,7 +37,9 @@ def view(port: int, host: str, read_only: bool, allow_commands: bool, pages: tup
     are served with --host 0.0.0.0; they only look, unless --allow-commands is given.
     """
     if find_spec("websockets") is None:
-        raise UsageFault("viewers need the extra `view`: pip install 'graphflow-zenoh[view]'")
+        from graphflow.introspect.installation import requirement
+
+        raise UsageFault(f"viewers need the extra `view`: pip install {requirement('view')}")
     from graphflow.cli.types import use_project
     from graphflow.cli.visiting import visit
 

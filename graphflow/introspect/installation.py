@@ -1,15 +1,44 @@
-"""What is wrong with what is installed, and with the environment: found without a graph."""
+"""What is installed, from where, and what is wrong with it and with the environment: found without a graph."""
 
 from __future__ import annotations
 
+import json
+import shlex
 from collections.abc import Callable, Iterator, Mapping
+from importlib import metadata
+from urllib.parse import unquote, urlsplit
 
 from graphflow.domain import DEFAULT_ENDPOINT, DOMAIN_VARIABLES, rendezvous_endpoint
 from graphflow.wire.profile import PROFILES, VARIABLE
 
+DISTRIBUTION = "graphflow-zenoh"
 RMW = "rmw_zenoh_cpp"
 OLDEST_ZENOH = (1, 10)
 """The first version of eclipse-zenoh that graphflow was tried with."""
+
+
+def requirement(extra: str = "") -> str:
+    """The words with which pip installs the graphflow that runs, quoted for a shell.
+
+    It may be on no index: it is installed from where this one came, be it a folder, a file or a repository.
+
+    Args:
+        extra: One of its extras, to be installed with it.
+
+    Source: PEP 610, direct_url.json.
+    """
+    name = DISTRIBUTION + (f"[{extra}]" if extra else "")
+    try:
+        origin = json.loads(metadata.distribution(DISTRIBUTION).read_text("direct_url.json") or "{}")
+    except metadata.PackageNotFoundError:
+        origin = {}
+    url = origin.get("url", "")
+    if "dir_info" in origin:
+        folder = shlex.quote(unquote(urlsplit(url).path) + name.removeprefix(DISTRIBUTION))
+        return f"-e {folder}" if origin["dir_info"].get("editable") else folder
+    if vcs := origin.get("vcs_info"):
+        url = f"{vcs['vcs']}+{url}@{vcs['commit_id']}"
+    return shlex.quote(f"{name} @ {url}" if url else name)
 
 
 def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iterator[str]:
@@ -22,7 +51,7 @@ def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iter
     if other := version("graphflow"):
         yield (
             f"another package called graphflow is installed ({other}), whose modules may come in the place of these: "
-            "pip uninstall graphflow, then install graphflow-zenoh again"
+            f"pip uninstall graphflow, then: pip install --force-reinstall {requirement()}"
         )
     zenoh = version("eclipse-zenoh")
     if zenoh is not None and _numbers(zenoh) < OLDEST_ZENOH:

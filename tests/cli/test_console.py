@@ -13,6 +13,7 @@ import pytest
 
 from graphflow.cli import console, exits
 from graphflow.cli.main import main
+from graphflow.introspect.installation import requirement
 from graphflow.supervisor import rundir
 from graphflow.supervisor.rundir import GraphRun
 
@@ -115,4 +116,4 @@ def test_the_web_needs_its_extra(
     """And says how to install it."""
     monkeypatch.setattr(console, "find_spec", lambda _: None)
     assert ends("console", "--web") == exits.USAGE
-    assert "pip install 'graphflow-zenoh[web]'" in capsys.readouterr().err
+    assert f"pip install {requirement('web')}" in capsys.readouterr().err

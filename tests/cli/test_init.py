@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.introspect.installation import requirement
 from tests.cases import slow
 from tests.conftest import LIMIT, PROGRAMS, Machine
 
@@ -22,6 +23,7 @@ def test_a_new_project_runs_and_passes_its_test(machine: Machine, tmp_path: Path
     text = machine.run("init", "mylab", cwd=tmp_path)
     assert "graphflow up graphs/mylab.yaml" in text
     project = tmp_path / "mylab"
+    assert f"    pip install {requirement()} -e '.[dev]'\n" in (project / "README.md").read_text()
     assert "no problems" in machine.run("check", "graphs/mylab.yaml", cwd=project)
     up = machine.start("up", "graphs/mylab.yaml", "text:=moin", cwd=project)
     up.wait_for("mylab/greeter.py")

@@ -56,7 +56,7 @@ def test_labels() -> None:
 def test_files_need_what_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Told before anything is done."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(UsageFault, match=r"pip install 'graphflow-zenoh\[plot\]'"):
+    with pytest.raises(UsageFault, match=r"the extra `plot`: pip install .*\[plot\]"):
         PlotOptions(png="a.png").check()
     PlotOptions().check()
 

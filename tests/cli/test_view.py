@@ -12,6 +12,7 @@ import pytest
 
 from graphflow.cli import view as module
 from graphflow.cli.view import _is_loopback, _shown
+from graphflow.introspect.installation import requirement
 from tests.cases import slow
 from tests.conftest import Machine
 from tests.viewer.cast import viewer
@@ -66,4 +67,4 @@ def test_without_the_extra(machine: Machine, monkeypatch: pytest.MonkeyPatch) ->
         return None
 
     monkeypatch.setattr(module, "find_spec", missing)
-    assert "pip install 'graphflow-zenoh[view]'" in machine.look("view", code=2)
+    assert f"pip install {requirement('view')}" in machine.look("view", code=2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.introspect.installation import faults
+from graphflow.introspect.installation import faults, requirement
 
 ROS = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
@@ -61,3 +61,27 @@ def test_packages() -> None:
     [text] = found({}, eclipse_zenoh="1.9.9")
     assert "eclipse-zenoh 1.9.9 is too old: pip install -U 'eclipse-zenoh>=1.10'" in text
     assert found({}, eclipse_zenoh="2.0.0rc1") == []
+
+
+@pytest.mark.parametrize(
+    ("origin", "words"),
+    [
+        ("", "'graphflow-zenoh[plot]'"),
+        ('{"url": "file:///home/me/my%20flow", "dir_info": {"editable": true}}', "-e '/home/me/my flow[plot]'"),
+        ('{"url": "file:///home/me/flow", "dir_info": {}}', "'/home/me/flow[plot]'"),
+        ('{"url": "https://a.b/f.whl", "archive_info": {}}', "'graphflow-zenoh[plot] @ https://a.b/f.whl'"),
+        (
+            '{"url": "https://a.b/f", "vcs_info": {"vcs": "git", "commit_id": "1f"}}',
+            "'graphflow-zenoh[plot] @ git+https://a.b/f@1f'",
+        ),
+    ],
+)
+def test_requirement(monkeypatch: pytest.MonkeyPatch, origin: str, words: str) -> None:
+    """It is installed from where it came: an index, a folder, a file, a repository."""
+
+    class Distribution:
+        def read_text(self, _: str) -> str:
+            return origin
+
+    monkeypatch.setattr("importlib.metadata.distribution", lambda _: Distribution())
+    assert requirement("plot") == words
