@@ -13,6 +13,7 @@ import click
 
 from graphflow.cli import exits, output
 from graphflow.domain import domain_id
+from graphflow.errors import CallError
 from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.names import did_you_mean
@@ -42,8 +43,10 @@ def graph(namespace: str, everything: bool, form: str | None, svg: Path | None, 
         made = picture(view.cache, below, frozenset(), everything=everything)
         there = view.cache.nodes(hidden=False)
     if not made.nodes:
-        near = did_you_mean(below, [*there, *{node.rpartition("/")[0] for node in there}])
-        output.talk(f"no node is called {below}, or is below it{near}" if there else nothing_here("no nodes"))
+        if below and there:
+            near = did_you_mean(below, {*there, *(node.rpartition("/")[0] for node in there)} - {""})
+            raise CallError(f"no node is called {below}, or is below it{near}")
+        output.talk(nothing_here("no nodes"))
         return exits.OK
     if png is not None:
         return _png(dot(made), png)

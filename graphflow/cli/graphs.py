@@ -296,4 +296,6 @@ def logs(
         reader.show()
         alive = any(str(folder) == r.logs for r in rundir.running())
     reader.show()
+    if not reader.count and lines != 0:
+        output.talk(f"nothing was written{' of that level or time' if chosen else ''}; the logs are in {folder}")
     return exits.OK

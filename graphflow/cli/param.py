@@ -68,6 +68,8 @@ def list_(
     if as_json:
         output.as_json(found)
         return
+    if (pattern or param_prefixes) and not any(found.values()):
+        output.talk("no parameter is meant; without --filter and --param-prefixes all are listed")
     for node, names_and_types in found.items():
         if not name:
             output.data(f"{node}:")

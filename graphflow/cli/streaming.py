@@ -48,6 +48,8 @@ class LogReader:
         self._width = width
         self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
         self._is_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+        self.count = 0
+        """Lines printed."""
 
     def show(self, last: int | None = None) -> None:
         """Print what is new; only the `last` lines of each file if given."""
@@ -71,6 +73,7 @@ class LogReader:
                 self._print(path, texts if last is None else texts[len(texts) - min(last, len(texts)) :])
 
     def _print(self, path: Path, texts: list[str]) -> None:
+        self.count += len(texts)
         name = path.stem.ljust(self._width)
         if self._is_terminal:
             output.colored(name, self._colours[path], (f" | {text}" for text in texts))

@@ -29,7 +29,9 @@ def test_a_part(standing: Machine) -> None:
     text = standing.look("graph", "office")
     assert "/office/clerk" in text
     assert "/talker" not in text
-    assert standing.look("graph", "ofice") == "no node is called /ofice, or is below it; did you mean '/office'?\n"
+    assert standing.look("graph", "ofice", code=1) == (
+        "error: no node is called /ofice, or is below it; did you mean '/office'?\n"
+    )
 
 
 def test_for_others(standing: Machine, tmp_path: Path) -> None:
