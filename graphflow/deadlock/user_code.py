@@ -18,6 +18,8 @@ _OURS = str(Path(__file__).parents[1])
 _DEMOS = str(Path(_OURS, "demos"))
 """Where an installed graphflow has its nodes, which are as users would write them."""
 _NOT_THEIRS = ("graphflow", "rclpy", "builtins", "typing", "abc")
+_COMPILED = (".pyx", ".pxi")
+"""Ends of the files that Cython names in tracebacks; they are relative, and seldom there."""
 _PYTHONS = sysconfig.get_path("stdlib")
 
 
@@ -33,11 +35,16 @@ def is_users_object(thing: object) -> bool:
 
 
 def is_users(file: str) -> bool:
-    """Whether a source file is neither graphflow's nor Python's own."""
+    """Whether a source file is neither graphflow's nor Python's own, nor that of compiled code, such as uvloop's."""
     is_made = file.startswith("<") and "/" in file  # <std_msgs/msg/String>: a codec
-    if is_ours(file) or is_made or file.startswith("<frozen"):
+    if is_ours(file) or is_made or file.startswith("<frozen") or file.endswith(_COMPILED):
         return False
     return not file.startswith(_PYTHONS) or "site-packages" in file
+
+
+def is_installed(file: str) -> bool:
+    """Whether a source file belongs to an installed package."""
+    return "/site-packages/" in file or "/dist-packages/" in file
 
 
 def is_ours(file: str) -> bool:
@@ -115,10 +122,14 @@ def users_part(error: BaseException) -> TracebackType | None:
 
 
 def place_in(error: BaseException) -> str:
-    """The last line of the user's own code that an error passed through, as `file:line`; empty if there is none."""
-    place, trace = "", error.__traceback__
+    """The last line of the user's own code that an error passed through, as `file:line`; empty if there is none.
+
+    Lines of installed packages count only where there is no other: the user's nodes may be installed.
+    """
+    place, is_theirs, trace = "", False, error.__traceback__
     while trace is not None:
-        if is_users(trace.tb_frame.f_code.co_filename):
-            place = f"{trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}"
+        file = trace.tb_frame.f_code.co_filename
+        if is_users(file) and not (is_theirs and is_installed(file)):
+            place, is_theirs = f"{file}:{trace.tb_lineno}", not is_installed(file)
         trace = trace.tb_next
     return place

@@ -187,6 +187,8 @@ def test_a_wrong_params_file_is_refused(machine: Machine, tmp_path: Path, text: 
 def test_some_of_a_list(standing: Machine) -> None:
     """By a pattern, or by what they begin with."""
     assert standing.look("param", "list", "/office/clerk", "--filter", "sim_time$") == "  use_sim_time\n"
-    assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim") == ""
+    assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim") == (
+        "no parameter is meant; without --filter and --param-prefixes all are listed\n"
+    )
     assert standing.look("param", "list", "/office/clerk", "--param-prefixes", "use_sim_time") == "  use_sim_time\n"
     assert "'(' is no regular expression" in standing.look("param", "list", "--filter", "(", code=2)

@@ -32,6 +32,7 @@ OURS = Path(graphflow.__file__).parent
         ("<string>", True),
         (str(STDLIB / "site-packages" / "numpy" / "core.py"), True),
         (str(STDLIB / "asyncio" / "tasks.py"), False),
+        ("uvloop/handles/process.pyx", False),
         (str(OURS / "runtime" / "node.py"), False),
         ("<frozen importlib._bootstrap>", False),
     ],
@@ -121,6 +122,20 @@ def test_the_place_of_an_error() -> None:
 
     assert place_in(raised_in_the_library()) == f"{__file__}:{line}"
     assert place_in(ValueError()) == ""
+
+
+@pytest.mark.parametrize("library", ["/opt/lib/python3/site-packages/serial/posix.py", "numpy/random/mtrand.pyx"])
+def test_an_error_in_a_library(library: str) -> None:
+    """Is the user's where it was called; an installed node's is where it was raised."""
+    scope: dict[str, Any] = {}
+    exec(compile("def fail():\n    raise OSError", library, "exec"), scope)
+
+    with pytest.raises(OSError) as caught:
+        scope["fail"]()
+    assert place_in(caught.value) == f"{__file__}:{caught.traceback[0].lineno + 1}"
+
+    alone = caught.value.with_traceback(caught.tb.tb_next)
+    assert place_in(alone) == (f"{library}:2" if library.endswith(".py") else "")
 
 
 def names_that_fail() -> Iterator[str]:

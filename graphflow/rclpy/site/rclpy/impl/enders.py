@@ -6,16 +6,14 @@ import ast
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.syntax import FunctionNode, Syntax, syntax_of
-from graphflow.deadlock.user_code import is_users
+from graphflow.deadlock.user_code import is_installed, is_users
 from graphflow.deadlock.uses import is_own
 from rclpy.task import Future
 
 _WAYS = ("cancel", "set_result", "set_exception", "remove_pending_request")
-_LIBRARIES = {"site-packages", "dist-packages"}
 _OTHERS = ("create_timer", "create_rate", "Timer", "Future")
 """The ends of names of what makes things that can be cancelled or set, and are not the future of an answer."""
 
@@ -32,12 +30,7 @@ class _Ending(NamedTuple):
 def programs_files() -> list[str]:
     """The files of the program's own modules: those that are not installed."""
     files = [str(file) for module in list(sys.modules.values()) if (file := getattr(module, "__file__", None))]
-    return [file for file in files if is_users(file) and file.endswith(".py") and not _is_installed(file)]
-
-
-@cache
-def _is_installed(file: str) -> bool:
-    return not _LIBRARIES.isdisjoint(Path(file).parts)
+    return [file for file in files if is_users(file) and file.endswith(".py") and not is_installed(file)]
 
 
 def may_be_ended(future: Future[Any], nodes: Iterable[Any], files: Iterable[str]) -> bool:
