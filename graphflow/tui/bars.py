@@ -166,7 +166,8 @@ class Status(Bar):
             if counts[state]:
                 found.append((f"{mark.glyph}{counts[state]} ", getattr(ink, mark.ink)))
         if app.deadlocks:
-            found.append((f"✖ {app.deadlocks} DEADLOCK{'S' if app.deadlocks > 1 else ''} ^b g ", ink.bad))
+            many = "S" if app.deadlocks > 1 else ""
+            found.append((f"✖ {app.deadlocks} DEADLOCK{many} {shown(app.prefix)} g ", ink.bad))
         return found
 
     def _keys(self) -> list[tuple[str, Style]]:

@@ -59,6 +59,9 @@ async def test_a_deadlock_is_told_wherever_one_is() -> None:
         s.console.deadlocks = 1
         await s.look()
         assert "✖ 1 DEADLOCK ^b g" in s.text
+        s.console.prefix = "ctrl+a"
+        await s.look()
+        assert "✖ 1 DEADLOCK ^a g" in s.text
 
 
 async def test_after_the_end() -> None:

@@ -14,7 +14,7 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 from textual.widgets import Input
 
-from graphflow.tui.actions import Action
+from graphflow.tui.actions import Action, shown
 from graphflow.tui.completion import Completer
 from graphflow.tui.hub import Hub
 from graphflow.tui.lines import Lines
@@ -145,7 +145,7 @@ class Prompt(View):
         except ValueError as error:
             self._lines.extend([Text(f"{error}: check the quotes", style=self.ink.bad)])
             return
-        refusal = _refusal(words)
+        refusal = _refusal(words, shown(self.console.prefix))
         if refusal:
             self._lines.extend([Text(refusal, style=self.ink.warn)])
             return
@@ -203,13 +203,17 @@ class Prompt(View):
             self._process.terminate()
 
 
-def _refusal(words: list[str]) -> str:
-    """Why a verb does not run in a pane; empty where it does."""
+def _refusal(words: list[str], prefix: str) -> str:
+    """Why a verb does not run in a pane; empty where it does.
+
+    Args:
+        prefix: The prefix key, as people write it.
+    """
     first = words[0] if words else ""
     if first in ("attach", "console"):
-        return "this is a console already; ^b s switches to another graph"
+        return f"this is a console already; {prefix} s switches to another graph"
     if first == "up" and "-d" not in words and "--detach" not in words:
-        return "in a pane a graph runs in the background: graphflow up -d ..., then ^b s switches to it"
+        return f"in a pane a graph runs in the background: graphflow up -d ..., then {prefix} s switches to it"
     return ""
 
 
