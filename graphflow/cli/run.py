@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import signal
 import sys
 from inspect import getfile
 from pathlib import Path
@@ -52,6 +53,8 @@ def run(prefix: str | None, what: str, words: tuple[str, ...]) -> None:
         _become([*before, sys.executable, "-m", "graphflow", *command])
     program = find_program(what, words, Path.cwd())
     if program is not None:
+        if hasattr(signal, "pthread_sigmask"):
+            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # an interpreter that starts cannot take it
         _become([sys.executable, "-P", "-m", "graphflow.rclpy", *command[1:]])
     cls, rest = find_class(what, words)
     try:

@@ -113,9 +113,10 @@ def run(program: Program) -> None:
         SystemExit: As the program has it.
         UsageFault: It has not the function that it is said to be.
     """
-    make_importable(program.workspace)
-    if signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, signal.SIG_DFL):  # as a shell starts jobs, or until now
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if make_importable(program.workspace):
+        import_module("rclpy")  # which takes long, and would be interrupted by Ctrl-C in the middle of ours
+    # A shell starts jobs with SIGINT ignored; rclpy ends all the same.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.setdefault("ROS_DISTRO", wire_profile())  # as in any shell of ROS's
     sys.argv = [str(program.file), *program.words]
     hook = sys.excepthook
@@ -199,6 +200,7 @@ def _is_python(file: Path) -> bool:
 def main(words: Sequence[str]) -> None:
     """Run what the words mean: a file, or a package and an executable, and its arguments; or `-m MODULE FILE`."""
     if words[0] == "-m":  # a module of graphflow's that is to read a file of a workspace
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         make_importable(find_workspace(Path(words[2])))
         sys.argv = list(words[1:])
         runpy.run_module(words[1], run_name="__main__", alter_sys=True)

@@ -161,6 +161,23 @@ def test_an_interrupted_program_shows_its_own_lines(workspace: Path) -> None:
     assert shown.splitlines()[-1] == "KeyboardInterrupt"
 
 
+_INTERRUPTED = """
+import os, signal, sys
+signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+os.kill(os.getpid(), signal.SIGINT)
+os.execv(sys.executable, [sys.executable, "-m", "graphflow.rclpy", "lamp", "lamp"])
+"""
+
+
+@pytest.mark.real
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are not blocked there")
+def test_it_is_interrupted_before_it_begins(workspace: Path) -> None:
+    """`graphflow run` keeps Ctrl-C back while the interpreter starts; then it ends the process without a word."""
+    command = [sys.executable, "-c", _INTERRUPTED]
+    ended = subprocess.run(command, cwd=workspace, capture_output=True, text=True, timeout=20, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
+
+
 def test_programs_that_come_with_graphflow(workspace: Path) -> None:
     """They are found anywhere, unless the workspace has a package of that name."""
     found = find_program("tf2_ros", ["tf2_echo", "map", "base"], workspace)
