@@ -88,6 +88,7 @@ def _graph() -> tuple[Findings, Findings, int]:
         time.sleep(max(0.0, first.at + BETWEEN_LOOKS - time.monotonic()))
         health = examine(view, first, _look(view))
         ours = view.processes()
+        profiles = [f"{p}: nodes beyond it can be listed, and nothing else is known of them" for p in view.profiles()]
         others = [
             name for name in view.cache.nodes(hidden=False) if not any(e.zid in ours for e in view.cache.owners(name))
         ]
@@ -115,7 +116,14 @@ def _graph() -> tuple[Findings, Findings, int]:
         if read.unreadable
         else []
     )
-    notes = {"late": late, "hints": health.hints, "silent": others, "unreadable": unread, "unseen": unseen}
+    notes = {
+        "late": late,
+        "hints": health.hints,
+        "silent": others,
+        "unreadable": unread,
+        "unseen": unseen,
+        "kept_back": profiles,
+    }
     return faults, notes, sum(not is_hidden(name) for name in read.nodes)
 
 
@@ -129,15 +137,16 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
     output.lines(t for name, texts in faults.items() if name not in ("deadlocks", "stalls") for t in texts)
     output.lines([*notes["late"], *notes["hints"], *notes["rclpy"]])
     if notes["silent"]:
-        output.data(f"not graphflow nodes, so their handlers are unknown: {', '.join(notes['silent'])}")
-    output.lines([*notes["unreadable"], *notes["unseen"]])
+        beyond = ", or beyond a net profile" if notes["kept_back"] else ""
+        output.data(f"not graphflow nodes{beyond}, so their handlers are unknown: {', '.join(notes['silent'])}")
+    output.lines([*notes["kept_back"], *notes["unreadable"], *notes["unseen"]])
     if not any(faults.values()) and not notes["late"]:
         output.data(f"{count} node{'s' if count != 1 else ''}, {_verdict(notes)}")
 
 
 def _verdict(notes: Findings) -> str:
     """The last line, where there is no fault: nothing is certain of what was not seen."""
-    if notes["silent"] or notes["unreadable"] or notes["unseen"]:
+    if any(notes[kind] for kind in ("silent", "unreadable", "unseen", "kept_back")):
         return "nothing wrong in what could be seen; the lines above say what could not"
     return "no fault; the lines above may be meant so" if notes["hints"] else "nothing wrong"
 

@@ -158,6 +158,11 @@ def echo(name: str, type_name: str | None, **options: Any) -> int:
     return echoing.run(full, _echo_type(full, type_name), taken(options))
 
 
+def _warn_of_profile(view: View, full: str) -> None:
+    if kept_back := view.kept_back(full, Kind.PUBLISHER):
+        output.talk(f"WARNING: {kept_back}")
+
+
 def _echo_type(full: str, given: str | None) -> str:
     """The type to listen for: the one in the graph, else the given one."""
     from graphflow.cli.types import agree
@@ -171,6 +176,7 @@ def _echo_type(full: str, given: str | None) -> str:
             types = topics.get(full, [])
             if len(types) == 1:
                 learn(view, full, types[0])
+            _warn_of_profile(view, full)
     except SupervisorError:
         if given is None:
             raise
@@ -291,6 +297,7 @@ def _learn(*topics: str) -> None:
             for topic_name in topics:
                 for type_name in view.cache.topics(hidden=True).get(topic_name, [])[:1]:
                     learn(view, topic_name, type_name)
+                _warn_of_profile(view, topic_name)
     except SupervisorError as error:  # nothing is running yet; it is waited for
         if error.exit_code != exits.NOT_RUNNING:
             raise

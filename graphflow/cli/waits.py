@@ -93,7 +93,7 @@ def show(node: str, as_json: bool) -> None:
 
 def _groups_of(read: found.ConcurrencyReport, node: str) -> list[dict[str, Any]]:
     if node not in read.nodes:
-        raise UsageFault(f"{node} is not a graphflow node, so its groups are unknown")
+        raise UsageFault(f"{node} is not a graphflow node, or on another machine, so its groups are unknown")
     return read.nodes[node]
 
 

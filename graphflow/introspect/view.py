@@ -19,9 +19,10 @@ from graphflow.machines.cache import GraphCache
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client
-from graphflow.wire import attachment, process
+from graphflow.wire import attachment, net, process
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import Kind, watch_key
+from graphflow.wire.net import NetToken
 from graphflow.wire.process import ProcessToken
 
 TAKEN_SHOWN = 5
@@ -150,7 +151,25 @@ class View:
         for zid, token in self.processes().items():
             if zid in zids:
                 return f"{token}: {token.command}" if token.command else str(token)
-        return f"session {', '.join(sorted(zids))}, not a graphflow process"
+        beyond = f", or beyond {self.profiles()[0]}" if self.profiles() else ""
+        return f"session {', '.join(sorted(zids))}, not a graphflow process{beyond}"
+
+    def profiles(self) -> list[NetToken]:
+        """The net profiles that are in force on this machine."""
+        return [found for text in self._client.tokens(net.watch_key(self.domain)) if (found := net.parse(text))]
+
+    def kept_back(self, name: str, kind: Kind) -> str:
+        """Which net profile keeps a topic or service on the machines of those that offer it; empty if none does.
+
+        Sessions of graphflow's that can be seen are on this machine, where everything passes.
+        """
+        offering = {e.zid for e in self.cache.endpoints(kind, name)}
+        if not offering or not offering.isdisjoint(self.processes()):
+            return ""
+        blocking = [profile for profile in self.profiles() if not profile.passes(name)]
+        if not blocking:
+            return ""
+        return f"{name} does not pass {blocking[0]}; if its node is on another machine, add it to `allow` on both"
 
     def processes(self) -> dict[str, ProcessToken]:
         """The graphflow processes in the domain, by session, as they were when the graph was read."""
@@ -164,7 +183,10 @@ class View:
             return f"{name} is of type {' and '.join(self.service_types(name))}, not {type_name}"
         if same and all(server.hash != hash_ for server in same):
             return f"{name}: the server's {type_name} has a different definition from the one here"
-        return f"{name}: the server went away before it answered"
+        if kept_back := self.kept_back(name, Kind.SERVICE):
+            return kept_back
+        other = ", or the net profile of the other machine keeps the call back" if self.profiles() else ""
+        return f"{name}: the server went away before it answered{other}"
 
 
 def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename the node in the graph file") -> None:

@@ -34,6 +34,7 @@ from graphflow.transport.config import (
     config,
     open_session,
 )
+from graphflow.wire import net
 
 logger = logging.getLogger("graphflow.link")
 
@@ -71,6 +72,9 @@ class Link:
         """Set when there has been a connection to every endpoint that must be reached."""
         self._session = open_session(self._config(profile, domain))
         close_at_exit(self._session)
+        if profile is not None:
+            zid, file = str(self._session.zid()), os.path.abspath(os.environ[PROFILE_VARIABLE])
+            self._told = self._session.liveliness().declare_token(net.token(domain, zid, file, profile.allow))
         self._inbox = Inbox(bell, None, self._deliver)
         self._listener = self._session.info.declare_link_events_listener(
             Callback(self._inbox.put, indirect=False), history=True

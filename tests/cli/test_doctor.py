@@ -46,6 +46,7 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
         "installation",
         "runs",
         "unreadable",
+        "kept_back",
     )
     assert found == {name: [] for name in others}
 

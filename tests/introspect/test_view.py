@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Iterator
 from unittest.mock import patch
@@ -14,7 +15,7 @@ from graphflow.introspect.view import View, refuse_taken_names
 from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.transport.base import Answer
-from graphflow.wire import process
+from graphflow.wire import net, process
 from graphflow.wire.liveliness import Entity, Kind, watch_key
 
 ADD, TYPE = "/office/clerk/add", "example_interfaces/srv/AddTwoInts"
@@ -36,10 +37,13 @@ class Client:
         self.answer: Answer | Exception | None = None
         self.asked: list[tuple[str, bytes]] = []
         self.is_closed = False
+        self.profiles: list[str] = []
 
     def tokens(self, key: str) -> list[str]:
         if key == watch_key(7):
             return [entity.token for entity in self.entities]
+        if key == net.watch_key(7):
+            return self.profiles
         assert key == process.watch_key(7)
         return [process.token(7, "z1"), "@graphflow/7/proc/z2/0/12/elsewhere", "@graphflow/7/proc/nonsense"]
 
@@ -148,6 +152,24 @@ def test_a_call_that_fails(
     client.answer = answer
     with pytest.raises(error, match=text):
         view.call(ADD, TYPE, AddTwoInts.Request(), 1.5)
+
+
+@pytest.mark.parametrize(
+    ("zid", "allow", "text"),
+    [
+        ("z9", ["/spawn"], f"{ADD} does not pass the net profile /lab.yaml, which allows /spawn; if its node is on"),
+        ("z9", ["/office/**"], "before it answered, or the net profile of the other machine keeps the call back"),
+        ("z1", ["/spawn"], "the server went away before it answered, or"),
+    ],
+)
+def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list[str], text: str) -> None:
+    """Where the server is none of this machine's processes, and its name may not pass."""
+    client.profiles = [net.token(7, "z5", "/lab.yaml", allow)]
+    client.entities = [server()._replace(zid=zid)]
+    view.refresh()
+    with pytest.raises(ServerLost, match=re.escape(text)):
+        view.call(ADD, TYPE, AddTwoInts.Request(), 1.5)
+    assert view.owner("/office/ros").endswith(f"beyond the net profile /lab.yaml, which allows {allow[0]}")
 
 
 @pytest.mark.parametrize(

@@ -228,7 +228,11 @@ def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     assert "theta: " in near.run("topic", "echo", "/turtle1/pose", "--once")
     near.run("service", "call", "/spawn", "turtlesim/srv/Spawn", "{x: 2.0, y: 2.0}")
     text = near.run("param", "get", "/turtlesim", "background_r", code=None)
-    assert "error" in text, text
+    assert f"/turtlesim/get_parameters does not pass the net profile {here}, which allows" in text
+    assert f"or beyond the net profile {here}" in near.run("up", "turtlesim", code=1)
+    assert f"/kill does not pass the net profile {here}" in near.run(
+        "service", "call", "/kill", "turtlesim/srv/Kill", "{name: turtle1}", code=1
+    )
     assert graph.end(signal.SIGTERM) == 0
 
 

@@ -1,0 +1,56 @@
+"""How a link tells this machine's commands which net profile is in force.
+
+@graphflow/<domain>/net/<zid>/<file>/<patterns>      a token, file and patterns quoted; none of graphflow's own leave
+                                                     the machine
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+from urllib.parse import quote, unquote
+
+from graphflow.errors import printable
+
+TOKEN_BOUND = 1 << 16
+"""Characters of a token that are read."""
+
+
+class NetToken(NamedTuple):
+    """A net profile that is in force."""
+
+    file: str
+    allow: tuple[str, ...]
+    """Patterns of names, with * for one part and ** for any number of them."""
+
+    def passes(self, name: str) -> bool:
+        """Whether a topic or service may pass."""
+        return any(_matches(pattern, name) for pattern in self.allow)
+
+    def __str__(self) -> str:
+        return f"the net profile {self.file}, which allows {', '.join(self.allow)}"
+
+
+def token(domain: int, zid: str, file: str, allow: Iterable[str]) -> str:
+    """The token of a link."""
+    return f"@graphflow/{domain}/net/{zid}/{quote(file, safe='')}/{quote(' '.join(allow), safe='')}".replace("*", "%2A")
+
+
+def watch_key(domain: int) -> str:
+    """The key that matches the tokens of all links of a domain."""
+    return f"@graphflow/{domain}/net/**"
+
+
+def parse(text: str) -> NetToken | None:
+    """Read a token; None if the text is not one."""
+    parts = text.split("/") if len(text) <= TOKEN_BOUND else []
+    if len(parts) != 6 or parts[0] != "@graphflow" or parts[2] != "net":
+        return None
+    return NetToken(printable(unquote(parts[4])), tuple(printable(unquote(parts[5])).split()))
+
+
+def _matches(pattern: str, name: str) -> bool:
+    parts = {"*": r"/[^/]+", "**": r"(?:/[^/]+)*"}
+    expression = "".join(parts.get(part, re.escape(f"/{part}")) for part in pattern.split("/")[1:])
+    return re.fullmatch(expression, name) is not None

@@ -1,0 +1,39 @@
+"""What a link tells of its net profile."""
+
+from __future__ import annotations
+
+import pytest
+
+from graphflow.wire.net import NetToken, parse, token
+
+
+def test_there_and_back() -> None:
+    """Whatever the file is called; nothing in the key means several keys."""
+    allow = ("/turtle1/**", "/*/pose")
+    text = token(5, "abc", "/home/me/my lab/*.yaml", allow)
+    assert "*" not in text
+    assert parse(text) == NetToken("/home/me/my lab/*.yaml", allow)
+
+
+@pytest.mark.parametrize("text", ["", "@graphflow/5/net/abc", "@graphflow/5/proc/abc/x/y", "@ros2_lv/5/net/a/b/c"])
+def test_what_is_none(text: str) -> None:
+    """Others are left alone."""
+    assert parse(text) is None
+
+
+@pytest.mark.parametrize(
+    ("pattern", "name", "passes"),
+    [
+        ("/**", "/a/b", True),
+        ("/spawn", "/spawn", True),
+        ("/spawn", "/spawned", False),
+        ("/turtle1/**", "/turtle1/pose", True),
+        ("/turtle1/**", "/turtle1", True),
+        ("/turtle1/**", "/turtle2/pose", False),
+        ("/*/pose", "/turtle2/pose", True),
+        ("/*/pose", "/a/b/pose", False),
+    ],
+)
+def test_patterns(pattern: str, name: str, passes: bool) -> None:
+    """They mean what they mean to Zenoh."""
+    assert NetToken("lab.yaml", (pattern,)).passes(name) is passes
