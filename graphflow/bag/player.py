@@ -52,6 +52,8 @@ class PlayOptions:
     """Seconds of the bag that are left out at its beginning."""
     duration: float | None = None
     """Seconds of the bag that are played."""
+    until_ns: int | None = None
+    """Up to which time it is played, nanoseconds since 1970; None for its end."""
     delay: float = 0.0
     """Seconds before the first message, in which subscriptions can find the publishers."""
     clock_hz: float = 0.0
@@ -138,8 +140,10 @@ class Player:
     @property
     def _span(self) -> tuple[int, int | None]:
         """The part of the bag to play: from one time up to another, nanoseconds since 1970."""
-        start_ns = self._bag.contents.start_ns + to_ns(self._options.start_offset)
-        return start_ns, None if self._options.duration is None else start_ns + to_ns(self._options.duration)
+        options, start_ns = self._options, self._bag.contents.start_ns + to_ns(self._options.start_offset)
+        ends = [] if options.until_ns is None else [options.until_ns + 1]  # ROS 2 plays what is at that very time
+        ends += [] if options.duration is None else [start_ns + to_ns(options.duration)]
+        return start_ns, min(ends, default=None)
 
     @property
     def end_ns(self) -> int:

@@ -131,6 +131,8 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
 @click.option("-p", "--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
 @click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to leave out.")
 @click.option("--playback-duration", type=click.FloatRange(0, min_open=True), help="Seconds of the bag to play.")
+@click.option("--playback-until-sec", type=click.FloatRange(0, min_open=True), help="Play up to here, since 1970.")
+@click.option("--playback-until-nsec", type=click.IntRange(1), help="The same in nanoseconds.")
 @click.option(
     "-d", "--delay", type=click.FloatRange(0), default=DELAY, show_default=True, help="Seconds before the start."
 )
@@ -173,6 +175,7 @@ def play(path: Path, **options: Any) -> int:
         loop=options["loop"],
         start_offset=options["start_offset"],
         duration=options["playback_duration"],
+        until_ns=options["playback_until_nsec"] or round((options["playback_until_sec"] or 0) * 1e9) or None,
         delay=options["delay"],
         clock_hz=clock_hz,
         is_paused=options["start_paused"],

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from graphflow.cli import output
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.errors import GraphFileError, SupervisorError, UsageFault
 from graphflow.graph.executables import EXECUTABLES
 from graphflow.graph.model import LOG_LEVELS
@@ -21,7 +21,7 @@ ANSWER_LIMIT = 30.0
 _graph = click.option("--graph", help="Which graph, when several are running.")
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def component() -> None:
     """Load nodes into running processes, and unload them."""
 
@@ -130,11 +130,12 @@ def standalone(package: str, plugin: str, **options: Any) -> None:
 
 @component.command()
 @click.argument("container", metavar="PROCESS")
-@click.argument("numbers", metavar="NUMBER...", nargs=-1, type=int, required=True)
+@click.argument("words", metavar="NUMBER|NODE...", nargs=-1, required=True)
 @_graph
-def unload(container: str, numbers: tuple[int, ...], graph: str | None) -> None:
-    """Unload nodes from a running process, by the numbers that `component list` shows."""
+def unload(container: str, words: tuple[str, ...], graph: str | None) -> None:
+    """Unload nodes from a running process, by the numbers or names that `component list` shows."""
     run = rundir.choose(graph)
+    numbers = [int(word) if word.isdecimal() else _number_of(word, container, run.socket) for word in words]
     for number in numbers:
         _ask(run.socket, do="unload", container=container, number=number)
         output.data(f"Unloaded component {number} from '{container}' container node")
@@ -165,6 +166,20 @@ def _containers(socket: str) -> dict[str, list[dict[str, Any]]]:
         client.send(do="ps")
         rows = next(client.receive(), {}).get("nodes", [])
     return {name: list(found) for name, found in groupby(rows, lambda row: row["process"] or row["node"])}
+
+
+def _number_of(node: str, container: str, socket: str) -> int:
+    """The number of a node in a process.
+
+    Raises:
+        UsageFault: The process has no such node.
+    """
+    found = _containers(socket)
+    rows = {row["node"]: int(row["number"]) for row in found.get(f"/{container.lstrip('/')}", found.get(container, []))}
+    name = f"/{node.lstrip('/')}"
+    if name not in rows:
+        raise UsageFault(f"process {container!r} has no node {name}{did_you_mean(name, rows)}")
+    return rows[name]
 
 
 def _ask(socket: str, **request: Any) -> dict[str, Any]:

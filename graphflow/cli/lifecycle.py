@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
 from graphflow.introspect.elsewhere import nothing_here
@@ -19,7 +19,7 @@ _CHANGE = "lifecycle_msgs/srv/ChangeState"
 _TRANSITIONS = "lifecycle_msgs/srv/GetAvailableTransitions"
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def lifecycle() -> None:
     """Bring lifecycle nodes from state to state."""
 

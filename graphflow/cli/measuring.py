@@ -52,15 +52,20 @@ def hz(topics: list[str], window: int, expression: str) -> int:
     return visit(lambda node: _measure(node, topics, meter, text))
 
 
-def bw(topic: str, window: int) -> int:
+def bw(topics: list[str], window: int) -> int:
     """Tell how many bytes come; returns the exit code."""
-    weights = Weights(window)
-    output.data(f"Subscribed to [{topic}]")
+    weights = {topic: Weights(window) for topic in topics}
+    output.lines(f"Subscribed to [{topic}]" for topic in topics)
 
-    def take(payload: bytes, now_ns: int, _: int) -> None:
-        weights.add(now_ns, len(payload))
+    def meter(topic: str, _: str) -> Take:
+        add = weights[topic].add
+        return lambda payload, now_ns, _: add(now_ns, len(payload))
 
-    return visit(lambda node: _measure(node, [topic], lambda *_: take, weights.text))
+    def text(now_ns: int) -> str:
+        texts = {topic: words for topic, one in weights.items() if (words := one.text(now_ns))}
+        return "\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items())
+
+    return visit(lambda node: _measure(node, topics, meter, text))
 
 
 def delay(topic: str, window: int) -> int:

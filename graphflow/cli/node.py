@@ -7,7 +7,7 @@ from collections import Counter
 import click
 
 from graphflow.cli import output
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
 from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
@@ -25,13 +25,13 @@ _SECTIONS = (
 _ACTION_SECTIONS = (("Action Servers", Kind.PUBLISHER), ("Action Clients", Kind.SUBSCRIPTION))
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def node() -> None:
     """List and describe nodes."""
 
 
 @node.command(name="list")
-@click.option("-a", "--all", "everything", is_flag=True, help="Include hidden nodes.")
+@click.option("-a", "--all", "--include-hidden-nodes", "everything", is_flag=True, help="Include hidden nodes.")
 @click.option("-c", "--count-nodes", is_flag=True, help="Only the count.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(everything: bool, count_nodes: bool, as_json: bool) -> None:

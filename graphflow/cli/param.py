@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from graphflow.cli import exits, output
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
     from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def param() -> None:
     """List, get, set, describe, dump and load parameters."""
 
 
 _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
+_hidden = click.option(
+    "--include-hidden-nodes", is_flag=True, expose_value=False, help="They are found by name anyway."
+)
 
 
 @param.command(name="list")
@@ -86,6 +89,7 @@ def _type_name(type_: int) -> str:
 @click.argument("name", metavar="NODE")
 @click.argument("parameter")
 @click.option("--hide-type", is_flag=True, help="Only the value.")
+@_hidden
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: bool) -> None:
@@ -111,6 +115,7 @@ def get(name: str, parameter: str, hide_type: bool, timeout: float, as_json: boo
 @click.argument("name", metavar="NODE")
 @click.argument("parameter")
 @click.argument("value", nargs=-1, required=True)
+@_hidden
 @_timeout
 def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> int:
     """Set a parameter: VALUE is YAML, read as the parameter's type."""
@@ -129,6 +134,7 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
 @param.command()
 @click.argument("name", metavar="NODE")
 @click.argument("parameter")
+@_hidden
 @_timeout
 def delete(name: str, parameter: str, timeout: float) -> int:
     """Delete a parameter that was declared with dynamic typing."""
@@ -148,6 +154,7 @@ def delete(name: str, parameter: str, timeout: float) -> int:
 @param.command()
 @click.argument("name", metavar="NODE")
 @click.argument("parameters", nargs=-1, metavar="[PARAMETER]...")
+@_hidden
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def describe(name: str, parameters: tuple[str, ...], timeout: float, as_json: bool) -> int:
@@ -186,6 +193,7 @@ def _described(d: ParameterDescriptor) -> str:
 
 @param.command()
 @click.argument("name", metavar="NODE")
+@_hidden
 @_timeout
 def dump(name: str, timeout: float) -> None:
     """Write the parameters of a node as a file that `param load`, `--params-file` and ROS 2 read."""
@@ -204,6 +212,7 @@ def dump(name: str, timeout: float) -> None:
 @click.argument("name", metavar="NODE")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--no-use-wildcard", is_flag=True, help="Only the sections that name the node.")
+@_hidden
 @_timeout
 def load(name: str, file: Path, no_use_wildcard: bool, timeout: float) -> int:
     """Set the parameters of a node to those in a file."""

@@ -10,7 +10,7 @@ import click
 from graphflow.cli import exits, output
 from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.types import agree, names_of_type, use_project
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import ServiceUnavailable, UsageFault
@@ -19,7 +19,7 @@ from graphflow.names import expand
 from graphflow.wire.liveliness import Kind
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def service() -> None:
     """List and call services."""
 

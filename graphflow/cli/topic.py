@@ -11,7 +11,7 @@ from graphflow.cli.echo_options import echo_options, taken
 from graphflow.cli.plot_options import plot_options
 from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.types import names_of_type
-from graphflow.cli.verbs import Verbs
+from graphflow.cli.verbs import GraphVerbs
 from graphflow.cli.words import ValueCommand, message_values, stdin_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
@@ -25,7 +25,7 @@ from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
 
 
-@click.group(cls=Verbs)
+@click.group(cls=GraphVerbs)
 def topic() -> None:
     """List, describe, show and publish to topics."""
 
@@ -237,13 +237,13 @@ def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool) ->
 
 
 @topic.command()
-@click.argument("name", metavar="TOPIC")
+@click.argument("names", metavar="TOPIC...", nargs=-1, required=True)
 @click.option("-w", "--window", type=click.IntRange(1), default=100, show_default=True, help="Messages to average.")
-def bw(name: str, window: int) -> int:
+def bw(names: tuple[str, ...], window: int) -> int:
     """Show how many bytes are published. Ctrl-C stops it."""
     from graphflow.cli import measuring
 
-    return measuring.bw(expand(name, "/", "cli"), window)
+    return measuring.bw(list(dict.fromkeys(expand(name, "/", "cli") for name in names)), window)
 
 
 @topic.command()

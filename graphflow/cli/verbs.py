@@ -1,4 +1,7 @@
-"""Groups of verbs that help with a word they do not know: a misspelt one, or one of `ros2` that is not here yet."""
+"""Groups of verbs that help with a word they do not know: a misspelt one, or one of `ros2` that is not here yet.
+
+Those that look at a graph take the options by which `ros2` finds its daemon; there is none, so they change nothing.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from graphflow.names import did_you_mean
 NOT_YET = {
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
+    "extensions": "graphflow --help lists its verbs",
+    "extension_points": "graphflow --help lists its verbs",
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
 """What `ros2` has and graphflow has not yet, and what to use meanwhile."""
@@ -40,3 +45,22 @@ class Verbs(click.Group):
             return f"no such command {word!r}: {HABITS[word]}"
         hint = did_you_mean(word, self.list_commands(ctx))
         return f"no such command {word!r}{hint or f'; graphflow {path.removesuffix(word)}--help lists them'}"
+
+
+_STAYING = {"echo", "hz", "bw", "delay", "plot", "pub", "call", "send_goal"}
+"""Verbs that take part in a graph for a while, and would go by its time."""
+
+
+class GraphVerbs(Verbs):
+    """Verbs that look at a graph."""
+
+    def add_command(self, cmd: click.Command, name: str | None = None) -> None:
+        known = {word for param in cmd.params for word in param.opts}
+        options = [
+            click.Option(["--no-daemon"], is_flag=True, hidden=True, expose_value=False),
+            click.Option(["--spin-time"], type=float, hidden=True, expose_value=False),
+        ]
+        if name not in _STAYING and cmd.name not in _STAYING:
+            options.append(click.Option(["-s", "--use-sim-time"], is_flag=True, hidden=True, expose_value=False))
+        cmd.params += [option for option in options if known.isdisjoint(option.opts)]
+        super().add_command(cmd, name)

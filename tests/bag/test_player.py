@@ -99,6 +99,15 @@ async def test_a_part_of_it(graph: Graph, tmp_path: Path) -> None:
     assert show.times()[0] == 0.0
 
 
+async def test_up_to_a_time(graph: Graph, tmp_path: Path) -> None:
+    """What is at that very time is played, and nothing after it."""
+    show = Show(graph, tmp_path / "bag")
+    await show.begin(until_ns=START + 500_000_000, choice=Choice(topics=frozenset({"/chatter"})))
+    await graph.clock.advance(3.0)
+    await show.task
+    assert show.times() == [pytest.approx(n / 10) for n in range(6)]
+
+
 async def test_over_and_over(graph: Graph, tmp_path: Path) -> None:
     """Until it is stopped."""
     show = Show(graph, tmp_path / "bag")

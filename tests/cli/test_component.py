@@ -35,7 +35,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
     assert "/news" in machine.look("node", "info", "/room/ear")
     rows = {row["node"]: row for row in json.loads(machine.look("ps", "--json"))}
     assert rows["/room/ear"]["pid"] == rows["/talker"]["pid"]
-    assert machine.look("component", "unload", "tutorial", "2", "1") == (
+    assert machine.look("component", "unload", "tutorial", "2", "/talker") == (
         "Unloaded component 2 from 'tutorial' container node\nUnloaded component 1 from 'tutorial' container node\n"
     )
     assert machine.look("node", "list") == "/alone\n/room/ear\n"
@@ -56,6 +56,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
         (("load", "tutorial", "nodes.talker:Talker", "-n", "x", "-p", "rat:=1"), 2, "did you mean 'rate'?"),
         (("load", "tutorial", "nodes.talker:Talkr", "-n", "x"), 2, "did you mean 'Talker'?"),
         (("load", "tutorial", "composition", "composition::Talkr"), 2, "did you mean 'talker'?"),
+        (("unload", "tutorial", "/taker"), 2, "process 'tutorial' has no node /taker; did you mean '/talker'?"),
         (("unload", "tutorial", "7"), 1, "tutorial has no component 7; there is 1 /talker, 2 /listener"),
         (("unload", "/alone", "1"), 1, "to end it: graphflow stop /alone"),
         (("list", "/alon"), 2, "did you mean '/alone'?"),

@@ -7,6 +7,7 @@ from click.testing import CliRunner
 
 from graphflow.cli.main import cli
 from graphflow.cli.verbs import NOT_YET
+from tests.conftest import Machine
 
 
 @pytest.mark.parametrize("words", NOT_YET)
@@ -32,3 +33,19 @@ def test_a_word_that_is_misspelt(words: str, told: str) -> None:
     done = CliRunner().invoke(cli, words.split(), prog_name="graphflow")
     assert done.exit_code == 2
     assert told in done.output
+
+
+@pytest.mark.parametrize(
+    "words", ["node list", "topic list", "service list", "action list", "param list", "topic info /x"]
+)
+def test_words_about_the_daemon(standing: Machine, words: str) -> None:
+    """They change nothing, as there is none."""
+    plain = standing.look_and_end(*words.split())
+    assert standing.look_and_end(*words.split(), "--no-daemon", "--spin-time", "5", "--use-sim-time") == plain
+
+
+def test_an_option_that_means_something_else_here() -> None:
+    """It keeps its meaning; verbs that would go by simulated time do not say that they do."""
+    for words in ("topic plot", "topic pub", "topic delay"):
+        done = CliRunner().invoke(cli, [*words.split(), "--use-sim-time", "/x"])
+        assert "No such option '--use-sim-time'" in done.output
