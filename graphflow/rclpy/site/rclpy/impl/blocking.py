@@ -7,6 +7,7 @@ import concurrent.futures.thread
 import sys
 import threading
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.frames import Frame, stack_from
@@ -53,7 +54,8 @@ class Blocked(NamedTuple):
 
 def blocked(level: Level) -> Blocked:
     """What the code of a thread waits for."""
-    for frame in reversed(level.frames):
+    for caller, frame in reversed([*pairwise([None, *level.frames])]):
+        assert frame is not None
         if frame.f_code in _SEARCHED:
             names = frame.f_locals
             timeout = names.get("timeout_sec")
@@ -64,7 +66,7 @@ def blocked(level: Level) -> Blocked:
                 return Blocked(service=_service_of(names["self"]), timeout=limit)
             if names.get("future") is not None:
                 return Blocked(future=names["future"], timeout=limit)
-        if (wait := buffer_wait(frame)) is not None:
+        if (wait := buffer_wait(frame, caller)) is not None:
             return Blocked(buffer=wait, timeout=wait.timeout)
         if frame.f_code in (_JOIN, _RESULT):
             names = frame.f_locals

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from types import CodeType, FrameType
+from types import CodeType
 from typing import Any, NamedTuple
 
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.syntax import syntax_of
 
 _WAITS: dict[CodeType, tuple[str, ...]] = {}
@@ -48,9 +49,9 @@ def know_buffer(wait: Callable[..., Any], *fillers: str) -> None:
     _WAITS[wait.__code__] = fillers
 
 
-def buffer_wait(frame: FrameType) -> BufferWait | None:
-    """What such a method waits for, if this is the frame of one."""
-    fillers, caller = _WAITS.get(frame.f_code), frame.f_back
+def buffer_wait(frame: Frame, caller: Frame | None) -> BufferWait | None:
+    """What such a method waits for, if this is the frame of one, and that of its caller."""
+    fillers = _WAITS.get(frame.f_code)
     if fillers is None or caller is None:
         return None
     names, asked = frame.f_locals, caller.f_locals

@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
-from types import FrameType
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.closed_world import handlers_above
+from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import Unknown, source_of
 from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
@@ -58,7 +58,7 @@ class _Offer(NamedTuple):
 
 
 def opening_of(
-    service: str, frames: list[FrameType], node: Subject, others: Iterable[Any], files: Iterable[str]
+    service: str, frames: list[Frame], node: Subject, others: Iterable[Any], files: Iterable[str]
 ) -> Opening | None:
     """What makes the server of a service for which code waits; None where that is not known.
 
@@ -92,7 +92,7 @@ def opening_of(
     return Opening(handlers, is_own) if handlers or is_own else None
 
 
-def tries_forever(frame: FrameType) -> bool:
+def tries_forever(frame: Frame) -> bool:
     """Whether the line of a frame is in a loop that ends only when something is there, or the program ends."""
     loops = [
         node
@@ -140,7 +140,7 @@ def _syntaxes(file: str) -> Iterator[Any]:
         return
 
 
-def _is_of(frame: FrameType, offer: _Offer) -> bool:
+def _is_of(frame: Frame, offer: _Offer) -> bool:
     """Whether a frame runs the function that makes a server, or the module that does."""
     return frame.f_code.co_filename == offer.file and frame.f_code.co_firstlineno == _code_line(offer.function)
 
@@ -162,7 +162,7 @@ def _follows(offer: _Offer, line: int) -> bool:
     return False
 
 
-def _resolved(offer: _Offer, frame: FrameType) -> str:
+def _resolved(offer: _Offer, frame: Frame) -> str:
     """The full name of a service or action that a function will offer; empty where its node is not known."""
     match offer.owner:
         case ast.Name(id=name):

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import rclpy
-from graphflow.deadlock.frames import suspended
 from rclpy.impl.blocking import blocked
 from rclpy.impl.stacks import Level
 from rclpy.node import Node
 from rclpy.task import Future
+from tests.rclpy.stepping import after_a_step
 
 
 class Own:
@@ -52,10 +52,7 @@ class Own:
 
 
 def wait_of(steps: Any) -> Any:
-    next(steps)
-    frame = suspended(steps)
-    assert frame is not None
-    return blocked(Level(None, [frame]))
+    return blocked(Level(None, [after_a_step(steps)]))
 
 
 def test_a_loop_waits_for_the_future_that_it_asks(node: Node) -> None:

@@ -3,32 +3,39 @@
 from __future__ import annotations
 
 import sys
+from itertools import pairwise
 from pathlib import Path
-from types import FrameType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 from tf2_ros import Buffer
 
+from graphflow.deadlock.frames import stack_from
 from rclpy.duration import Duration
-from rclpy.impl.buffers import buffer_wait, know_buffer
+from rclpy.impl.buffers import BufferWait, buffer_wait, know_buffer
 
 
 class Store:
-    """A buffer whose wait returns its frame."""
+    """A buffer whose wait returns what is seen of it."""
 
-    def look_up(self, target_frame: str, source_frame: str, timeout: Duration) -> FrameType:
+    def look_up(self, target_frame: str, source_frame: str, timeout: Duration) -> BufferWait | None:
         return self.wait(timeout)
 
-    def wait(self, timeout: Duration) -> FrameType:
-        return sys._getframe()
+    def wait(self, timeout: Duration) -> BufferWait | None:
+        return innermost_wait()
+
+
+def innermost_wait() -> BufferWait | None:
+    """What the code that calls this waits for."""
+    caller, frame = stack_from(sys._getframe(1))[-2:]
+    return buffer_wait(frame, caller)
 
 
 def test_what_is_waited_for(tmp_path: Path) -> None:
     """With its limit, who brings it, and whether a file's code may too."""
     know_buffer(Store.wait, "fill")
     store: Any = Store()
-    frame = store.look_up("map", "base", Duration(seconds=2.5))
-    found = buffer_wait(frame)
+    found = store.look_up("map", "base", Duration(seconds=2.5))
 
     assert found is not None
     assert (found.buffer, found.what, found.timeout) == (store, "the transform from base to map", 2.5)
@@ -39,7 +46,7 @@ def test_what_is_waited_for(tmp_path: Path) -> None:
         file = tmp_path / f"{i}.py"
         file.write_text(text, encoding="utf-8")
         assert found.may_be_filled_by([str(file)]) is may
-    assert buffer_wait(sys._getframe()) is None
+    assert innermost_wait() is None
 
 
 class Listener:
@@ -54,18 +61,16 @@ class Listener:
 
 def test_the_buffer_of_transforms_is_known() -> None:
     """Its methods are there under the names by which it is known."""
-    frames: list[FrameType] = []
+    waits: list[BufferWait] = []
 
     class Own(Buffer):
         def can_transform_core(self, *asked: Any) -> tuple[bool, str]:
-            frame: FrameType | None = sys._getframe()
-            while frame is not None and (found := buffer_wait(frame)) is None:
-                frame = frame.f_back
-            assert frame is not None
-            frames.append(frame)
+            stack = stack_from(sys._getframe())
+            [found] = [wait for pair in pairwise(stack) if (wait := buffer_wait(pair[1], pair[0])) is not None]
+            waits.append(found)
             assert found.timeout == 0.0
             assert all(hasattr(self, name) for name in found.fillers)
             return True, ""
 
     assert Own().can_transform("map", "base", 0)
-    assert frames
+    assert waits

@@ -7,17 +7,10 @@ from typing import Any
 
 import pytest
 
-from graphflow.deadlock.frames import Frame, stack_of, suspended
+from graphflow.deadlock.frames import stack_of
 from rclpy.impl.locks import Entering, entered_at, is_inside, is_kept
 from tests.rclpy.locking import WHOSE, Bank
-
-
-def after_a_step(steps: Any) -> Frame:
-    """The frame of a generator at its next `yield`."""
-    next(steps)
-    frame = suspended(steps)
-    assert frame is not None
-    return frame
+from tests.rclpy.stepping import after_a_step
 
 
 @pytest.mark.parametrize(

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from types import FrameType
 from typing import Any
 
 import pytest
 from std_srvs.srv import Trigger
 
 import rclpy
+from graphflow.deadlock.frames import Frame, running
 from rclpy.impl.openings import Opening, opening_of, tries_forever
 from rclpy.impl.subjects import Subject
 from rclpy.node import Node
+from tests.rclpy.stepping import after_a_step
 
 
 class Offers(Node):
-    """Each generator yields its frame in the line in which it waits."""
+    """Each generator pauses in the line in which it waits."""
 
     def __init__(self) -> None:
         super().__init__("offers")
 
-    def later(self) -> Iterator[FrameType]:
-        yield sys._getframe()
+    def later(self) -> Iterator[None]:
+        yield
         self.create_service(Trigger, "own", print)
 
     def on_timer(self) -> None:
@@ -32,36 +33,36 @@ class Offers(Node):
     def make(self) -> None:
         self.create_service(Trigger, "made", print)
 
-    def either(self) -> Iterator[FrameType]:
+    def either(self) -> Iterator[None]:
         if self.get_name():
-            yield sys._getframe()
+            yield
         else:
             self.create_service(Trigger, "either", print)
 
-    def before(self) -> Iterator[FrameType]:
+    def before(self) -> Iterator[None]:
         self.create_service(Trigger, "before", print)
-        yield sys._getframe()
+        yield
 
-    def tries(self, client: Any) -> Iterator[FrameType]:
+    def tries(self, client: Any) -> Iterator[None]:
         while not client.wait_for_service(1.0):
-            yield sys._getframe()
+            yield
 
-    def tries_while_ok(self, client: Any) -> Iterator[FrameType]:
+    def tries_while_ok(self, client: Any) -> Iterator[None]:
         while rclpy.ok() and not client.wait_for_service(1.0):
-            yield sys._getframe()
+            yield
             if not rclpy.ok():
                 return
 
-    def tries_and_leaves(self, client: Any) -> Iterator[FrameType]:
+    def tries_and_leaves(self, client: Any) -> Iterator[None]:
         while not client.wait_for_service(1.0):
-            yield sys._getframe()
+            yield
             if self.get_name():
                 break
 
-    def tries_three_times(self, client: Any) -> Iterator[FrameType]:
+    def tries_three_times(self, client: Any) -> Iterator[None]:
         count = 0
         while not client.wait_for_service(1.0) and count < 3:
-            yield sys._getframe()
+            yield
 
 
 class Absent:
@@ -71,9 +72,9 @@ class Absent:
         return False
 
 
-def opening(node: Node, service: str, frame: FrameType | None = None, *others: Any) -> Opening | None:
+def opening(node: Node, service: str, frame: Frame | None = None, *others: Any) -> Opening | None:
     subject: Any = Subject(node, ["on_timer"])
-    return opening_of(service, [sys._getframe() if frame is None else frame], subject, others, [__file__])
+    return opening_of(service, [running(sys._getframe()) if frame is None else frame], subject, others, [__file__])
 
 
 @pytest.fixture
@@ -86,10 +87,10 @@ def offers(network: object) -> Offers:
 def test_code_that_comes_after(offers: Offers) -> None:
     """In the same function, on the same way through it, and under the name that it resolves to."""
     later, either, before = offers.later(), offers.either(), offers.before()
-    assert opening(offers, "/own", next(later)) == Opening(frozenset(), True)
-    assert opening(offers, "/other/own", next(offers.later())) is None
-    assert opening(offers, "/either", next(either)) is None
-    assert opening(offers, "/before", next(before)) is None
+    assert opening(offers, "/own", after_a_step(later)) == Opening(frozenset(), True)
+    assert opening(offers, "/other/own", after_a_step(offers.later())) is None
+    assert opening(offers, "/either", after_a_step(either)) is None
+    assert opening(offers, "/before", after_a_step(before)) is None
 
 
 def test_a_callback_that_makes_it(offers: Offers) -> None:
@@ -111,4 +112,4 @@ def test_a_callback_that_makes_it(offers: Offers) -> None:
 def test_loops(offers: Offers, way: Any, is_endless: bool) -> None:
     """One that tries until there is a server or the program ends, and others."""
     code = way(offers, Absent())
-    assert tries_forever(next(code)) is is_endless
+    assert tries_forever(after_a_step(code)) is is_endless
