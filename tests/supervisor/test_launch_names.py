@@ -7,12 +7,12 @@ from importlib import import_module
 import pytest
 
 from graphflow.supervisor.launch_names import NAMES
-from graphflow.supervisor.launch_stand_ins import PACKAGES, Said, StandIns
+from graphflow.supervisor.launch_stand_ins import PACKAGES, Context, Said, StandIns
 
 
 @pytest.mark.parametrize("module", NAMES)
 def test_a_star_brings_them(module: str) -> None:
-    """Each is something that remembers what it is called with."""
+    """Each is something that remembers what it is called with, or a context."""
     assert module.partition(".")[0] in PACKAGES
     finder = StandIns()
     spec = finder.find_spec(module)
@@ -20,4 +20,4 @@ def test_a_star_brings_them(module: str) -> None:
     made = finder.create_module(spec)
     assert made.__all__ == NAMES[module].split()
     assert import_module("graphflow.supervisor.launch_service")  # where one of them is
-    assert all(issubclass(getattr(made, name), Said) for name in made.__all__)
+    assert all(issubclass(getattr(made, name), (Said, Context)) for name in made.__all__)
