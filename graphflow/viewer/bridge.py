@@ -46,7 +46,7 @@ MESSAGE_BOUND = 16 << 20
 """Bytes that one message of a viewer may have."""
 PAGES = re.compile(r"https://([a-z0-9-]+\.)*foxglove\.dev|https?://(localhost|127\.0\.0\.1|\[::1\])(:\d+)?")
 """Web pages that may connect, besides programs and those that the user allows: any page can ask a browser to connect to
-this machine."""
+this machine, files that were downloaded (`file://`) and extensions of the browser included."""
 
 
 class Bridge:
@@ -123,8 +123,7 @@ class Bridge:
     def _admit(self, connection: ServerConnection, request: Request) -> Response | None:
         """Let a client in, unless it is a page of a stranger or one too many."""
         origin = request.headers.get("Origin", "")
-        is_page = origin.partition(":")[0] in ("http", "https", "null")
-        if is_page and origin not in self._pages and not PAGES.fullmatch(origin):
+        if origin and origin not in self._pages and not PAGES.fullmatch(origin):  # programs have none
             logger.warning(
                 "a page of %s was refused; if it is your viewer: --allow-page %s", *[printable(origin[:200])] * 2
             )

@@ -1,4 +1,9 @@
-"""One viewer that is connected: what waits to be sent to it, within bounds."""
+"""One viewer that is connected: what waits to be sent to it, within bounds.
+
+A viewer shows what is, so of what it reads too slowly the newest counts. Each channel has a short queue of its own, and
+small messages go before large ones. No more is sent than the viewer has been seen to read: what lies in the system's
+buffers can no longer be left out.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +21,14 @@ from graphflow.viewer.protocol import told
 
 logger = logging.getLogger("graphflow")
 
-DATA_BOUND = 64 << 20
-"""Bytes of messages that may wait; what is older is dropped, as the newest tells more."""
+CHANNEL_BOUND = 64 << 10
+"""Bytes of messages that may wait in a channel; of larger messages, only the latest does."""
+CHANNEL_DEPTH = 100
+"""Messages that may."""
+WINDOW = 256 << 10
+"""Bytes of messages after which a viewer is asked whether it has read them."""
+WINDOWS = 2
+"""Such questions that may be open before it is sent more."""
 WORDS_BOUND = 16 << 20
 """Bytes of words that may wait; a viewer that reads nothing is sent away."""
 TEXT_BOUND = 500
@@ -32,8 +43,10 @@ class Client:
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
         self._words: deque[str | bytes] = deque()
-        self._data: deque[bytes] = deque()
-        self._data_bytes = self._words_bytes = 0
+        self._waiting: dict[int, deque[bytes]] = {}
+        """Messages by channel; never empty ones."""
+        self._words_bytes = self._sent = self._unread = 0
+        """Bytes of words that wait; bytes of messages sent since it was asked; questions that are open."""
         self._is_new = asyncio.Event()
         self._work: set[asyncio.Task[Any]] = set()
         self.dropped = 0
@@ -63,12 +76,12 @@ class Client:
         """Tell it that something cannot be."""
         self.say(told("status", level=1, message=printable(text[:TEXT_BOUND])))
 
-    def show(self, head: bytes, payload: bytes) -> None:
+    def show(self, channel: int, frame: bytes) -> None:
         """Send it a message of a channel."""
-        self._data.append(head + payload)
-        self._data_bytes += len(head) + len(payload)
-        while self._data_bytes > DATA_BOUND and len(self._data) > 1:
-            self._data_bytes -= len(self._data.popleft())
+        waiting = self._waiting.setdefault(channel, deque())
+        waiting.append(frame)
+        while len(waiting) > 1 and (len(waiting) > CHANNEL_DEPTH or sum(map(len, waiting)) > CHANNEL_BOUND):
+            waiting.popleft()
             if not self.dropped:
                 self.warn("this viewer reads too slowly: the oldest messages are left out")
             self.dropped += 1
@@ -100,15 +113,40 @@ class Client:
                     word = self._words.popleft()
                     self._words_bytes -= len(word)
                     await self._connection.send(word)
-                elif self._data:
-                    frame = self._data.popleft()
-                    self._data_bytes -= len(frame)
-                    await self._connection.send(frame)
+                elif self._waiting and self._unread < WINDOWS:
+                    await self._send(self._next())
                 else:
                     self._is_new.clear()
                     await self._is_new.wait()
         except ConnectionClosed:
             return
+
+    def _next(self) -> bytes:
+        """The message to send: the oldest of the channel whose oldest is the smallest."""
+        channel = min(self._waiting, key=lambda channel: len(self._waiting[channel][0]))
+        frame = self._waiting[channel].popleft()
+        if not self._waiting[channel]:
+            del self._waiting[channel]
+        return frame
+
+    async def _send(self, frame: bytes) -> None:
+        await self._connection.send(frame)
+        self._sent += len(frame)
+        if self._sent >= WINDOW:
+            self._sent = 0
+            self._unread += 1
+            asyncio.ensure_future(await self._connection.ping()).add_done_callback(self._was_read)
+
+    def _was_read(self, pong: asyncio.Future[float]) -> None:
+        """It has read what came before a ping, or has gone."""
+        if not pong.cancelled():
+            pong.exception()  # which is told by whatever is sent next
+        self._unread -= 1
+        self._is_new.set()
+
+    def forget(self, channel: int) -> None:
+        """Send no more of a channel."""
+        self._waiting.pop(channel, None)
 
     def close(self) -> None:
         """End what is under way for it."""

@@ -124,7 +124,8 @@ class Topics:
 
         def arrived(payload: bytes, info: MessageInfo) -> None:
             is_time = 0 < info.source_ns < 1 << 63
-            client.show(message_head(wanted.id, info.source_ns if is_time else self._node.clock.time_ns()), payload)
+            head = message_head(wanted.id, info.source_ns if is_time else self._node.clock.time_ns())
+            client.show(wanted.id, head + payload)
 
         subscription = raw.subscribe(self._node, entity.type, entity.name, arrived, HEARD, type_hash=entity.hash)
         self._looks[look] = key, subscription
@@ -133,6 +134,7 @@ class Topics:
         """A client looks away."""
         if (client, number) in self._looks:
             self._looks.pop((client, number))[1].close()
+            client.forget(number)
 
     def leave(self, client: Client) -> None:
         """A client has gone."""

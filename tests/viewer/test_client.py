@@ -13,14 +13,23 @@ pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
 class Connection:
-    """Stands for one that takes nothing."""
+    """Stands for one that takes what it is sent, and reads none of it."""
 
     def __init__(self) -> None:
         self.transport = self
         self.is_aborted = False
+        self.sent: list[str | bytes] = []
+        self.pongs: list[asyncio.Future[float]] = []
 
     def abort(self) -> None:
         self.is_aborted = True
+
+    async def send(self, frame: str | bytes) -> None:
+        self.sent.append(frame)
+
+    async def ping(self) -> asyncio.Future[float]:
+        self.pongs.append(asyncio.get_running_loop().create_future())
+        return self.pongs[-1]
 
 
 def made() -> tuple[client.Client, Connection]:
@@ -29,18 +38,56 @@ def made() -> tuple[client.Client, Connection]:
 
 
 def test_messages_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The oldest are left out, which is told once; nothing grows for ever."""
-    monkeypatch.setattr(client, "DATA_BOUND", 1000)
+    """The oldest of a channel are left out, which is told once; no channel costs another."""
+    monkeypatch.setattr(client, "CHANNEL_BOUND", 1000)
     slow, connection = made()
+    slow.show(2, b"small")
     for number in range(100):
-        slow.show(b"head", bytes([number]) * 96)
-    assert (slow.dropped, len(slow._data)) == (90, 10)
-    assert slow._data[0][4] == 90
-    slow.show(b"head", bytes(5000))
-    assert len(slow._data) == 1
+        slow.show(1, bytes([number]) * 100)
+    assert (slow.dropped, len(slow._waiting[1])) == (90, 10)
+    assert slow._waiting[1][0][0] == 90
+    slow.show(1, bytes(5000))
+    assert list(slow._waiting[1]) == [bytes(5000)]
+    assert list(slow._waiting[2]) == [b"small"]
     [word] = slow._words
     assert "this viewer reads too slowly" in str(word)
     assert not connection.is_aborted
+    slow.forget(1)
+    slow.forget(1)
+    assert list(slow._waiting) == [2]
+
+
+async def settle() -> None:
+    for _ in range(200):
+        await asyncio.sleep(0)
+
+
+async def test_a_viewer_that_reads_slowly() -> None:
+    """It is sent no more than it has been seen to read; then words first, small messages next, and of large ones the
+    latest.
+    """
+    slow, connection = made()
+    large = [bytes([number]) * client.WINDOW for number in range(6)]
+    writing = asyncio.ensure_future(slow.write())
+    for frame in large[:3]:
+        slow.show(1, frame)
+        await settle()
+    assert connection.sent == large[:2]
+    slow.show(1, large[3])
+    for number in range(3):
+        slow.show(2, bytes([number]))
+    slow.say("a word")
+    await settle()
+    assert "reads too slowly" in str(connection.sent[2])
+    assert connection.sent[3:] == ["a word"]
+    connection.pongs[0].set_result(0.1)
+    await settle()
+    assert connection.sent[4:] == [b"\0", b"\1", b"\2", large[3]]
+    connection.pongs[1].set_exception(ConnectionError("gone"))
+    slow.show(1, large[4])
+    await settle()
+    assert connection.sent[8:] == [large[4]]
+    writing.cancel()
 
 
 def test_words_that_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
