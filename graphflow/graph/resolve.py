@@ -33,6 +33,11 @@ from graphflow.interface import CALL_TIMEOUT, GroupChange
 from graphflow.machines.restarts import BACKOFF, Backoff
 from graphflow.names import Resolver, check_references, did_you_mean, expand, split
 
+_ANYBODY = (
+    "allow_control: whoever reaches this graph over the network can load code into its processes; remove it, unless "
+    "ROS 2's load_node is needed (graphflow component does without)"
+)
+
 
 def load(
     path: Path,
@@ -114,6 +119,8 @@ def _resolve(
     steps = _steps(src, model, problems)
     ordered_nodes, ordered_steps = ordered(src, nodes, steps, expansion, problems)
     console = console_section(src, problems.add)
+    if model.net.allow_control:
+        problems.remark(src.key_place(("net", "allow_control")), _ANYBODY)
     problems.raise_any()
     return Plan(
         name=model.name or name,

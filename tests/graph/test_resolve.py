@@ -843,3 +843,11 @@ def test_components_that_nobody_here_has_are_left_out_of_launch_files(lamps: Pat
     file.write_text(text % "")
     with pytest.raises(GraphFileError, match="image_proc::RectifyNode is left out"):
         load(file)
+
+
+def test_others_that_may_load_code() -> None:
+    """Are let in by one line, which is remarked with its place."""
+    text = "net: {allow_control: true}\nnodes:\n  /a: {class: nodes.talker:Talker}\n"
+    (remark,) = plan(text).remarks
+    assert remark.startswith("f.yaml:1:7: allow_control: whoever reaches this graph over the network can load code")
+    assert plan(text.replace("true", "false")).remarks == ()
