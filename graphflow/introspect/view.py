@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Iterable
 from types import TracebackType
@@ -25,8 +26,17 @@ from graphflow.wire.liveliness import Kind, watch_key
 from graphflow.wire.net import NetToken
 from graphflow.wire.process import ProcessToken
 
+logger = logging.getLogger("graphflow")
+
 TAKEN_SHOWN = 5
 """Names with their owners that are told when many are taken."""
+PATIENCE = 0.5
+"""Seconds that a node has to answer when it is asked whether it is there."""
+ASKED = {
+    "get_parameters": "rcl_interfaces/srv/GetParameters",
+    "get_type_description": "type_description_interfaces/srv/GetTypeDescription",
+}
+"""Services of every node, with their types."""
 GID = bytes(16)
 """Commands are not entities of the graph, so they have no GID of their own."""
 
@@ -171,6 +181,26 @@ class View:
             return ""
         return f"{name} does not pass {blocking[0]}; if its node is on another machine, add it to `allow` on both"
 
+    def is_there(self, name: str) -> bool:
+        """Whether a node is more than a token, which anybody can announce.
+
+        It is if somebody answers on one of the services that every node has, or keeps the question: a process that is
+        stopped does. Where nobody is, Zenoh ends the question at once.
+        """
+        from graphflow.msgs import registry
+
+        for service, type_name in ASKED.items():
+            request = registry.example(f"{type_name}_Request").to_bytes()
+            for server in self.cache.endpoints(Kind.SERVICE, f"{name}/{service}"):
+                if server.type == type_name:
+                    try:
+                        reply = self._client.call(server.data_key, request, attachment.pack(1, 0, GID), PATIENCE)
+                    except TimeoutError:
+                        return True
+                    if reply is not None:
+                        return True
+        return False
+
     def processes(self) -> dict[str, ProcessToken]:
         """The graphflow processes in the domain, by session, as they were when the graph was read."""
         tokens = map(process.parse, self._processes)
@@ -195,6 +225,8 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
     Args:
         hint: How to give a node another name.
 
+    A node that is announced, and not there, takes no name: that is logged.
+
     Raises:
         SupervisorError: Some names are taken; the text says by which processes.
     """
@@ -205,7 +237,13 @@ def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename th
             return
         raise
     with view:
-        taken = sorted(set(names) & set(view.cache.nodes()))
+        announced = sorted(set(names) & set(view.cache.nodes()))
+        taken = [name for name in announced if view.is_there(name)]
+        for name in sorted({*announced} - {*taken}):
+            logger.warning(
+                "%s is announced in domain %s by %s, and nobody answers for it: it is started all the same",
+                *(name, domain, view.owner(name)),
+            )
         if taken:
             owners = "; ".join(f"{name} ({view.owner(name)})" for name in taken[:TAKEN_SHOWN])
             more = f"; and {len(taken) - TAKEN_SHOWN} more" if len(taken) > TAKEN_SHOWN else ""

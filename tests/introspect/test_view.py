@@ -11,7 +11,7 @@ import pytest
 
 from graphflow.errors import CallError, CallTimeout, RemoteError, ServerLost, ServiceUnavailable, SupervisorError
 from graphflow.introspect import view as module
-from graphflow.introspect.view import View, refuse_taken_names
+from graphflow.introspect.view import ASKED, View, refuse_taken_names
 from graphflow.msgs import registry
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.transport.base import Answer
@@ -220,18 +220,40 @@ def test_processes_and_owners(view: View) -> None:
     assert view.owner("/ros") == "session z9, not a graphflow process"
 
 
-def test_names_that_are_taken(client: Client) -> None:
-    """All of them are named with their owners, and what to do; free ones are none, and the look is closed."""
+def parameters_of(node: Entity) -> Entity:
+    """The service that every node has."""
+    type_ = ASKED["get_parameters"]
+    return node._replace(eid=9, kind=Kind.SERVICE, name=f"{node.node_name}/get_parameters", type=type_, hash=HASH)
+
+
+@pytest.mark.parametrize("answer", [Answer(b"?", None, True), TimeoutError()])
+def test_names_that_are_taken(client: Client, answer: Answer | Exception) -> None:
+    """All of them are named with their owners, and what to do; free ones are none, and the look is closed.
+
+    Whoever answers, or keeps the question as a process that is stopped does, is there.
+    """
+    client.entities += [parameters_of(CLERK), parameters_of(ROS)]
+    client.answer = answer
     refuse_taken_names(["/a", "/b"], 7)
     assert client.is_closed
+    assert client.asked == []
     with pytest.raises(SupervisorError) as caught:
         refuse_taken_names(["/ros", "/a", "/office/clerk"], 7, "call it otherwise")
+    assert [key for key, _ in client.asked] == [parameters_of(node).data_key for node in (CLERK, ROS)]
     text = str(caught.value)
     assert text.startswith("already in domain 7: /office/clerk (process ")
     assert (
         "; /ros (session z9, not a graphflow process). Stop what runs there, call it otherwise, or choose another"
         in text
     )
+
+
+def test_names_that_are_only_announced(client: Client, caplog: pytest.LogCaptureFixture) -> None:
+    """A token that somebody has forged keeps no node from starting, whatever services it announces."""
+    client.entities += [parameters_of(ROS)]
+    refuse_taken_names(["/ros", "/office/clerk"], 7)
+    assert "/ros is announced in domain 7 by session z9, not a graphflow process, and nobody answers" in caplog.text
+    assert "/office/clerk is announced in domain 7 by process " in caplog.text
 
 
 @pytest.mark.parametrize("code", [3, 1])
