@@ -37,7 +37,7 @@ from graphflow.deadlock.fresh import CONTAINER_MAKERS, is_new, messages
 from graphflow.deadlock.module_names import changes
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import LAMBDA, Function, Unknown, source_of
-from graphflow.deadlock.syntax import FunctionNode, is_nested, walk
+from graphflow.deadlock.syntax import FunctionNode, first_line, is_nested, syntax_of, walk
 from graphflow.deadlock.user_code import Pause
 from graphflow.deadlock.uses import Use, is_own
 from graphflow.executor.ledger import PendingGoal
@@ -170,7 +170,7 @@ class Question:
                 self._places.append(_Spot(frame, function))
             elif frame.f_locals.get("self") is self._instance and not is_library(frame):
                 raise Unknown  # a method whose source was not found
-            elif self._places and not is_library(frame):
+            elif self._places and not (is_library(frame) or only_pauses(frame)):
                 self._places.clear()  # foreign code comes in between and may do as it likes
         if not self._places and instance is None:
             raise Unknown
@@ -385,6 +385,41 @@ def handlers_above(what: str, methods: Iterable[str], node: Subject) -> Setters 
 def method_of(task: Any) -> str:
     """The name of the coroutine function that a task runs."""
     return str(getattr(task.get_coro(), "__name__", ""))
+
+
+_PAUSING = {"sleep", "max", "min", "abs", "round", "float", "int"}
+_PAUSING |= {"time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns"}
+"""What a function may call that does nothing but let time pass."""
+
+
+def only_pauses(frame: Frame) -> bool:
+    """Whether a frame is of a function, as of a rate made by hand, that only lets time pass and counts it."""
+    try:
+        functions = syntax_of(frame.f_code.co_filename).functions
+    except (OSError, SyntaxError, ValueError):
+        return False
+    code = frame.f_code
+    found = [f for f in functions if (first_line(f), f.name) == (code.co_firstlineno, code.co_name)]
+    return len(found) == 1 and all(map(_lets_time_pass, ast.walk(found[0])))
+
+
+def _lets_time_pass(node: ast.AST) -> bool:
+    match node:
+        case ast.Call(func=called):
+            return _last(called) in _PAUSING
+        case ast.Attribute(ctx=ast.Store()):
+            return is_own(node)
+        case ast.While():  # one that pauses polls, and is what waits
+            return not any(isinstance(n, ast.Call) and _last(n.func) == "sleep" for n in ast.walk(node))
+        case ast.Subscript(ctx=ast.Store()) | ast.Raise() | ast.Assert() | ast.Global() | ast.Nonlocal():
+            return False
+        case ast.Yield() | ast.YieldFrom() | ast.Delete() | ast.AsyncFor() | ast.AsyncWith():
+            return False
+    return True
+
+
+def _last(called: ast.expr) -> str:
+    return ast.unparse(called).rpartition(".")[2]
 
 
 _LIBRARIES = ("graphflow.", "rclpy.", "asyncio.", "contextlib", "threading", "queue", "concurrent.")

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from graphflow.deadlock.asyncio_frames import is_inside, object_wait
-from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library
+from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library, only_pauses
 from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import ClassSource, Unknown, source_of
@@ -43,6 +43,8 @@ def setters(frames: list[Frame], waiter: Any, node: Subject, *, is_bounded: bool
 def _question(frames: list[Frame], node: Subject) -> Question:
     """What ends a wait in a method of the node, or of an object that it holds and knows alone."""
     for frame in reversed(frames):
+        if only_pauses(frame):
+            continue
         innermost = frame.f_locals.get("self")
         if innermost is node.instance or not (is_library(frame) or is_users(frame.f_code.co_filename)):
             break

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -130,6 +131,35 @@ class SendsToTheLoop(KeepsState):
         self.there.set()
 
 
+class Rate:
+    """Made by hand."""
+
+    def __init__(self, period: float) -> None:
+        self.period, self.next = period, time.monotonic() + period
+
+    async def sleep(self) -> None:
+        await asyncio.sleep(max(0.0, self.next - time.monotonic()))
+        while self.next < time.monotonic():
+            self.next += self.period
+
+
+class KeepsARate(RunsWhile):
+    def __init__(self) -> None:
+        super().__init__()
+        self.rate = Rate(0.05)
+
+    async def go(self, _: String) -> None:
+        while self.pose is None:
+            await self.rate.sleep()
+
+
+class MakesARate(RunsWhile):
+    async def go(self, _: String) -> None:
+        rate = Rate(0.05)
+        while self.pose is None:
+            await rate.sleep()
+
+
 class Gathers(KeepsState):
     async def poll(self) -> None:
         while not self.state.ready.is_set():
@@ -153,6 +183,8 @@ class Gathers(KeepsState):
         (Comes, "self.barrier", "arrive, which comes to it,"),
         (RunsWhile, "self.pose", "arrive, which sets it,"),
         (ByALambda, "self.pose", "sets it"),
+        (KeepsARate, "self.pose", "arrive, which sets it,"),
+        (MakesARate, "self.pose", "arrive, which sets it,"),
         (SendsToTheLoop, "self.there", "arrive, which sets it,"),
         (Gathers, "self.state.ready", "arrive, which sets it,"),
     ],
@@ -242,6 +274,27 @@ class FillsWhatMayBeTheNode(Robot):
         return given
 
 
+class ObligingRate(Rate):
+    """It does more than let time pass."""
+
+    def __init__(self, work: Any) -> None:
+        super().__init__(0.05)
+        self.work = work
+
+    async def sleep(self) -> None:
+        await self.work()
+
+
+class WorksMeanwhile(MakesARate):
+    async def go(self, _: String) -> None:
+        rate = ObligingRate(self.work)
+        while self.pose is None:
+            await rate.sleep()
+
+    async def work(self) -> None:
+        await self.clock.sleep(0.05)
+
+
 class MarkedOutside(Navigates):
     """A handler of no group marks it."""
 
@@ -261,6 +314,7 @@ class MarkedOutside(Navigates):
         IsThereByItself,
         IsReplaced,
         OnlyLooks,
+        WorksMeanwhile,
         FillsWhatMayBeTheNode,
         MarkedOutside,
     ],
