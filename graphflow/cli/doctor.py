@@ -106,7 +106,7 @@ def _graph() -> tuple[Findings, Findings, int]:
             "misfits": list(complaints(view.cache)),
             "health": health.faults,
         }
-        unseen = [*managed.unseen, *concurrency.hidden(read, view)]
+        unseen = managed.unseen
     late = [
         f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
         for who, n, most in read.late

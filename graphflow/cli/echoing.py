@@ -115,7 +115,8 @@ def render(message: Any, info: MessageInfo, options: EchoOptions, path: Path) ->
     if options.raw:
         return f"{message!r}\n---"
     try:
-        data = plain(value_at(message, path))
+        is_whole = options.as_json or options.full_length or options.no_arr
+        data = plain(value_at(message, path), None if is_whole else options.truncate_length)
     except IndexError:
         return f"# this message has no element {options.field}\n---"
     if not path and type(message).SCHEMA.name.endswith("_Event") and "info" in data:

@@ -164,10 +164,14 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     return exits.FAILED if certain else exits.OK
 
 
+_DESCRIBING = b"def generate_launch_description", b"LaunchService"
+"""What a Python file has that describes a launch: a function that does, or the service that starts it."""
+
+
 def is_launch_file(file: Path) -> bool:
     """Whether a Python file is a launch file of ROS's."""
     named = file.name.endswith((".launch.py", "_launch.py"))
-    return file.is_file() and (named or b"def generate_launch_description" in found_bytes(file))
+    return file.is_file() and (named or any(word in found_bytes(file) for word in _DESCRIBING))
 
 
 def _checked(path: Path, args: Sequence[str]) -> tuple[Plan, Interfaces]:

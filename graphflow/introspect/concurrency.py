@@ -25,7 +25,6 @@ from graphflow.machines.wait_graph import (
     joined,
 )
 from graphflow.machines.wait_graph_json import from_json
-from graphflow.names import is_hidden
 
 
 @dataclass
@@ -78,13 +77,6 @@ def unresponsive(waits: ConcurrencyReport, view: View) -> list[str]:
         if nodes and zid not in waits.processes:
             found.append(f"NODE UNRESPONSIVE: {' and '.join(nodes)} ({process}) did not answer: {process.why_silent}")
     return sorted(found)
-
-
-def hidden(waits: ConcurrencyReport, view: View) -> list[str]:
-    """Nodes that their processes tell of and that cannot be seen from here."""
-    unseen = sorted(node for node in set(waits.nodes) - set(view.cache.nodes()) if not is_hidden(node))
-    why = "an access list keeps them back: allow: in the net profile of this machine or of theirs"
-    return [f"not seen from here, though their processes answer: {', '.join(unseen)}; {why}"] if unseen else []
 
 
 def stuck(waits: ConcurrencyReport) -> set[str]:

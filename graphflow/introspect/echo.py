@@ -11,14 +11,20 @@ TRUNCATE = 128
 """Elements and characters shown of long arrays and strings."""
 
 
-def plain(value: Any) -> Any:
-    """A message as dicts, lists and scalars."""
+def plain(value: Any, limit: int | None = None) -> Any:
+    """A message as dicts, lists and scalars.
+
+    Args:
+        limit: Elements of lists that will be shown; one more is kept, for `truncated` to see. A byte of an image takes
+            eight in a list.
+    """
+    kept = None if limit is None else limit + 1
     if isinstance(value, Message):
-        return {f.name: plain(getattr(value, f.name)) for f in value.SCHEMA.fields}
+        return {f.name: plain(getattr(value, f.name), limit) for f in value.SCHEMA.fields}
     if hasattr(value, "tolist"):
-        return value.tolist()
+        return value[:kept].tolist() if getattr(value, "ndim", 0) else value.tolist()
     if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
+        return [plain(item, limit) for item in value[:kept]]
     return value
 
 

@@ -182,11 +182,3 @@ def test_who_has_not_answered() -> None:
     assert concurrency.unresponsive(read, Seen()) == [
         f"NODE UNRESPONSIVE: /b and /c (process 2 on elsewhere) did not answer: {why}"
     ]
-
-
-def test_nodes_that_are_kept_back() -> None:
-    """Their processes tell of them, and the network does not show them: an access list lies between."""
-    told = reply(WaitGraph(), "1", nodes={"/a": [], "/arm": [], "/_hidden": [], "/_tool": []})
-    [text] = concurrency.hidden(concurrency.read([told]), Seen())
-    assert text.startswith("not seen from here, though their processes answer: /arm; an access list keeps them back")
-    assert concurrency.hidden(concurrency.read([reply(WaitGraph(), "1", nodes={"/a": []})]), Seen()) == []

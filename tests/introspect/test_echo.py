@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 from graphflow.graph.source import read
 from graphflow.introspect.echo import block, csv, flow, plain, scalar, truncated
+from graphflow.msgs import registry
 from graphflow.msgs.geometry_msgs.msg import Pose, Twist, Vector3
 from graphflow.msgs.rcl_interfaces.msg import ParameterEvent, ParameterValue
 from tests.cases import count
@@ -164,3 +166,18 @@ def test_messages_read_back(message: Any) -> None:
     from graphflow.msgs.values import from_plain
 
     assert from_plain(type(message), read(block(plain(message)), "block").data) == message
+
+
+def test_long_lists_are_cut_before_they_are_made() -> None:
+    """What is not shown of a large array costs nothing."""
+    message: Any = registry.interface_class("std_msgs/msg/UInt8MultiArray")(data=bytes(20_000_000))
+    tracemalloc.start()
+    try:
+        data = plain(message, 3)
+        assert tracemalloc.get_traced_memory()[1] < 100_000
+    finally:
+        tracemalloc.stop()
+    assert data["data"] == [0, 0, 0, 0]
+    assert truncated(data, 3)["data"] == [0, 0, 0, "..."]
+    assert plain([[1, 2, 3, 4], [5]], 2) == [[1, 2, 3], [5]]
+    assert len(plain(message)["data"]) == 20_000_000
