@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from graphflow.cli import exits, output
@@ -13,10 +14,11 @@ from graphflow.graph.check import check
 from graphflow.graph.executables import node_classes_in
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.graph.project import add_interfaces, module_of, shown
-from graphflow.graph.rclpy_source import files_in, findings_in
+from graphflow.graph.rclpy_source import files_in, findings_in, unfollowed_in
 from graphflow.graph.static import Finding
 from graphflow.graph.workspace import uses_ros
 from graphflow.interface import Interface
+from graphflow.reading import found_text
 from graphflow.supervisor.classes import read_interfaces
 from graphflow.supervisor.probe import probe
 
@@ -29,34 +31,48 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
     Raises:
         UsageFault: There is no such file, or no node in any.
     """
-    problems: list[Problem] = []
-    ways: list[Finding] = []
-    nodes = read = 0
+    seen = _Seen()
     for path in paths:
         if not path.exists():
             raise UsageFault(f"there is no file {path}")
         for file in files_in(path):
             if (fault := _unreadable(file)) is not None:
-                problems.append(fault)
+                seen.problems.append(fault)
             elif uses_ros(file):
-                read += 1
-                ways += findings_in(file)
+                seen.is_rclpy = True
+                seen.ways += findings_in(file)
+                seen.unfollowed += unfollowed_in(file)
             elif classes := node_classes_in(file):
-                nodes += len(classes)
-                wrong, seen = _checked(file, classes)
-                problems += wrong
-                ways += seen
-    if not (nodes or read or problems):
+                seen.nodes += len(classes)
+                wrong, ways = _checked(file, classes)
+                seen.problems += wrong
+                seen.ways += ways
+    if not (seen.nodes or seen.is_rclpy or seen.problems):
         raise UsageFault(f"{' '.join(map(str, paths))}: no node in it, of graphflow or of rclpy{_graphs_in(paths)}")
-    _tell(paths, problems, ways, nodes, as_json=as_json)
-    if problems:
+    _tell(paths, seen, as_json=as_json)
+    if seen.problems:
         return exits.USAGE
-    return exits.FAILED if any(way.grade == "CERTAIN" for way in ways) else exits.OK
+    return exits.FAILED if any(way.grade == "CERTAIN" for way in seen.ways) else exits.OK
+
+
+@dataclass
+class _Seen:
+    """What the source of nodes shows."""
+
+    problems: list[Problem] = field(default_factory=list)
+    ways: list[Finding] = field(default_factory=list)
+    """Deadlocks."""
+    unfollowed: list[Place] = field(default_factory=list)
+    """Loops in rclpy callbacks that poll what their file does not show being set."""
+    nodes: int = 0
+    """Classes of graphflow's."""
+    is_rclpy: bool = False
+    """Whether some of it is written for rclpy."""
 
 
 def _unreadable(file: Path) -> Problem | None:
     try:
-        ast.parse(file.read_text(encoding="utf-8"))
+        ast.parse(found_text(file))
     except SyntaxError as error:
         return Problem(Place(shown(file), error.lineno or 1, error.offset or 1), f"SyntaxError: {error.msg}")
     except (OSError, ValueError) as error:
@@ -83,31 +99,38 @@ def _checked(file: Path, classes: dict[str, int]) -> tuple[list[Problem], list[F
     return list({problem.message: problem for found in reversed(alone) for problem in found}.values()), ways
 
 
-def _tell(paths: Sequence[Path], problems: list[Problem], ways: list[Finding], nodes: int, *, as_json: bool) -> None:
+def _tell(paths: Sequence[Path], seen: _Seen, *, as_json: bool) -> None:
     if as_json:
-        deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in ways]
-        told = [{"message": problem.message, **place_of(problem.place)} for problem in problems]
-        output.as_json({"problems": told, "remarks": [], "deadlocks": deadlocks})
+        deadlocks = [{"grade": way.grade, "text": str(way), **place_of(way.place)} for way in seen.ways]
+        told = [{"message": problem.message, **place_of(problem.place)} for problem in seen.problems]
+        unfollowed = [place_of(place) for place in seen.unfollowed]
+        output.as_json({"problems": told, "remarks": [], "deadlocks": deadlocks, "unfollowed": unfollowed})
         return
-    for problem in problems:
+    for problem in seen.problems:
         output.talk(str(problem))
-    output.lines(str(way) for way in ways)
-    what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
-    counts = [*_counts(problems, ways)]
-    if nodes:
-        counts.insert(0, f"{nodes} node class{'es' * (nodes != 1)}")
-    output.data(
-        f"{what}: {', '.join(counts) if problems or ways or nodes else 'no deadlocks to be seen in the source'}"
+    output.lines(
+        f"{place}: not analysed: a callback polls what this file does not show being set" for place in seen.unfollowed
     )
+    output.lines(str(way) for way in seen.ways)
+    what = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
+    output.data(f"{what}: {', '.join(_counts(seen))}")
 
 
-def _counts(problems: list[Problem], ways: list[Finding]) -> Iterator[str]:
-    if problems:
-        yield f"{len(problems)} problem{'s' * (len(problems) != 1)}"
-    if ways:
-        yield f"{len(ways)} deadlock{'s' * (len(ways) != 1)} in the source"
-    if not problems and not ways:
-        yield "no problems"
+def _counts(seen: _Seen) -> Iterator[str]:
+    if seen.nodes:
+        yield f"{seen.nodes} node class{'es' * (seen.nodes != 1)}"
+    if seen.problems:
+        yield _count(seen.problems, "problem")
+    if seen.ways:
+        yield f"{_count(seen.ways, 'deadlock')} in the source"
+    if not seen.problems and not seen.ways:
+        yield "no problems" if seen.nodes else "no deadlocks to be seen in the source"
+    if seen.unfollowed:
+        yield f"{_count(seen.unfollowed, 'loop')} not analysed"
+
+
+def _count(things: Sequence[object], word: str) -> str:
+    return f"{len(things)} {word}{'s' * (len(things) != 1)}"
 
 
 def place_of(place: Place) -> dict[str, str | int]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.errors import Place
+from graphflow.graph.rclpy_flags import Polled, changers, polled, written_from_outside
 from graphflow.graph.static import Finding, Grade
 from graphflow.reading import found_text
 
@@ -83,6 +84,8 @@ class _Wait(NamedTuple):
     holds_thread: bool
     spins: bool
     is_certain: bool
+    polled: Polled | None = None
+    """What it looks at, if that is what a loop does."""
 
 
 @dataclass
@@ -94,6 +97,8 @@ class _Class:
     """Whether one thread spins it."""
     doubled: frozenset[str] = frozenset()
     """The names of services that several servers in the file have."""
+    written: frozenset[str] = frozenset()
+    """Attributes that the file assigns on something other than `self`."""
     methods: dict[str, ast.FunctionDef | ast.AsyncFunctionDef] = field(default_factory=dict)
     groups: dict[str, _Group] = field(default_factory=dict)
     clients: dict[str, _Group | None] = field(default_factory=dict)
@@ -103,6 +108,8 @@ class _Class:
     callbacks: list[_Callback] = field(default_factory=list)
     rates: set[str] = field(default_factory=set)
     """Attributes, with their `self.`."""
+    events: set[str] = field(default_factory=set)
+    """Attributes that are a `threading.Event`."""
 
     def findings(self) -> Iterator[Finding]:
         seen: set[tuple[int, str]] = set()
@@ -119,8 +126,46 @@ class _Class:
                 text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {_LATER}"
                 yield Finding(_grade(wait), Place(self.file, line), text)
 
+    def unfollowed(self) -> Iterator[Place]:
+        """Loops that poll in callbacks, and that may wait for what the source does not show."""
+        for callback in self.callbacks:
+            for wait in self._waits(callback.method, True, set()):
+                if wait.polled is not None and not wait.polled.gives_up and self._changers(wait.polled) is None:
+                    yield Place(self.file, getattr(wait.syntax, "lineno", 0))
+
+    def _changers(self, poll: Polled) -> frozenset[str] | None:
+        """The methods by which what a loop polls changes; None where that is not known."""
+        if not poll.flags or poll.flags & self.written:
+            return None
+        found = changers(poll.flags, self.methods, frozenset(callback.method for callback in self.callbacks))
+        return found.methods if found.is_known else None
+
+    def _poll_fault(self, callback: _Callback, wait: _Wait, poll: Polled) -> str:
+        """Why a loop polls for ever; empty if it may end."""
+        ways = None if poll.gives_up else self._changers(poll)
+        if not ways:
+            return ""
+        others, group = sorted(ways - {callback.method}), callback.group
+        by = [other for other in self.callbacks if other.method in ways]
+        what, setters = " and ".join(f"self.{flag}" for flag in sorted(poll.flags)), " and ".join(others)
+        one = "s" if len(others) < 2 else ""
+        needs = (
+            f"{callback} waits in {wait.what}, and {setters or 'only its next run'}, which set{one} {what}, need{one}"
+        )
+        is_kept_out = ways == {other.method for other in by} and all(other.group == group for other in by)
+        later = f"return instead of waiting, and go on in {setters}" if others else "return instead of waiting"
+        if is_kept_out and group is not None and group.is_exclusive:
+            text = f"{needs} {group}, which {callback.method} holds until it returns: {later}"
+        elif self.is_single and not wait.spins:
+            text = f"{needs} a thread that spins, and the only one is in {callback.method}: {later}"
+        else:
+            return ""
+        return f"{text}; or make {callback.method} with {_OWN}{'' if wait.spins else f', and {_POOL}'}"
+
     def _fault(self, callback: _Callback, wait: _Wait) -> str:
         """Why a wait never ends; empty if it may."""
+        if wait.polled is not None:
+            return self._poll_fault(callback, wait, wait.polled)
         who, group = f"{callback} waits in {wait.what}", callback.group
         asked = self.asked.get(wait.client) if wait.client else None
         asked = None if asked in self.doubled else asked  # another server may answer
@@ -145,13 +190,17 @@ class _Class:
         if function is None or method in seen:
             return
         seen.add(method)
-        futures, rates = _futures(function, self.clients), _rates(function) | self.rates
+        futures = _futures(function, self.clients)
+        rates = _made_by(function, "create_rate") | self.rates
         for node, parents in _walk(function):
             is_sure = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
             match node:
                 case ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)):
                     if name in self.clients and verb in ("call", "send_goal"):
                         yield _Wait(f"self.{name}.{verb}", node, name, True, False, is_sure)
+                    elif name in self.events and verb == "wait" and not (node.args or node.keywords):
+                        poll = Polled(f"self.{name}.wait", frozenset({name}), gives_up=False)
+                        yield _Wait(poll.text, node, "", True, False, False, poll)
                     elif f"self.{name}" in rates and verb == "sleep":
                         yield _Wait(f"self.{name}.sleep", node, "", True, False, is_sure)
                     elif name in self.clients and verb == "call_async" and isinstance(parents[-1], ast.Await):
@@ -170,9 +219,21 @@ class _Class:
                         spins = any(_calls(inner) in _SPINS for inner in ast.walk(node))
                         around = is_certain and not any(isinstance(p, _BRANCHES) for p in parents)
                         yield _Wait(f"`while not {asked}.done()`", node, futures[asked], True, spins, around)
+                    elif not isinstance(function, ast.AsyncFunctionDef):
+                        yield from self._polls(node, rates)
                 case ast.Await(value=awaited) if _word(awaited) in futures:
                     name = futures[_word(awaited)]
                     yield _Wait(f"await {_word(awaited)}", node, name, False, False, is_sure)
+
+    def _polls(self, loop: ast.While, rates: set[str]) -> Iterator[_Wait]:
+        """What a loop waits for that looks at attributes again and again."""
+        poll = polled(loop, self.methods)
+        is_of_rate = any(
+            isinstance(n, ast.Attribute) and n.attr == "sleep" and _word(n.value) in rates for n in ast.walk(loop)
+        )
+        if poll is not None and not (self.is_single and is_of_rate):  # what a rate needs is told anyway
+            spins = any(_calls(inner) in _SPINS for inner in ast.walk(loop))
+            yield _Wait(poll.text, loop, "", True, spins, False, poll)
 
 
 def _grade(wait: _Wait) -> Grade:
@@ -181,15 +242,22 @@ def _grade(wait: _Wait) -> Grade:
 
 def findings_in(path: Path) -> list[Finding]:
     """What the source of a Python file, or of all below a folder, shows. Nothing where it cannot be read."""
-    found: list[Finding] = []
+    found = [finding for cls in _classes_in(path) for finding in cls.findings()]
+    return sorted(dict.fromkeys(found), key=lambda f: f.place)
+
+
+def unfollowed_in(path: Path) -> list[Place]:
+    """Where callbacks poll something of which the source does not show how it changes."""
+    return sorted({place for cls in _classes_in(path) for place in cls.unfollowed()})
+
+
+def _classes_in(path: Path) -> Iterator[_Class]:
     for file in files_in(path):
         try:
             tree = ast.parse(found_text(file))
         except (OSError, SyntaxError, ValueError):
             continue
-        for cls in _classes(tree, str(file)):
-            found += cls.findings()
-    return sorted(dict.fromkeys(found), key=lambda f: f.place)
+        yield from _classes(tree, str(file))
 
 
 def files_in(path: Path) -> Iterator[Path]:
@@ -217,7 +285,7 @@ def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
     is_single = not others and bool({"spin", "SingleThreadedExecutor"} & names)
     servers = Counter(_name_of(n) for n in ast.walk(tree) if isinstance(n, ast.Call) and _last(n.func) in _SERVERS)
     doubled = frozenset(name for name, count in servers.items() if count > 1)
-    known: dict[str, _Class] = {base: _Class(file, is_single, doubled) for base in _BASES}
+    known: dict[str, _Class] = {base: _Class(file, is_single, doubled, written_from_outside(tree)) for base in _BASES}
     for definition in tree.body:
         if isinstance(definition, ast.ClassDef):
             parent = next((known[name] for name in map(_last, definition.bases) if name in known), None)
@@ -229,8 +297,18 @@ def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
 def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
     """A class, with what it has from a parent in the same file."""
     own = dict(parent.methods), dict(parent.groups), dict(parent.clients), dict(parent.asked), list(parent.servers)
-    rates = {name for name in _rates(definition) if name.startswith("self.")}
-    found = _Class(parent.file, parent.is_single, parent.doubled, *own, list(parent.callbacks), parent.rates | rates)
+    rates = {name for name in _made_by(definition, "create_rate") if name.startswith("self.")}
+    events = {name.removeprefix("self.") for name in _made_by(definition, "Event") if name.startswith("self.")}
+    found = _Class(
+        parent.file,
+        parent.is_single,
+        parent.doubled,
+        parent.written,
+        *own,
+        list(parent.callbacks),
+        parent.rates | rates,
+        parent.events | events,
+    )
     for item in definition.body:
         if isinstance(item, (ast.FunctionDef, ast.AsyncFunctionDef)):
             found.methods[item.name] = item
@@ -323,12 +401,12 @@ def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
     return False
 
 
-def _rates(tree: ast.AST) -> set[str]:
-    """What is made to be a rate: names, and attributes with their `self.`."""
+def _made_by(tree: ast.AST, maker: str) -> set[str]:
+    """What a function makes, such as rates: names, and attributes with their `self.`."""
     found = set()
     for node in ast.walk(tree):
         match node:
-            case ast.Assign(targets=[target], value=ast.Call(func=made)) if _last(made) == "create_rate":
+            case ast.Assign(targets=[target], value=ast.Call(func=made)) if _last(made) == maker:
                 found.add(_word(target))
     return found
 

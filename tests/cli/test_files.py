@@ -180,4 +180,12 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     assert both.endswith("2 paths: 1 deadlock in the source\n")
     (tmp_path / "own/a.py").write_text("import rclpy\n")
     assert "no deadlocks to be seen" in machine.look("check", "own", cwd=tmp_path)
+    polls = "    def tick(self):\n        while not self.there: time.sleep(0.1)\n"
+    timer = "        self.t = self.create_timer(1.0, self.tick)\n"
+    (tmp_path / "own/a.py").write_text(text.replace("        self.c.call(1)\n", timer + polls))
+    said = machine.look("check", "own", cwd=tmp_path)
+    assert "own/a.py:7: not analysed: a callback polls what this file does not show being set" in said
+    assert said.endswith("own: no deadlocks to be seen in the source, 1 loop not analysed\n")
+    [place] = json.loads(machine.look("check", "own", "--json", cwd=tmp_path))["unfollowed"]
+    assert place["line"] == 7
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)

@@ -67,6 +67,11 @@ def name_of(callback: Any) -> str:
     return str(getattr(callback, "__name__", ""))
 
 
+def full_name(node: Any) -> str:
+    """A node's name with its namespace; empty for no node."""
+    return "" if node is None else str(node._graphflow.node.full_name)
+
+
 def entities_of(node: Any) -> Iterator[Any]:
     """What has callbacks."""
     for kind in ("subscriptions", "clients", "services", "timers", "guards", "waitables"):

@@ -20,7 +20,7 @@ from graphflow.rclpy.wake import Wake
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor
-from rclpy.impl.entities import arrived, entities_of, goal_of, name_of, role_of
+from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, role_of
 from rclpy.impl.groups import executors, is_exclusive, threads_of
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks
@@ -102,7 +102,7 @@ class HeldUp:
         node = _node_of(run)
         if level is None or node is None or level.waiting is not None:
             return None
-        title, kept = f"{_label(run)} of {_name(node)}", list(_kept(run))
+        title, kept = f"{_label(run)} of {full_name(node)}", list(_kept(run))
         if not kept or self._is_told(run, "r", title) or self._is_known(title):
             return None
         others, way = [word for word in kept if word != _label(run)], _RETURN
@@ -114,7 +114,7 @@ class HeldUp:
 
     def _of_node(self, key: tuple[Any, Any], seconds: float) -> _Told | None:
         """A node that is not spun; None if that holds nothing up, or a report of a deadlock tells more."""
-        node, name = key[0], _name(key[0])
+        node, name = key[0], full_name(key[0])
         found = _program(list(stacks()), node)
         if found is None:
             return None
@@ -142,7 +142,7 @@ class HeldUp:
     def _leaves(self, node: Any) -> None:
         """Tell of a node that ends and was never spun, unless that is known or the program ends in an error."""
         is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-        if node._graphflow.times_added or is_failing or _name(node) in self._known:
+        if node._graphflow.times_added or is_failing or full_name(node) in self._known:
             return
         kept = [
             _word_and_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))
@@ -151,7 +151,7 @@ class HeldUp:
             text = (
                 "%s ends, and nobody has ever spun it, so that %s could not be called: rclpy.spin(node) calls callbacks"
             )
-            logger.warning(text, _name(node), _words(kept))
+            logger.warning(text, full_name(node), _words(kept))
 
 
 def _kept(run: Run) -> Iterator[str]:
@@ -194,10 +194,6 @@ def _node_of(run: Run) -> Any:
 def _place(level: Level, node: Any) -> str:
     found = where(level.frames, node)
     return f"{Place(Path(found.place.file).name, found.place.line)} in {found.function}"
-
-
-def _name(node: Any) -> str:
-    return str(node._graphflow.node.full_name)
 
 
 def _words(kept: list[str]) -> str:

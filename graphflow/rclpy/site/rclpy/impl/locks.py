@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from graphflow.deadlock.frames import Frame
@@ -58,6 +58,23 @@ def is_inside(frame: Frame, lock: object) -> bool:
     )
     before = [line for line in (*taken, *given) if line < frame.f_lineno]
     return bool(before) and max(before) in taken and any(line >= frame.f_lineno for line in given)
+
+
+def holds(frames: Iterable[Frame], lock: object) -> bool:
+    """Whether some code of a stack holds a lock."""
+    return any(is_inside(frame, lock) for frame in frames)
+
+
+def only_holder(
+    entering: Entering, frames: Iterable[Frame], others: Iterable[tuple[str, Sequence[Frame]]]
+) -> str | None:
+    """The one of some stacks, by name, that holds a lock which code waits for; None for none, several, or no knowing.
+
+    Args:
+        frames: Those of the code that waits.
+    """
+    inside = [(name, stack) for name, stack in others if holds(stack, entering.lock)]
+    return inside[0][0] if len(inside) == 1 and is_kept(entering, [*frames, *inside[0][1]]) else None
 
 
 def is_kept(entering: Entering, frames: Iterable[Frame]) -> bool:

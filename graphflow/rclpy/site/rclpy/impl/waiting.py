@@ -11,6 +11,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import Counter
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from itertools import count
@@ -51,6 +52,7 @@ from rclpy.impl.entities import (
     arrived,
     entities_of,
     frames_of,
+    full_name,
     goal_of,
     name_of,
     results_asked,
@@ -60,7 +62,7 @@ from rclpy.impl.entities import (
 from rclpy.impl.group_rows import group_rows
 from rclpy.impl.groups import ATTEMPTS, called, executors, is_exclusive, threads_of
 from rclpy.impl.held_up import HeldUp
-from rclpy.impl.locks import Entering, is_inside, is_kept
+from rclpy.impl.locks import Entering, holds, only_holder
 from rclpy.impl.openings import opening_of, tries_forever
 from rclpy.impl.spinning import Run
 from rclpy.impl.stacks import Level, Stack, stacks, standing
@@ -131,10 +133,8 @@ class Waiting:
         """Its nodes' callback groups and executors, with what is in them, as plain data."""
         with self._lock:
             for _ in range(ATTEMPTS):
-                try:
+                with suppress(RuntimeError):  # something changed its size meanwhile
                     return _Look(self).rows()
-                except RuntimeError:  # something changed its size meanwhile
-                    continue
         return {}
 
     def _look(self) -> None:
@@ -186,7 +186,7 @@ class _Look:
         found = [blocked(level) for level in self._levels.values()]
         self._awaited = {one.thread for one in found}
         locks = [one.lock.lock for one in found if one.lock is not None]
-        self._awaited |= {s.thread.ident for s in self._stacks for lock in locks if _holds(s, lock)}
+        self._awaited |= {s.thread.ident for s in self._stacks for lock in locks if holds(s.levels[0].frames, lock)}
         self._now = time.monotonic()
 
     def _id(self, thing: Any, prefix: str = "r") -> str:
@@ -216,14 +216,14 @@ class _Look:
         if not is_exclusive(group):
             return ()
         name = self._id(group, "g")
-        self._groups[name] = GroupView(name, called(group, node), _name(node), 1, sort="callback")
+        self._groups[name] = GroupView(name, called(group, node), full_name(node), 1, sort="callback")
         return (name,)
 
     def _executor(self, executor: Any, node: Any) -> tuple[str, ...]:
         """The id of an executor, as a group of threads."""
         limit = threads_of(executor)
         name = self._id(executor, "e")
-        self._groups.setdefault(name, GroupView(name, type(executor).__name__, _name(node), limit, sort="executor"))
+        self._groups.setdefault(name, GroupView(name, type(executor).__name__, full_name(node), limit, sort="executor"))
         return (name,)
 
     def _spinner(self, node: Any) -> tuple[str, ...]:
@@ -232,7 +232,7 @@ class _Look:
         if not threads:
             return ()
         name = f"{self._zid}:spinner"
-        self._groups.setdefault(name, GroupView(name, "spinner", _name(node), len(threads), sort="spinner"))
+        self._groups.setdefault(name, GroupView(name, "spinner", full_name(node), len(threads), sort="spinner"))
         return (name,)
 
     def _needs(self, group: Any, node: Any) -> tuple[str, ...]:
@@ -253,7 +253,7 @@ class _Look:
             calls = (self._tick(entity),)
         needs = self._needs(entity.callback_group, node)
         self._queues[name] = QueueView(
-            name, role.label, _name(node), needs, calls, waiting, process=self._zid, is_declared=False
+            name, role.label, full_name(node), needs, calls, waiting, process=self._zid, is_declared=False
         )
 
     def _add_results(self, entity: Any, node: Any) -> None:
@@ -261,7 +261,7 @@ class _Look:
         for call, goal in results_asked(entity):
             name, label = f"{call}:r", f"service {self._roles[entity].handler} get_result"
             wait = Call(goal, entity._graphflow_goals.name.partition("/_action/")[0])
-            self._activities[name] = ActivityView(name, label, _name(node), (), wait, call, process=self._zid)
+            self._activities[name] = ActivityView(name, label, full_name(node), (), wait, call, process=self._zid)
 
     def _tick(self, timer: Timer) -> str:
         return f"tick:{self._id(timer, 'q')}"
@@ -302,7 +302,7 @@ class _Look:
         self._activities[name] = ActivityView(
             name,
             role.label,
-            _name(node),
+            full_name(node),
             holding,
             wait,
             served(run),
@@ -327,7 +327,7 @@ class _Look:
         self._activities[name] = ActivityView(
             name,
             f"thread {stack.thread.name}",
-            _name(node),
+            full_name(node),
             holding,
             wait,
             "",
@@ -341,7 +341,7 @@ class _Look:
 
     def _add_idle(self, stack: Stack, holding: tuple[str, ...]) -> None:
         name = self._id(stack.thread, "t")
-        node = _name(self._nodes[0] if self._nodes else None)
+        node = full_name(self._nodes[0] if self._nodes else None)
         self._activities[name] = ActivityView(name, f"thread {stack.thread.name}", node, holding, process=self._zid)
 
     def _add_suspended(self, run: Run) -> None:
@@ -441,10 +441,8 @@ class _Look:
         others += [(self._id(s.thread, "t"), s.levels[0].frames) for s in self._stacks if s.levels[0] is not level]
         if run is not None:
             others.append((self._id(run), level.frames[:-1]))  # it may be inside itself
-        inside = [(one, frames) for one, frames in others if any(is_inside(f, entering.lock) for f in frames)]
-        if len(inside) != 1 or not is_kept(entering, [*level.frames, *inside[0][1]]):
-            return FREE
-        return SetBy(entering.text, (), (inside[0][0],), True, "releases")
+        holder = only_holder(entering, level.frames, others)
+        return FREE if holder is None else SetBy(entering.text, (), (holder,), True, "releases")
 
     def _of_buffer(self, wait: BufferWait) -> Condition:
         """A wait for what only listeners bring that cannot run meanwhile."""
@@ -493,15 +491,6 @@ class _Look:
         others_runs = [r for r in self._runs if r is not run and (r.node is node or r in tasks)]
         active = sorted(self._id(r) for r in others_runs if self._role(r).handler in found.handlers)
         return SetBy(found.what, tuple(sorted(queues)), tuple(active), deed=found.deed, gives_up=found.gives_up)
-
-
-def _holds(stack: Stack, lock: object) -> bool:
-    """Whether a thread of the program's own is inside of a lock, outside of all callbacks."""
-    return any(is_inside(frame, lock) for frame in stack.levels[0].frames)
-
-
-def _name(node: Any) -> str:
-    return "" if node is None else str(node._graphflow.node.full_name)
 
 
 def attend(life: Life) -> None:

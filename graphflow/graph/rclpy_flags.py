@@ -1,0 +1,175 @@
+"""What loops of rclpy nodes poll, as their source shows: attributes, and which of the methods change them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+Methods = Mapping[str, ast.FunctionDef | ast.AsyncFunctionDef]
+
+_LOOKING = {"is_set", "wait", "get", "keys", "values", "items", "index", "count", "copy", "empty", "qsize", "full"}
+"""Methods by which an attribute is only looked at."""
+_TIME = ("time", "monotonic", "perf_counter", "now", "get_clock")
+_BEGINNINGS = {"__init__"}
+
+
+class Polled(NamedTuple):
+    """A loop that only waits and looks again."""
+
+    text: str
+    """What it waits for, as it is written: `while not self.there`."""
+    flags: frozenset[str]
+    """The attributes that it looks at; empty where something else may end it."""
+    gives_up: bool
+    """Whether it ends by itself after some time."""
+
+
+class Changers(NamedTuple):
+    """What changes attributes."""
+
+    methods: frozenset[str]
+    """Callbacks, and what is called when an answer has come."""
+    is_known: bool
+    """Whether nothing else does."""
+
+
+def polled(loop: ast.While, methods: Methods) -> Polled | None:
+    """What a loop waits for that pauses in its body, or does nothing there; None for a loop that works."""
+    calls = [_last(node.func) for node in _inside(loop.body) if isinstance(node, ast.Call)]
+    if {"sleep", "spin_once"}.isdisjoint(calls) and not all(isinstance(statement, ast.Pass) for statement in loop.body):
+        return None
+    asked = [node for node in _inside([loop.test]) if isinstance(node, ast.Call)]
+    gives_up = any(_last(call.func) in _TIME for call in asked)
+    leaves = any(
+        isinstance(node, (ast.Break, ast.Return, ast.Raise))
+        for statement in loop.body
+        if not (isinstance(statement, ast.If) and "ok()" in ast.unparse(statement.test))
+        for node in ast.walk(statement)
+    )
+    text = f"`while {ast.unparse(loop.test)}`"
+    flags = _read(loop.test, methods, set())
+    if leaves or flags is None or any(_changes(statement, flag) for statement in loop.body for flag in flags):
+        return Polled(text, frozenset(), gives_up)
+    return Polled(text, frozenset(flags), gives_up)
+
+
+def written_from_outside(tree: ast.Module) -> frozenset[str]:
+    """The attributes that code assigns on something other than `self`."""
+    return frozenset(
+        node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load) and not _root(node)
+    )
+
+
+def changers(flags: frozenset[str], methods: Methods, callbacks: frozenset[str]) -> Changers:
+    """The callbacks by which attributes change, directly or through methods that they call."""
+    changing = {
+        name
+        for name, function in methods.items()
+        if name not in _BEGINNINGS and any(_changes(function, flag) for flag in flags)
+    }
+    is_known = bool(changing) and not any(_is_given(flag, methods) for flag in flags)
+    found, todo, seen = set[str](), list(changing), set(changing)
+    while todo:
+        name = todo.pop()
+        callers = {other for other, function in methods.items() if _calls(function, name)} - _BEGINNINGS
+        is_entry = name in callbacks or _follows_an_answer(name, methods)
+        if is_entry:
+            found.add(name)
+        if _is_given(name, methods) or not (is_entry or callers):
+            is_known = False  # some other code calls it
+        todo += callers - seen
+        seen |= callers
+    return Changers(frozenset(found), is_known)
+
+
+def _read(test: ast.AST, methods: Methods, seen: set[str]) -> set[str] | None:
+    """The attributes of the node that a condition is made of; None where something else decides it."""
+    found: set[str] = set()
+    for node in _inside([test]):
+        match node:
+            case ast.Attribute(value=ast.Name("self"), attr=name) if name in methods:
+                below = None if name in seen else _read(methods[name], methods, {*seen, name})
+                if below is None:
+                    return None
+                found |= below
+            case ast.Attribute(value=ast.Name("self"), attr=name):
+                found.add(name)
+            case ast.Call(func=ast.Attribute(attr=asked)) if asked in _LOOKING | {"ok", *_TIME}:
+                continue
+            case ast.Call(func=ast.Attribute(value=ast.Name("self"), attr=name)) if name in methods:
+                continue
+            case ast.Call(func=ast.Name("len" | "abs" | "all" | "any" | "bool")):
+                continue
+            case ast.Call():
+                return None
+    return found - {"get_clock", "context"} or None
+
+
+def _changes(top: ast.AST, flag: str) -> bool:
+    """Whether code assigns an attribute of the node, or a part of it, or calls a method that may change it."""
+    for node in ast.walk(top):
+        match node:
+            case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
+                if _root(node) == flag:
+                    return True
+            case ast.Call(func=ast.Attribute(value=owner, attr=way)) if way not in _LOOKING and _root(owner) == flag:
+                return True
+    return False
+
+
+def _root(expression: ast.expr) -> str:
+    """`pose` of `self.pose.x`; empty for anything that is not the node's."""
+    while isinstance(expression, (ast.Attribute, ast.Subscript)):
+        match expression:
+            case ast.Attribute(value=ast.Name("self"), attr=name):
+                return name
+        expression = expression.value
+    return ""
+
+
+def _is_given(name: str, methods: Methods) -> bool:
+    """Whether an attribute or method of the node is given to other code than what rclpy calls back."""
+    for node in (node for function in methods.values() for node in ast.walk(function)):
+        if isinstance(node, ast.Call) and not _last(node.func).startswith(
+            ("create_", "add_done_", "Action", "get_logger")
+        ):
+            given = [*node.args, *(keyword.value for keyword in node.keywords)]
+            plain = _last(node.func) in {
+                "str",
+                "len",
+                "print",
+                "float",
+                "int",
+                "abs",
+                "info",
+                "debug",
+                "warn",
+                "warning",
+            }
+            if not plain and any(ast.unparse(one) == f"self.{name}" for one in given):
+                return True
+    return False
+
+
+def _calls(function: ast.AST, name: str) -> bool:
+    return any(isinstance(n, ast.Call) and ast.unparse(n.func) == f"self.{name}" for n in ast.walk(function))
+
+
+def _follows_an_answer(name: str, methods: Methods) -> bool:
+    return any(
+        isinstance(n, ast.Call) and _last(n.func) == "add_done_callback" and f"self.{name}" in map(ast.unparse, n.args)
+        for function in methods.values()
+        for n in ast.walk(function)
+    )
+
+
+def _inside(tops: Sequence[ast.AST]) -> Iterator[ast.AST]:
+    for top in tops:
+        yield from ast.walk(top)
+
+
+def _last(expression: ast.expr) -> str:
+    return ast.unparse(expression).rpartition(".")[2]
