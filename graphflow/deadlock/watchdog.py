@@ -108,7 +108,8 @@ class Watchdog:
         shown = [f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}" for frame in frames]
         begun = next((i for i, file in enumerate(files) if is_ours(file)), 0)  # before it is what has started graphflow
         last = max((i for i, file in enumerate(files) if i >= begun and is_users(file)), default=-1)
-        first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=0)
+        above = next((i for i, file in enumerate(files) if is_users(file)), 0)  # asyncio's own come first
+        first = max((i + 1 for i, file in enumerate(files[: last + 1]) if is_ours(file)), default=above)
         where = f" in {shown[last]}" if last >= 0 else ""
         stack = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         return (

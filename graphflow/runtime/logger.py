@@ -32,7 +32,50 @@ class _Flow:
         self.since, self.count, self.unsaid, self.is_flood, self.level = since, 0, 0, False, 0
 
 
-class NodeLogger(logging.Logger):
+class OwnLogger(logging.Logger):
+    """A logger of graphflow's, which survives the logging of libraries.
+
+    `logging.config` disables the loggers that a configuration does not name, unless it says otherwise; that counts for
+    nothing here. What graphflow's console has shown is not shown again by a handler that `basicConfig` has made.
+    """
+
+    @property
+    def disabled(self) -> bool:
+        """Whether the program has switched it off."""
+        return bool(self.__dict__.get("_is_disabled"))
+
+    @disabled.setter
+    def disabled(self, value: bool) -> None:
+        if sys._getframe(1).f_globals.get("__name__") != "logging.config":
+            self.__dict__["_is_disabled"] = value
+
+    def callHandlers(self, record: logging.LogRecord) -> None:  # noqa: N802 - its name is Python's
+        if not any(getattr(handler, "is_wanted", False) for handler in logging.getLogger("graphflow").handlers):
+            super().callHandlers(record)
+            return
+        logger: logging.Logger | None = self
+        while logger is not None:
+            is_above = not f"{logger.name}.".startswith("graphflow.")
+            for handler in logger.handlers:
+                if record.levelno >= handler.level and not (is_above and _is_terminal(handler)):
+                    handler.handle(record)
+            logger = logger.parent if logger.propagate else None
+
+
+def _is_terminal(handler: logging.Handler) -> bool:
+    """Whether a handler writes to the streams of the process."""
+    streams = (sys.stderr, sys.stdout, sys.__stderr__, sys.__stdout__)
+    return isinstance(handler, logging.StreamHandler) and handler.stream in streams
+
+
+def keep_loggers() -> None:
+    """Have the loggers of graphflow that there are survive the logging of libraries."""
+    for name, logger in list(logging.Logger.manager.loggerDict.items()):
+        if type(logger) is logging.Logger and f"{name}.".startswith("graphflow."):
+            logger.__class__ = OwnLogger
+
+
+class NodeLogger(OwnLogger):
     """The logger of one node.
 
     `throttle=1.0` logs a line at most once a second, `once=True` once, `skip_first=True` from the second time on.

@@ -15,7 +15,7 @@ from graphflow.names import did_you_mean
 from graphflow.qos import ROSOUT
 from graphflow.runtime import unawaited
 from graphflow.runtime.host import Host, Part
-from graphflow.runtime.logger import ROOT
+from graphflow.runtime.logger import ROOT, keep_loggers
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.times import Time
 
@@ -66,6 +66,7 @@ class Console(logging.Handler):
     def installed(cls) -> Console:
         """The one of this process, made when it is first asked for."""
         logger = logging.getLogger("graphflow")
+        keep_loggers()
         for handler in logger.handlers:
             if isinstance(handler, cls):
                 return handler
@@ -87,7 +88,7 @@ def _is_shown(record: logging.LogRecord) -> bool:
     """Whether the program has a handler of its own for a record."""
     logger: logging.Logger | None = logging.getLogger(record.name)
     while logger is not None:
-        if not all(isinstance(handler, Console | Rosout) for handler in logger.handlers):
+        if not all(isinstance(handler, Console | _RosoutHandler) for handler in logger.handlers):
             return True
         logger = logger.parent if logger.propagate else None
     return False
@@ -108,14 +109,27 @@ def setup_console(level: int = logging.INFO, *, is_quiet: bool = False) -> None:
     console.setLevel(logging.CRITICAL + 1 if is_quiet else logging.NOTSET)
 
 
-class Rosout(logging.Handler, Part):
+class _RosoutHandler(logging.Handler):
+    """Hands records to `Rosout`. `logging.config` closes every handler that it knows, which must not end the other."""
+
+    def __init__(self, rosout: Rosout) -> None:
+        super().__init__()
+        self._rosout = rosout
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            self._rosout.take(record)
+        except Exception:  # as in every handler of Python's: logging must not fail its caller
+            self.handleError(record)
+
+
+class Rosout(Part):
     """Publishes a node's log records on /rosout while the node runs."""
 
     def __init__(self, host: Host) -> None:
-        super().__init__()
         from graphflow.msgs.rcl_interfaces.msg import Log
 
-        self._host = host
+        self._host, self._handler = host, _RosoutHandler(self)
         self._thread = 0
         self._publisher = TopicPublisher(host, Log, "/rosout", ROSOUT)
         self._lines = 0
@@ -132,19 +146,19 @@ class Rosout(logging.Handler, Part):
         self._thread = threading.get_ident()
         self._publisher.open()
         Console.installed()
-        self._host.log.addHandler(self)
+        self._host.log.addHandler(self._handler)
 
     def detach(self) -> None:
         """Stop listening to the node's logger."""
-        self._host.log.removeHandler(self)
+        self._host.log.removeHandler(self._handler)
 
     def close(self) -> None:
         self.detach()
         self._publisher.close()
         self._host.forget(self)
-        super().close()
 
-    def emit(self, record: logging.LogRecord) -> None:
+    def take(self, record: logging.LogRecord) -> None:
+        """Publish a record if it is this node's, on the loop; from any thread."""
         if not self._host.is_running or not self._is_ours(record):
             return
         self._lines += 1
@@ -157,16 +171,16 @@ class Rosout(logging.Handler, Part):
     def _is_ours(self, record: logging.LogRecord) -> bool:
         """Whether this is the nearest node above the record: those of /arm/hand reach the logger of /arm too."""
         logger: logging.Logger | None = logging.getLogger(record.name)
-        while logger is not None and not any(isinstance(h, Rosout) for h in logger.handlers):
+        while logger is not None and not any(isinstance(h, _RosoutHandler) for h in logger.handlers):
             logger = logger.parent
-        return logger is None or self in logger.handlers
+        return logger is None or self._handler in logger.handlers
 
     def _publish(self, record: logging.LogRecord) -> None:
         if self._host.is_running:
             try:
                 self._publisher.publish(to_log(record))
             except Exception:  # as in every handler of Python's: logging must not fail its caller
-                self.handleError(record)
+                self._handler.handleError(record)
 
 
 def to_log(record: logging.LogRecord) -> Log:

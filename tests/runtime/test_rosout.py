@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+import logging.config
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr
@@ -286,3 +287,65 @@ def test_a_level_that_is_none() -> None:
     """The error offers the nearest."""
     with pytest.raises(GraphflowError, match="'debg' is not a log level; did you mean 'debug'"):
         log_level("debg")
+
+
+LIBRARY = {
+    "version": 1,
+    "handlers": {"file": {"class": "logging.NullHandler"}},
+    "root": {"handlers": ["file"], "level": "INFO"},
+}
+
+
+@pytest.fixture
+def root() -> Iterator[logging.Logger]:
+    """The root logger, which is as it was when the test has ended."""
+    logger, manager = logging.getLogger(), logging.Logger.manager
+    before, level = list(logger.handlers), logger.level
+    disabled = {name: each.disabled for name, each in manager.loggerDict.items() if isinstance(each, logging.Logger)}
+    yield logger
+    logger.handlers, logger.level = before, level
+    for name, was in disabled.items():
+        logging.getLogger(name).disabled = was
+
+
+async def test_the_log_survives_the_configuration_of_a_library(graph: Graph, root: logging.Logger) -> None:
+    """Which disables all loggers that it does not name, and closes all handlers, unless it says otherwise."""
+    node = Node("robot")
+    await graph.start(node)
+    heard = graph.tap(Log, "/rosout")
+    logging.config.dictConfig(LIBRARY)
+    assert logging.getLogger("tests.other").disabled is False
+    node.log.error("the arm is stuck")
+    logging.getLogger("graphflow").error("blocked")
+    await graph.settle()
+    assert [record.msg for record in heard] == ["the arm is stuck"]
+    assert not logging.getLogger("graphflow").disabled
+
+
+async def test_a_program_may_switch_a_log_off(graph: Graph) -> None:
+    """That is no accident of a library's."""
+    node = Node("robot")
+    await graph.start(node)
+    heard = graph.tap(Log, "/rosout")
+    node.log.disabled = True
+    node.log.error("the arm is stuck")
+    node.log.disabled = False
+    await graph.settle()
+    assert not heard
+
+
+async def test_nothing_is_shown_twice(graph: Graph, root: logging.Logger) -> None:
+    """When `basicConfig` makes another handler of the terminal's; one for a file gets what it should."""
+    node, shown, file = Node("robot"), io.StringIO(), io.StringIO()
+    await graph.start(node)
+    console = Console.installed()
+    before = console.is_wanted
+    with redirect_stderr(shown):
+        setup_console()
+        root.handlers = [logging.StreamHandler(), logging.StreamHandler(file)]
+        node.log.warning("the arm is slow")
+        logging.getLogger("vendor").warning("no news")
+    console.is_wanted = before
+    assert shown.getvalue().count("the arm is slow") == 1
+    assert "no news" in shown.getvalue()
+    assert "the arm is slow" in file.getvalue()
