@@ -86,7 +86,10 @@ class TopicPublisher(Endpoint, Generic[M]):
             payload = self._codec.encode(message)
             with self._order:
                 self.published += 1
-                self._put(sender, payload, pack(self.published, self._now_ns(), self._gid))
+                try:
+                    sender.put(payload, attachment=pack(self.published, self._now_ns(), self._gid))
+                except Exception as error:
+                    raise self._not_sent(error) from None
         elif self._paused is not None:
             self._complain(f"what is published on {self.name} is not sent: {self.idle_because}")
             return
@@ -110,15 +113,14 @@ class TopicPublisher(Endpoint, Generic[M]):
             for receiver in receivers:
                 receiver.hand(handed)
             if payload is not None:
-                self._put(sender, payload, pack(*fields))
+                try:
+                    sender.put(payload, attachment=pack(*fields))
+                except Exception as error:
+                    raise self._not_sent(error) from None
 
-    def _put(self, sender: Sender, payload: Payload, attachment: bytes) -> None:
-        try:
-            sender.put(payload, attachment=attachment)
-        except Exception:  # the transport's own, if another thread closes the network
-            if self.host.is_running:
-                raise
-            raise ClosedError(f"{self.name}: node {self.host.full_name} has ended") from None
+    def _not_sent(self, error: Exception) -> Exception:
+        """What to raise for an error of the transport's: it is to be expected where another thread ends the node."""
+        return error if self.host.is_running else ClosedError(f"{self.name}: node {self.host.full_name} has ended")
 
     def assert_liveliness(self) -> None:
         """Assert that this publisher is alive though it has nothing to publish, for MANUAL_BY_TOPIC liveliness.

@@ -51,7 +51,10 @@ class ThreadedPublisher(TopicPublisher[Any]):
                 for receiver in here:
                     receiver.hand(message)
             if sender.is_wanted:
-                self._put(sender, payload, attachment.pack(*fields))
+                try:
+                    sender.put(payload, attachment=attachment.pack(*fields))
+                except Exception as error:
+                    raise self._not_sent(error) from None
         for timer in (self._deadline, self._lease):
             if timer is not None:
                 timer.touch()
