@@ -30,7 +30,7 @@ CLOSE_LIMIT = 2.0
 """Seconds a session may take to close."""
 CALLBACK_LIMIT = 1.0
 """Seconds that Zenoh's callback threads have to end, at exit, when their sessions have been closed."""
-ANSWERING = "zenoh-questions"
+ANSWERING = "graphflow-questions"
 """The name of threads that wait for queries: they end with the session."""
 OPEN_LIMIT = 10.0
 """Seconds that two sessions may take to connect. Peers that find each other try once: on a busy machine, with twenty of
@@ -125,7 +125,7 @@ def close_session(session: zenoh.Session) -> bool:
         errors.extend([error] if error is not None else [])
         ended.set()
 
-    THREADS.run(session.close, done, "zenoh-close")
+    THREADS.run(session.close, done, "graphflow-close")
     is_closed = ended.wait(CLOSE_LIMIT)
     if session in _to_close:
         _to_close.remove(session)
