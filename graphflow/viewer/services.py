@@ -24,6 +24,9 @@ LIMIT = 60.0
 BOUND = 2_000
 """Services that are shown."""
 
+Key = tuple[str, str]
+"""The name and the type of a service: anybody may announce another type under a name."""
+
 
 class _Shown(NamedTuple):
     id: int
@@ -52,27 +55,28 @@ class Services:
     def __init__(self, node: Node, tell: Callable[[str], object]) -> None:
         self._node, self._tell = node, tell
         self._ids = itertools.count(1)
-        self._shown: dict[str, _Shown] = {}
-        self._coming: dict[str, asyncio.Task[None]] = {}
-        self._left_out: set[tuple[str, str]] = set()
+        self._shown: dict[Key, _Shown] = {}
+        self._coming: dict[Key, asyncio.Task[None]] = {}
+        self._left_out: set[Key] = set()
 
     def look(self) -> None:
         """Show the services that have come, and no longer those that have gone."""
         cache = self._node.context.cache
-        there = {name: cache.endpoints(Kind.SERVICE, name)[0] for name in sorted(cache.offered()[0])[:BOUND]}
-        gone = [s for s in self._shown.values() if s.name not in there or there[s.name].type != s.type]
-        for name in self._coming.keys() - there.keys():
-            self._coming[name].cancel()
-        for service in gone:
-            del self._shown[service.name]
+        there: dict[Key, Entity] = {}
+        for name in sorted(cache.offered()[0]):
+            for entity in cache.endpoints(Kind.SERVICE, name):
+                if len(there) < BOUND:
+                    there.setdefault((name, entity.type), entity)
+        for key in self._coming.keys() - there.keys():
+            self._coming[key].cancel()
+        gone = [self._shown.pop(key).id for key in self._shown.keys() - there.keys()]
         if gone:
-            self._tell(told("unadvertiseServices", service_ids=[service.id for service in gone]))
-        self._left_out &= {(name, entity.type) for name, entity in there.items()}
-        for name, entity in there.items():
-            if name not in self._shown and name not in self._coming and (name, entity.type) not in self._left_out:
-                self._coming[name] = asyncio.ensure_future(self._show(entity))
+            self._tell(told("unadvertiseServices", service_ids=gone))
+        self._left_out &= there.keys()
+        for key in there.keys() - self._shown.keys() - self._coming.keys() - self._left_out:
+            self._coming[key] = asyncio.ensure_future(self._show(key, there[key]))
 
-    async def _show(self, entity: Entity) -> None:
+    async def _show(self, key: Key, entity: Entity) -> None:
         try:
             try:
                 registry.full_name(entity.type)
@@ -81,12 +85,12 @@ class Services:
             service = _Shown(next(self._ids), entity.name, entity.type)
             words = service.words
         except Exception as error:  # whoever announced it may call its type anything
-            self._left_out.add((entity.name, entity.type))
+            self._left_out.add(key)
             logger.warning("%s is not shown: %s", printable(entity.name), printable(str(error)))
             return
         finally:
-            self._coming.pop(entity.name, None)
-        self._shown[entity.name] = service
+            self._coming.pop(key, None)
+        self._shown[key] = service
         self._tell(told("advertiseServices", services=[words]))
 
     def greet(self, client: Client) -> None:

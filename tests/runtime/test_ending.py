@@ -114,14 +114,16 @@ async def test_handlers_that_stay_are_no_news(
 
 def test_a_thread_that_works_is_named() -> None:
     """With its line; daemons do not count, since nobody waits for them."""
-    gate = threading.Event()
+    gate, inside = threading.Event(), threading.Semaphore(0)
 
     def works() -> None:
+        inside.release()
         gate.wait()
 
     threads = [threading.Thread(target=works, name=name, daemon=name == "demon") for name in ("smith", "demon")]
     for thread in threads:
         thread.start()
+        assert inside.acquire(timeout=10.0)
     told = [text for text in hindrances() if "test_ending" in text and "works" in text]
     gate.set()
     for thread in threads:

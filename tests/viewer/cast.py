@@ -68,6 +68,8 @@ class Viewer:
         self.channels: dict[str, dict[str, Any]] = {}
         """By topic."""
         self.services: dict[str, dict[str, Any]] = {}
+        self.offers: set[tuple[str, str]] = set()
+        """Names and types of services."""
         self.messages: list[Shown] = []
         self.statuses: list[str] = []
         self.parameters: dict[str, Any] = {}
@@ -106,6 +108,7 @@ class Viewer:
                 self.channels = {t: c for t, c in self.channels.items() if c["id"] not in gone}
             case "advertiseServices":
                 self.services |= {service["name"]: service for service in said["services"]}
+                self.offers |= {(service["name"], service["type"]) for service in said["services"]}
             case "unadvertiseServices":
                 gone = said["serviceIds"]
                 self.services = {n: s for n, s in self.services.items() if s["id"] not in gone}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.msgs.std_srvs.srv import SetBool
+from graphflow import Node, service
+from graphflow.msgs.std_srvs.srv import SetBool, Trigger
 from graphflow.testing import Graph
 from tests.viewer.cast import Robot, served, viewer
 
@@ -24,3 +25,19 @@ async def test_calls(graph: Graph) -> None:
         await seen.call(4, "/power", b"{}", b"json")
         await seen.until(lambda: {3, 4} <= {*seen.failures})
         assert seen.failures[4] == "requests come as cdr here, not as 'json'"
+
+
+class Forger(Node):
+    """Announces a type of its own under the name of another's service."""
+
+    @service(Trigger, "power")
+    def power(self, request: Trigger.Request) -> Trigger.Response:
+        return Trigger.Response()
+
+
+async def test_a_name_may_have_several_types(graph: Graph) -> None:
+    """Whoever announces another type first does not hide the service."""
+    await graph.start(Forger())
+    async with served(graph, Robot()) as lab, viewer(lab.port) as seen:
+        both = {("/power", "std_srvs/srv/SetBool"), ("/power", "std_srvs/srv/Trigger")}
+        await seen.until(lambda: both <= seen.offers)
