@@ -124,7 +124,7 @@ def test_a_thread_that_works_is_named() -> None:
     for thread in threads:
         thread.start()
         assert inside.acquire(timeout=10.0)
-    told = [text for text in hindrances() if "test_ending" in text and "works" in text]
+    told = [text for text in hindrances() if "'smith'" in text or "'demon'" in text]
     gate.set()
     for thread in threads:
         thread.join()
