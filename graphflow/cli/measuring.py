@@ -8,8 +8,10 @@ from dataclasses import replace
 from graphflow.cli import output
 from graphflow.cli.conditions import compiled
 from graphflow.cli.visiting import visit
+from graphflow.domain import domain_id
 from graphflow.errors import DecodeError, UsageFault
 from graphflow.introspect.rates import Arrivals, Delays, Weights, table
+from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
@@ -125,6 +127,8 @@ async def _measure(node: Node, topics: list[str], meter: Callable[[str, str], Ta
         if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
             is_silence_told = True
             _tell_silence(cache, sorted(waiting))
+            if not waiting:
+                output.talk(await node.offload(_why_silent, topics))
     raise failed[0]
 
 
@@ -132,5 +136,9 @@ def _tell_silence(cache: GraphCache, missing: list[str]) -> None:
     for topic in missing:
         near = did_you_mean(topic, [name for name in cache.topics() if cache.endpoints(Kind.PUBLISHER, name)])
         output.talk(f"WARNING: topic [{topic}] does not appear to be published yet{near}")
-    if not missing:
-        output.talk("no new messages")
+
+
+def _why_silent(topics: list[str]) -> str:
+    """That nothing comes of topics that somebody publishes; and the net profile that keeps it back, if one does."""
+    with View(domain_id()) as view:
+        return next(filter(None, (view.kept_back(topic, Kind.PUBLISHER) for topic in topics)), "no new messages")
