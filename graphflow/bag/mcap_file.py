@@ -12,9 +12,9 @@ import struct
 import zlib
 from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
-from graphflow.bag import metadata
+from graphflow.bag import metadata, packing
 from graphflow.bag.contents import Contents, Record, Topic
 from graphflow.errors import BagError
 
@@ -280,7 +280,10 @@ class McapFile:
         data = memoryview(body)[at + length + 8 :]
         if unpacked > RECORD_BOUND or packed != len(data):
             raise _Broken
-        found = _decompressed(compression, data, unpacked)
+        try:
+            found = bytes(data) if not compression else packing.unpacked(compression, data, unpacked)
+        except packing.Damaged as error:
+            raise _Broken(f"({error})") from None
         if len(found) != unpacked or (check and zlib.crc32(found) != check):
             raise _Broken("(its checksum is another)")
         return found
@@ -289,25 +292,6 @@ class McapFile:
 def _record(waiting: _Waiting, channels: dict[int, Topic]) -> Record:
     log_ns, _, channel, sequence, publish_ns, data = waiting
     return Record(channels[channel], log_ns, publish_ns, sequence, data)
-
-
-def _decompressed(compression: str, data: memoryview, size: int) -> bytes:
-    """At most `size` bytes, whatever the data says of itself, and one more if there are."""
-    if not compression:
-        return bytes(data)
-    import zstandard
-
-    try:
-        if compression == "zstd":
-            return zstandard.ZstdDecompressor().stream_reader(bytes(data)).read(size + 1)
-        if compression == "lz4":
-            import lz4.frame
-
-            found: Any = lz4.frame.LZ4FrameDecompressor().decompress(bytes(data), max_length=size + 1)
-            return bytes(found)
-    except (RuntimeError, MemoryError, zstandard.ZstdError) as error:
-        raise _Broken(f"({error})") from None
-    raise _Broken(f"(compressed by {compression[:20]!r}, which is not known)")
 
 
 def _parts(data: bytes) -> Iterator[tuple[int, memoryview]]:

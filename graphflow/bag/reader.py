@@ -7,29 +7,16 @@ import re
 from collections.abc import Collection, Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Protocol
 
 from graphflow.bag import metadata
-from graphflow.bag.contents import Contents, Record, together
+from graphflow.bag.contents import Record, together
 from graphflow.bag.db3_file import Db3File
-from graphflow.bag.mcap_file import McapFile
+from graphflow.bag.mcap_file import RECORD_BOUND, McapFile
 from graphflow.bag.metadata import FileContents
+from graphflow.bag.packing import MAGICS, SUFFIXES, File, PackedFile, loosened
 from graphflow.errors import BagError
 
 _FILES_BOUND = 10_000
-
-
-class File(Protocol):
-    """One file of a bag."""
-
-    path: Path
-
-    @property
-    def contents(self) -> Contents: ...
-
-    def records(
-        self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
-    ) -> Iterator[Record]: ...
 
 
 class Bag:
@@ -46,16 +33,19 @@ class Bag:
         self.path = Path(path)
         said = metadata.read(self.path) if self.path.is_dir() else {}
         self.distro = _word(said.get("ros_distro"))
-        if said.get("compression_mode"):
-            how = f"{_word(said.get('compression_mode'))} by {_word(said.get('compression_format'))}"
-            raise BagError(f"{self.path}: it is compressed as a {how}; decompress it with `ros2 bag convert`")
+        mode, form = _word(said.get("compression_mode")).lower(), _word(said.get("compression_format"))
+        if mode in ("file", "message") and form not in MAGICS.values():
+            raise BagError(f"{self.path}: it is compressed by {form!r}; graphflow reads {', '.join(MAGICS.values())}")
+        self._is_packed = mode == "message"
+        self._may_be_packed = self._is_packed or not said
         self.files: list[File] = [_file(file) for file in self._paths(said)]
         self.contents = together([file.contents for file in self.files])
 
     @property
     def storage(self) -> str:
         """`mcap` or `sqlite3`."""
-        return "sqlite3" if any(isinstance(file, Db3File) for file in self.files) else "mcap"
+        kinds = {file.kind if isinstance(file, PackedFile) else type(file) for file in self.files}
+        return "sqlite3" if Db3File in kinds else "mcap"
 
     @property
     def size(self) -> int:
@@ -80,6 +70,12 @@ class Bag:
         Raises:
             BagError: What is in a file cannot be read.
         """
+        found = self._records(names, start_ns, end_ns)
+        if self._may_be_packed:
+            found = loosened(found, self.path, RECORD_BOUND, is_packed=self._is_packed)
+        return found
+
+    def _records(self, names: Collection[str] | None, start_ns: int, end_ns: int | None) -> Iterator[Record]:
         wanted = [f for f in self.files if f.contents.message_count and f.contents.end_ns >= start_ns]
         together: list[File] = []
         until_ns = 0
@@ -98,10 +94,14 @@ class Bag:
             raise BagError(f"{self.path}: there is no such file or folder")
         named = said.get("relative_file_paths")
         names = [Path(_word(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
-        there = [self.path / name for name in names if name and (self.path / name).is_file()]
-        # What a recorder that was killed wrote last is in no metadata.
-        more = [f for f in self.path.iterdir() if f.suffix in (".mcap", ".db3") and f.is_file() and f not in there]
-        found = [*there, *sorted(more, key=_natural)]
+        found = [self.path / name for name in names if name and (self.path / name).is_file()]
+        # What a recorder that was killed wrote last is in no metadata. Of a file that is there twice, decompressed by
+        # rosbag2 for example, the one counts that the metadata names, else the one that is not compressed.
+        have = {_loose(path) for path in found}
+        for path in sorted(self.path.iterdir(), key=lambda path: (path.suffix in SUFFIXES, _natural(path))):
+            if _loose(path).suffix in (".mcap", ".db3") and path.is_file() and _loose(path) not in have:
+                found.append(path)
+                have.add(_loose(path))
         if not found:
             missing = f"; its {metadata.FILE} names {', '.join(names)}" if names else ""
             raise BagError(f"{self.path}: it has no .mcap or .db3 file{missing}")
@@ -115,9 +115,14 @@ def _merged(files: list[File], names: Collection[str] | None, start_ns: int, end
 
 
 def _file(path: Path) -> File:
-    if path.suffix in (".zstd", ".lz4"):
-        raise BagError(f"{path}: the whole file is compressed; decompress it first, by `zstd -d` for example")
+    if path.suffix in SUFFIXES:
+        return PackedFile(path, _file)
     return Db3File(path) if path.suffix == ".db3" else McapFile(path)
+
+
+def _loose(path: Path) -> Path:
+    """What a file is called when it is decompressed."""
+    return path.with_suffix("") if path.suffix in SUFFIXES else path
 
 
 def _word(said: object) -> str:

@@ -1,0 +1,182 @@
+"""What rosbag2 compresses itself, beside the chunks of MCAP: whole files, or each message.
+
+Nothing is believed of how large it becomes: memory and disk are bounded while it is decompressed.
+
+Source: rosbag2_compression, `compression_mode` and `compression_format` of a bag's metadata; the frames of RFC 8878 and
+of LZ4, by which a message that is compressed can be told from CDR: its first byte is 0.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+from graphflow.bag.contents import Contents, Record
+from graphflow.errors import BagError
+
+SUFFIXES = {".zstd": "zstd", ".zst": "zstd", ".lz4": "lz4"}
+"""Formats by the last part of a file's name."""
+MAGICS = {b"\x28\xb5\x2f\xfd": "zstd", b"\x04\x22\x4d\x18": "lz4"}
+"""Formats by the first bytes of what is compressed."""
+_PIECE = 1 << 20
+_SHARE = 0.5
+"""How much of a disk's free space a decompressed file may take."""
+
+
+class Damaged(Exception):
+    """It cannot be decompressed."""
+
+
+class File(Protocol):
+    """One file of a bag."""
+
+    path: Path
+
+    @property
+    def contents(self) -> Contents: ...
+
+    def records(
+        self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
+    ) -> Iterator[Record]: ...
+
+
+class PackedFile:
+    """Reads a file that is compressed as a whole. It is decompressed beside other temporary files while it is read.
+
+    Args:
+        path: Its name ends with one of `SUFFIXES`.
+        open_file: Opens it when it is decompressed.
+
+    Raises:
+        BagError: It cannot be decompressed, or is no bag then.
+    """
+
+    def __init__(self, path: Path, open_file: Callable[[Path], File]) -> None:
+        self.path, self._open_file = path, open_file
+        with self._loose() as file:
+            self.contents = file.contents
+            self.kind = type(file)
+
+    def records(
+        self, names: Collection[str] | None = None, start_ns: int = 0, end_ns: int | None = None
+    ) -> Iterator[Record]:
+        """Messages in the order of their times. Arguments and errors as for `McapFile.records`."""
+        with self._loose() as file:
+            yield from file.records(names, start_ns, end_ns)
+
+    @contextmanager
+    def _loose(self) -> Iterator[File]:
+        try:
+            with tempfile.TemporaryDirectory(prefix="graphflow-bag-") as folder:
+                path = Path(folder) / self.path.stem
+                try:
+                    decompress(self.path, path)
+                    yield self._open_file(path)
+                except BagError as error:
+                    raise BagError(str(error).replace(str(path), str(self.path))) from None
+        except OSError as error:
+            raise BagError(f"{self.path}: {error.strerror}: {error.filename or tempfile.gettempdir()}") from None
+
+
+def decompress(source: Path, target: Path) -> None:
+    """Decompress a file into a new one.
+
+    Raises:
+        BagError: It is damaged, or would leave too little room on the disk.
+        OSError: One cannot be read, or the other not written.
+    """
+    room = int(shutil.disk_usage(target.parent).free * _SHARE)
+    with source.open("rb") as packed, target.open("xb") as loose:
+        try:
+            with _stream(SUFFIXES[source.suffix], packed) as stream:
+                while piece := stream.read(_PIECE):
+                    room -= len(piece)
+                    if room < 0:
+                        where = f"{target.parent.parent} has too little room to decompress it"
+                        raise BagError(f"{source}: {where}; set TMPDIR to a folder on a larger disk")
+                    loose.write(piece)
+        except Damaged as error:
+            raise BagError(f"{source}: {error}") from None
+    if not os.path.getsize(target):
+        raise BagError(f"{source}: it is empty")
+
+
+def unpacked(form: str, data: bytes | memoryview, bound: int) -> bytes:
+    """Decompress at most `bound` bytes, whatever the data says of itself, and one more if there are.
+
+    Raises:
+        Damaged: It is not compressed by `form`, or that is not known.
+    """
+    import zstandard
+
+    try:
+        if form == "zstd":
+            found = zstandard.ZstdDecompressor().stream_reader(bytes(data)).read(bound + 1)
+            if len(found) < min(zstandard.frame_content_size(data), bound):
+                raise Damaged("it ends early")
+            return found
+        if form == "lz4":
+            import lz4.frame
+
+            decompressor = lz4.frame.LZ4FrameDecompressor()
+            found = bytes(decompressor.decompress(bytes(data), max_length=bound + 1))
+            if not decompressor.eof and len(found) <= bound:
+                raise Damaged("it ends early")
+            return found
+    except (RuntimeError, MemoryError, zstandard.ZstdError) as error:
+        raise Damaged(str(error)) from None
+    raise Damaged(f"compressed by {form[:20]!r}, which is not known")
+
+
+def loosened(records: Iterator[Record], path: Path, bound: int, *, is_packed: bool) -> Iterator[Record]:
+    """Records with the messages decompressed that are compressed.
+
+    Args:
+        is_packed: Whether all are; else it is told by their first bytes.
+
+    Raises:
+        BagError: One cannot be decompressed.
+    """
+    for record in records:
+        form = MAGICS.get(record.data[:4])
+        is_frame = form is not None and (is_packed or record.topic.encoding == "cdr")
+        if not is_frame and not is_packed:
+            yield record
+            continue
+        try:
+            yield record._replace(data=_message(form, record.data, bound))
+        except Damaged as error:
+            at = f"the message of {record.topic.name} at {record.log_ns} ns"
+            raise BagError(f"{path}: {at} cannot be decompressed: {error}") from None
+
+
+def _message(form: str | None, data: bytes, bound: int) -> bytes:
+    if form is None:
+        raise Damaged("it is compressed neither by zstd nor by lz4")
+    found = unpacked(form, data, bound)
+    if len(found) > bound:
+        raise Damaged(f"it has more than {bound:,} bytes")
+    return found
+
+
+@contextmanager
+def _stream(form: str, packed: BinaryIO) -> Iterator[Any]:
+    """A file as it is when decompressed."""
+    import zstandard
+
+    try:
+        if form == "zstd":
+            with zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True) as stream:
+                yield stream
+        else:
+            import lz4.frame
+
+            with lz4.frame.open(packed) as stream:
+                yield stream
+    except (RuntimeError, EOFError, zstandard.ZstdError) as error:
+        raise Damaged(str(error)) from None
