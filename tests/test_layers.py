@@ -44,7 +44,13 @@ DOORS = ("cli", "tui")
 ROOMS = (*CELLAR, *FLOORS, *DOORS)
 """From the bottom up: a room imports itself and the rooms before it. No door imports another."""
 
-ONLY_IN = {"zenoh": ("transport",), "textual": ("tui",), "click": ("cli",), "websockets": ("viewer",)}
+ONLY_IN = {
+    "zenoh": ("transport",),
+    "textual": ("tui",),
+    "click": ("cli",),
+    "websockets": ("viewer",),
+    "rosbags": ("bag",),
+}
 """Libraries that one room knows."""
 
 OPENS = {"cli/console.py": ("graphflow.tui.main", "graphflow.tui.web")}

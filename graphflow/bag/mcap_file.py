@@ -78,7 +78,7 @@ class McapFile:
             raise BagError(f"{self.path}: {error.strerror}") from None
         if file.read(len(MAGIC)) != MAGIC:
             file.close()
-            raise BagError(f"{self.path}: it is no MCAP file; a bag is a folder, an .mcap file or a .db3 file")
+            raise BagError(f"{self.path}: it is no MCAP file; a bag is a folder, an .mcap, .db3 or .bag file")
         return file
 
     @property

@@ -1,4 +1,4 @@
-"""A bag, read: a folder as `ros2 bag record` makes it, or a single file, MCAP or `.db3`."""
+"""A bag, read: a folder as `ros2 bag record` makes it, or a single file: MCAP, `.db3`, or ROS 1's `.bag`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from graphflow.bag.db3_file import Db3File
 from graphflow.bag.mcap_file import RECORD_BOUND, McapFile
 from graphflow.bag.metadata import FileContents
 from graphflow.bag.packing import MAGICS, SUFFIXES, File, PackedFile, loosened
+from graphflow.bag.ros1_file import Ros1File
 from graphflow.errors import BagError
 
 _FILES_BOUND = 10_000
@@ -43,9 +44,9 @@ class Bag:
 
     @property
     def storage(self) -> str:
-        """`mcap` or `sqlite3`."""
+        """`mcap`, `sqlite3` or `rosbag_v2`, as rosbag2 calls ROS 1's."""
         kinds = {file.kind if isinstance(file, PackedFile) else type(file) for file in self.files}
-        return "sqlite3" if Db3File in kinds else "mcap"
+        return "sqlite3" if Db3File in kinds else "rosbag_v2" if Ros1File in kinds else "mcap"
 
     @property
     def size(self) -> int:
@@ -117,6 +118,8 @@ def _merged(files: list[File], names: Collection[str] | None, start_ns: int, end
 def _file(path: Path) -> File:
     if path.suffix in SUFFIXES:
         return PackedFile(path, _file)
+    if path.suffix == ".bag":
+        return Ros1File(path)
     return Db3File(path) if path.suffix == ".db3" else McapFile(path)
 
 

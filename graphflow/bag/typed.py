@@ -32,7 +32,7 @@ def read(
     """The messages of a bag, in the order of their times.
 
     Args:
-        path: The bag: a folder, or a file, MCAP or `.db3`.
+        path: The bag: a folder, or a file: MCAP, `.db3` or ROS 1's `.bag`.
         topics: Those that are wanted; None for all.
         start_ns: From this time on, nanoseconds since 1970.
         end_ns: Up to this time, which does not belong to it.

@@ -150,7 +150,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
 @click.option("--disable-loan-message", is_flag=True, hidden=True, help="For ROS 2's commands.")
 @click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")
 def play(path: Path, **options: Any) -> int:
-    """Play a bag into the running graph: a folder, an MCAP file or a .db3 file.
+    """Play a bag into the running graph: a folder, an MCAP file, a .db3 file or ROS 1's .bag.
 
     \b
     SPACE        pause and go on
@@ -339,7 +339,7 @@ bag.add_command(recover, "reindex")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @_made
 def convert(path: Path, **options: Any) -> int:
-    """Write a bag anew: a .db3 as MCAP, compressed otherwise, in one file or several."""
+    """Write a bag anew: a .db3 or ROS 1's .bag as MCAP, compressed otherwise, in one file or several."""
     return _copied((path,), "converted", options)
 
 
