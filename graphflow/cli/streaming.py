@@ -144,8 +144,7 @@ class _Stream:
         self._has_told_silence = False
         self._nodes = nodes
         self._logs: LogReader | None = None
-        self._began = time.monotonic()
-        self._failed: list[str] = []
+        self._is_up = False
 
     def run(self) -> int | None:
         """Returns the exit code of `up`; None if the supervisor has gone without a word."""
@@ -194,8 +193,9 @@ class _Stream:
             output.talk(event["text"])
         elif what == "up":
             self._greet(event["seconds"])
-            if self._detach:
-                return exits.OK
+            self._is_up = True
+        elif what == "checked" and self._detach:
+            return exits.OK
         elif what == "note":
             output.talk(f"note: {event['text']}")
         elif what == "stopping":
@@ -211,8 +211,8 @@ class _Stream:
             if self._logs is not None and not self._detach:
                 self._logs.show()
             output.talk(f"graph {self._run['graph']} has ended")
-            has_failed = self._detach and exits.FAILED  # a graph that came up would have been left by now
-            return int(event["exit_code"]) or has_failed
+            has_failed = self._detach and not self._is_up
+            return int(event["exit_code"]) or (exits.FAILED if has_failed else exits.OK)
         return None
 
     def _tell_death(self, event: dict[str, Any]) -> None:

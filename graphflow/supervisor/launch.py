@@ -385,19 +385,21 @@ class _Launch:
 
 
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
-    """Once the graph is up, report what is odd in its files, and the deadlocks that its source shows."""
+    """Report what is odd in the graph's files and, once it is up, the deadlocks that its source shows."""
     import asyncio
 
     from graphflow.graph.loose import loose_ends
     from graphflow.graph.static import findings, warnings
 
-    await supervisor.up.wait()
     for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
-        supervisor.note(remark)
-    if plan.deadlock != "off":
-        ways = await asyncio.to_thread(findings, plan, interfaces)
+        supervisor.note(remark)  # it may be the reason why the graph does not come up
+    await supervisor.up.wait()
+    try:
+        ways = await asyncio.to_thread(findings, plan, interfaces) if plan.deadlock != "off" else []
         for text in warnings(ways, plan.file):
             supervisor.note(text)
+    finally:  # `up -d` waits for it
+        supervisor.doors.tell(event="checked")
 
 
 async def _watch(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:

@@ -14,7 +14,13 @@ from graphflow.cli import exits
 from graphflow.cli.streaming import LogReader, _Stream
 from graphflow.supervisor.control import ControlClient
 from tests.conftest import Machine
-from tests.supervisor.running import nothing_is_left, rows, supervisor_of
+from tests.supervisor.running import make_project, nothing_is_left, rows, supervisor_of, write
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A user's own project, with nodes that misbehave."""
+    return make_project(tmp_path / "lab")
 
 
 def append(file: Path, text: str) -> None:
@@ -93,6 +99,7 @@ def streaming(tmp_path: Path, *, detach: bool = False) -> _Stream:
         ({"event": "step", "step": "spawn", "ok": True, "text": "turtle2"}, "step spawn done: turtle2\n"),
         ({"event": "step", "step": "spawn", "ok": False, "text": "no"}, "step spawn FAILED: no\n"),
         ({"event": "note", "text": "slow"}, "note: slow\n"),
+        ({"event": "checked"}, ""),
         ({"event": "error", "message": "gone"}, "error: gone\n"),
         ({"event": "stopping", "reason": "Ctrl-C"}, "stopping (Ctrl-C); Ctrl-C again kills\n"),
         ({"event": "stopping", "reason": "down"}, "stopping (down)\n"),
@@ -118,9 +125,10 @@ def test_what_is_told_of_an_event(
 
 
 def test_the_end_has_the_graphs_exit_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """And says that it is the end."""
+    """And says that it is the end; one that ends before it was up in the background has failed."""
     assert streaming(tmp_path)._show({"event": "end", "exit_code": 1}) == 1
     assert capsys.readouterr().err == "graph lab has ended\n"
+    assert streaming(tmp_path, detach=True)._show({"event": "end", "exit_code": 0}) == exits.FAILED
 
 
 def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,7 +144,10 @@ def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkey
     assert "export" not in err
 
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "8")
-    assert streaming(tmp_path, detach=True)._show({"event": "up", "seconds": 0.25}) == exits.OK
+    detached = streaming(tmp_path, detach=True)
+    assert detached._show({"event": "up", "seconds": 0.25}) is None
+    assert detached._show({"event": "checked"}) == exits.OK
+    assert detached._show({"event": "end", "exit_code": 0}) == exits.OK
     err = capsys.readouterr().err
     assert "  export GRAPHFLOW_DOMAIN=7  " in err
     assert "Open the console with: graphflow attach\nStop with: graphflow down\n" in err
@@ -165,3 +176,25 @@ def test_up_shows_the_logs_and_ctrl_c_stops_everything(machine: Machine) -> None
     assert "Traceback" not in up.text
     assert "graph talker_listener has ended" in up.text
     nothing_is_left(machine, pids)
+
+
+@pytest.mark.real
+def test_what_is_found_in_the_source_is_told_before_the_terminal_is_let_go(machine: Machine) -> None:
+    """A graph that is started in the background says what one in the foreground says."""
+    text = machine.run("up", "-d", "graphs/deadlock/self_call_broken.yaml")
+    assert "graph self_call_broken is up" in text
+    assert "note: " in text
+    assert "CERTAIN: timer tick of /narcissus awaits /narcissus/add" in text
+    machine.look("down")
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("how", [["-d"], []])
+def test_what_is_odd_is_told_of_a_graph_that_does_not_come_up(machine: Machine, project: Path, how: list[str]) -> None:
+    """It may be the reason: a step calls a service by a wrong name."""
+    steps = "steps:\n  ask: {after: /a, call: /aa/ask, type: std_srvs/srv/Trigger, timeout: 0.2}\n"
+    up = machine.start("up", *how, write(project, f"nodes:\n  /a: {{class: nodes.lab:Good}}\n{steps}"), cwd=project)
+    assert up.wait() == 1
+    assert "step ask FAILED" in up.text
+    assert "lab.yaml:4:26: no node of this graph offers the service /aa/ask; did you mean '/a/ask'?" in up.text
+    nothing_is_left(machine, [])
