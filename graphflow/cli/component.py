@@ -13,7 +13,7 @@ from graphflow.errors import GraphFileError, SupervisorError, UsageFault
 from graphflow.graph.executables import EXECUTABLES
 from graphflow.graph.model import LOG_LEVELS
 from graphflow.names import did_you_mean
-from graphflow.supervisor import rundir
+from graphflow.supervisor.choosing import choose
 from graphflow.supervisor.control import ControlClient
 
 ANSWER_LIMIT = 30.0
@@ -33,7 +33,7 @@ def component() -> None:
 @_graph
 def list_(container: str | None, containers_only: bool, as_json: bool, graph: str | None) -> None:
     """List the processes of a graph and the nodes in each."""
-    found = _containers(rundir.choose(graph).socket)
+    found = _containers(choose(graph).socket)
     if container is not None:
         name = container if container in found else f"/{container.lstrip('/')}"
         if name not in found:
@@ -84,7 +84,7 @@ def load(
     from graphflow.runtime.args import parse_ros_args
     from graphflow.supervisor.joining import check_component, planned_component
 
-    run = rundir.choose(graph)
+    run = choose(graph)
     if plugin is not None and "::" in plugin:
         plugin = plugin.rpartition("::")[2].lower()
     cls, rest = find_class(what, [plugin] if plugin else [])
@@ -134,7 +134,7 @@ def standalone(package: str, plugin: str, **options: Any) -> None:
 @_graph
 def unload(container: str, words: tuple[str, ...], graph: str | None) -> None:
     """Unload nodes from a running process, by the numbers or names that `component list` shows."""
-    run = rundir.choose(graph)
+    run = choose(graph)
     numbers = [int(word) if word.isdecimal() else _number_of(word, container, run.socket) for word in words]
     for number in numbers:
         _ask(run.socket, do="unload", container=container, number=number)

@@ -20,6 +20,7 @@ from graphflow.domain import domain_id, go_to
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.graph.project import shown
 from graphflow.supervisor import rundir
+from graphflow.supervisor.choosing import choose, running_here
 from graphflow.supervisor.control import ControlClient
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.times import ago
@@ -104,7 +105,7 @@ def _choose(name: str | None) -> GraphRun:
     """The run to attach to: where several run and none is named, the newest, as in tmux."""
     runs = rundir.running()
     runs = [run for run in runs if run.is_here] or runs
-    return max(runs, key=lambda run: run.began) if name is None and runs else rundir.choose(name)
+    return max(runs, key=lambda run: run.began) if name is None and runs else choose(name)
 
 
 def _anybody(reaches_out: bool) -> bool:
@@ -122,11 +123,8 @@ def _anybody(reaches_out: bool) -> bool:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ls(as_json: bool) -> int:
     """List running graphs: their nodes, and the consoles attached to them."""
-    runs = rundir.running()
-    if not runs:
-        raise SupervisorError("no graph is running; start one with: graphflow up GRAPH.yaml", exits.NOT_RUNNING)
     rows = []
-    for run in runs:
+    for run in running_here(everything=True):
         told = _rows(run)
         states = Counter(node["state"] for node in told["nodes"])
         rows.append(
@@ -169,7 +167,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 @click.option("--prefix", metavar="KEY", help="The prefix key, such as ctrl+a.")
 def console(web: bool, port: int, name: str | None, prefix: str | None) -> int:
     """Open the console on a running graph, here or in a browser."""
-    run = rundir.choose(name)
+    run = choose(name)
     if not web:
         if not output.is_terminal():
             raise UsageFault("the console needs a terminal; --web shows it in a browser")

@@ -179,13 +179,13 @@ def down(name: str | None, everything: bool, now: bool) -> int:
 
 def _to_stop(name: str | None, *, everything: bool) -> list[GraphRun]:
     """The graphs that are meant; those that are being started are waited for if they may be among them."""
-    from graphflow.supervisor import rundir
+    from graphflow.supervisor.choosing import choose, running_here
     from graphflow.supervisor.starts import wait_started
 
     has_waited = everything and wait_started(_tell_start)
     while True:
         try:
-            return rundir.running_here(everything=True) if everything else [rundir.choose(name)]
+            return running_here(everything=True) if everything else [choose(name)]
         except SupervisorError as error:
             if error.exit_code != exits.NOT_RUNNING or has_waited or not wait_started(_tell_start):
                 raise
@@ -202,10 +202,10 @@ def _tell_start(start: Start) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def ps(name: str | None, everything: bool, as_json: bool) -> int:
     """List the nodes of running graphs: state, process, uptime. Of this domain, unless --all is given."""
-    from graphflow.supervisor import rundir
+    from graphflow.supervisor.choosing import choose, running_here
     from graphflow.supervisor.control import ControlClient
 
-    runs = [rundir.choose(name)] if name else rundir.running_here(everything=everything)
+    runs = [choose(name)] if name else running_here(everything=everything)
     rows, silent = [], []
     for run in runs:
         try:
@@ -271,9 +271,10 @@ def logs(
     from graphflow.cli.streaming import LogReader
     from graphflow.names import did_you_mean
     from graphflow.supervisor import rundir
+    from graphflow.supervisor.choosing import choose
 
     try:
-        folder = Path(rundir.choose(name).logs)
+        folder = Path(choose(name).logs)
         alive = True
     except SupervisorError as error:
         if error.exit_code != exits.NOT_RUNNING:
@@ -282,7 +283,7 @@ def logs(
         if found is None:
             raise
         folder, alive = found, False
-        output.talk(f"no graph is running; this is the latest run of {folder.parent.name}, {folder.name}")
+        output.talk(f"{error}\nthe latest run of {folder.parent.name}, {folder.name}:")
     files = {f.stem: f for f in sorted(folder.glob("*.log")) if f.name != rundir.SUPERVISOR_LOG}
     wanted = [n.strip("/").replace("/", ".") for n in (*nodes, *more)] or list(files)
     for node in wanted:

@@ -6,6 +6,7 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
 from typing import NoReturn
@@ -16,7 +17,7 @@ from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
 from graphflow.cli.verbs import HABITS, NOT_YET, Verbs
-from graphflow.errors import GraphflowError, UsageFault
+from graphflow.errors import GraphflowError, SupervisorError, UsageFault
 from graphflow.names import nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
 
@@ -156,6 +157,16 @@ def _invoked(args: Sequence[str]) -> object:
         return end.exit_code
 
 
+def _tell_starts(told: str) -> None:
+    """Say that a graph is being started, unless the error that was told says so."""
+    from graphflow.supervisor.starts import being_started
+
+    with suppress(SupervisorError):  # there is no run directory, and so nothing is being started
+        starts = being_started()
+        if starts not in told:
+            output.talk(starts)
+
+
 def _main(args: Sequence[str] | None) -> int:
     _open_standard_streams()
     try:
@@ -173,7 +184,9 @@ def _main(args: Sequence[str] | None) -> int:
         return exits.OK
     except GraphflowError as error:
         output.error(str(error))
-        return exits.exit_code(error)
+        if (code := exits.exit_code(error)) == exits.NOT_RUNNING:
+            _tell_starts(str(error))
+        return code
     except OSError as error:  # a full disk, a file that went away: what the system says is what there is to say
         _forget_output()
         what = f"{error.filename}: " if error.filename else "output: " if error.errno == errno.ENOSPC else ""

@@ -12,8 +12,9 @@ from graphflow.cli import exits, output
 from graphflow.errors import SupervisorError, UsageFault
 from graphflow.machines.process import START_LIMIT, STOP_LIMIT
 from graphflow.names import did_you_mean
-from graphflow.supervisor import rundir
+from graphflow.supervisor.choosing import choose
 from graphflow.supervisor.control import ControlClient
+from graphflow.supervisor.starts import being_started
 from graphflow.times import ago
 
 LIMIT = START_LIMIT + 2 * STOP_LIMIT
@@ -63,7 +64,7 @@ def status(node: str, name: str | None, as_json: bool) -> int:
 
     Exit code 0: it is ready, or will be; 1: it has failed.
     """
-    run = rundir.choose(name)
+    run = choose(name)
     row = _row(run.socket, _full(node))
     last = _last_lines(Path(row["log"]))
     is_bad = row["state"] in ("failed", "given_up")
@@ -116,14 +117,18 @@ def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name:
             return exits.OK
         if time.monotonic() > deadline:
             left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
-            raise SupervisorError(f"after {timeout:g} s {left or 'no graph is running'}", exits.TIMEOUT)
+            raise SupervisorError(f"after {timeout:g} s {left or _not_there()}", exits.TIMEOUT)
         time.sleep(LOOK_EVERY)
+
+
+def _not_there() -> str:
+    return f"no graph is running yet; {starts}" if (starts := being_started()) else "no graph is running"
 
 
 def _rows_if_any(graph: str | None) -> list[dict[str, Any]] | None:
     """The rows of all nodes; None while no graph is running."""
     try:
-        return _rows(rundir.choose(graph).socket)
+        return _rows(choose(graph).socket)
     except SupervisorError as error:
         if error.exit_code in (exits.NOT_RUNNING, exits.FAILED):  # it is not there yet, or has just gone
             return None
@@ -166,7 +171,7 @@ def _last_lines(log: Path) -> list[str]:
 
 def _do(what: str, node: str, graph: str | None) -> int:
     node = _full(node)
-    run = rundir.choose(graph)
+    run = choose(graph)
     with ControlClient(run.socket) as client:
         client.send(do=what, node=node)
         answer = next(client.receive(), {})

@@ -71,6 +71,12 @@ def starting() -> list[Start]:
     return found
 
 
+def being_started() -> str:
+    """The graphs of this user that are being started, for a command that has found none; empty if there are none."""
+    files = ", ".join(f"{start.file} (process {start.pid})" for start in starting())
+    return f"being started: {files}; wait for it with: graphflow wait" if files else ""
+
+
 def wait_started(told: Callable[[Start], object], file: Path | None = None) -> bool:
     """Wait until the graphs that are being started now can be asked, or have failed; returns whether there were any.
 

@@ -14,6 +14,8 @@ import graphflow
 from graphflow import errors
 from graphflow.cli import exits, main
 from graphflow.cli.main import cli
+from graphflow.supervisor.starts import Announcement
+from graphflow.transport.rendezvous import free_endpoint
 
 VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
 VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run", "rclpy", "ws")
@@ -160,6 +162,24 @@ def test_how_a_command_ends(
     err = capsys.readouterr().err
     assert err.endswith(text)
     assert "Traceback" not in err
+
+
+def test_a_graph_that_is_being_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Is told by every verb that finds nothing running, once; without a run directory there is none."""
+    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", free_endpoint())
+    announced = Announcement(tmp_path / "chase.yaml")
+    about = f"being started: {tmp_path}/chase.yaml (process {os.getpid()}); wait for it with: graphflow wait\n"
+    for words in (["ps"], ["ls"], ["logs"], ["topic", "list"]):
+        assert ends(*words) == exits.NOT_RUNNING
+        assert capsys.readouterr().err.count(about) == 1
+    assert ends("wait", "--timeout", "0") == exits.TIMEOUT
+    assert about in capsys.readouterr().err
+    announced.end()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", "/proc")
+    assert ends("topic", "list") == exits.NOT_RUNNING
+    assert "being started" not in capsys.readouterr().err
 
 
 @pytest.mark.real

@@ -20,13 +20,11 @@ from graphflow.supervisor.rundir import (
     SOCKET_PATH_LIMIT,
     GraphRun,
     RunDirectory,
-    choose,
     log_file,
     new_run_id,
     open_logs,
     read_run,
     running,
-    running_here,
     runtime_root,
     start_time,
 )
@@ -137,7 +135,6 @@ def test_a_graph_is_found_while_it_runs() -> None:
     assert running() == []
     directory.write(a_run())
     assert running() == [a_run()]
-    assert choose(None) == choose("chase") == a_run()
     directory.release()
     assert running() == []
 
@@ -214,44 +211,6 @@ def test_a_run_file_is_whole() -> None:
     assert json.loads((directory.path / "run.json").read_text()) == asdict(a_run())
     assert read_run(directory.path / "run.json") == a_run()
     assert sorted(p.name for p in directory.path.iterdir()) == ["run.json"]
-    directory.release()
-
-
-def test_choosing_among_several() -> None:
-    """One running graph needs no name, several do, and none is code 3."""
-    with pytest.raises(SupervisorError, match="no graph is running; start one with: graphflow up") as caught:
-        choose(None)
-    assert caught.value.exit_code == 3
-    directories = [start("chase"), start("draw"), start("draw", domain=8)]
-    with pytest.raises(SupervisorError) as caught:
-        choose(None)
-    assert str(caught.value) == (
-        "several graphs are running: chase (domain 7), draw (domain 7); say which with --graph NAME"
-    )
-    assert caught.value.exit_code == 2
-    assert len(running_here(everything=True)) == 3
-    assert choose("chase").graph == "chase"
-    with pytest.raises(SupervisorError, match="graph 'chas' is not running; did you mean 'chase'") as caught:
-        choose("chas")
-    assert caught.value.exit_code == 3
-    assert choose("draw").domain == 7
-    for directory in directories:
-        directory.release()
-
-
-@pytest.mark.parametrize(("domain", "endpoint", "where"), [("9", "tcp/x", "domain 9"), ("7", "tcp/other", "tcp/other")])
-def test_graphs_elsewhere(domain: str, endpoint: str, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Are named, and never meant unless they are."""
-    directory = start("chase")
-    monkeypatch.setenv("GRAPHFLOW_DOMAIN", domain)
-    monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", endpoint)
-    with pytest.raises(SupervisorError) as caught:
-        choose(None)
-    assert str(caught.value) == (
-        f"no graph is running in {where}; elsewhere there is chase (domain 7): name it with --graph chase"
-    )
-    assert caught.value.exit_code == 3
-    assert choose("chase").graph == "chase"
     directory.release()
 
 

@@ -1,0 +1,62 @@
+"""Which running graph a command means, and what is said where there is none."""
+
+from __future__ import annotations
+
+from graphflow.domain import domain_id, rendezvous_endpoint
+from graphflow.errors import SupervisorError
+from graphflow.names import did_you_mean
+from graphflow.supervisor import rundir
+from graphflow.supervisor.rundir import GraphRun
+from graphflow.supervisor.starts import being_started
+
+
+def running_here(*, everything: bool = False) -> list[GraphRun]:
+    """The graphs that run in the domain and at the endpoint that this process would use, at least one.
+
+    Args:
+        everything: Those elsewhere too.
+
+    Raises:
+        SupervisorError: None does (exit 3); the text names those that run elsewhere or are being started.
+    """
+    runs = rundir.running()
+    if not runs:
+        raise _none("no graph is running", "; start one with: graphflow up GRAPH.yaml")
+    here = [run for run in runs if everything or run.is_here]
+    if not here:
+        listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
+        where = f"domain {domain_id()}" if all(r.domain != domain_id() for r in runs) else rendezvous_endpoint()
+        elsewhere = f"; elsewhere there is {listing}: name it with --graph {runs[0].graph}"
+        raise _none(f"no graph is running in {where}", elsewhere)
+    return here
+
+
+def choose(name: str | None) -> GraphRun:
+    """The running graph that is meant: of those in this domain, or by its name wherever it runs.
+
+    Raises:
+        SupervisorError: None is running (exit 3), or several are and `name` does not say which (exit 2).
+    """
+    runs = running_here(everything=name is not None)
+    if name is not None:
+        named = [r for r in runs if r.graph == name]
+        if not named:
+            raise _none(f"graph {name!r} is not running", did_you_mean(name, [r.graph for r in runs]))
+        runs = named
+    if len(runs) > 1:
+        here = [r for r in runs if r.domain == domain_id()]
+        runs = here if name is not None and len(here) == 1 else runs
+    if len(runs) > 1:
+        listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
+        raise SupervisorError(
+            f"several graphs are running: {listing}; say which with --graph NAME"
+            f"{' and GRAPHFLOW_DOMAIN' if len({r.graph for r in runs}) < len(runs) else ''}",
+            exit_code=2,
+        )
+    return runs[0]
+
+
+def _none(what: str, otherwise: str) -> SupervisorError:
+    """The error where no graph is meant; those that are being started count for more than the usual advice."""
+    starts = being_started()
+    return SupervisorError(f"{what} yet; {starts}" if starts else f"{what}{otherwise}", exit_code=3)
