@@ -39,6 +39,8 @@ class Pose(NamedTuple):
         return Pose(moved, slerp(self.rotation, other.rotation, share))
 
 
+AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""x, y and z."""
 IDENTITY = Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
@@ -79,3 +81,24 @@ def slerp(a: Quaternion, b: Quaternion, share: float) -> Quaternion:
     x, y, z, w = (start * p + sign * end * q for p, q in zip(a, b, strict=True))
     length = math.sqrt(x * x + y * y + z * z + w * w)
     return x / length, y / length, z / length, w / length
+
+
+def about(axis: Vector, angle: float) -> Quaternion:
+    """The rotation of `angle` radians about an axis of length 1."""
+    sine = math.sin(angle / 2)
+    return axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(angle / 2)
+
+
+def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """The rotation about the fixed axes x, y and z, one after another, by angles in radians."""
+    about_x, about_y = about((1.0, 0.0, 0.0), roll), about((0.0, 1.0, 0.0), pitch)
+    return multiply(about((0.0, 0.0, 1.0), yaw), multiply(about_y, about_x))
+
+
+def to_rpy(q: Quaternion) -> Vector:
+    """The angles in radians that `from_rpy` takes; straight up or down, where there are many, those without yaw."""
+    (xx, yx, zx), (_, yy, zy), (_, yz, zz) = (rotate(q, axis) for axis in AXES)
+    level = math.hypot(xx, yx)
+    if level < 1e-9:
+        return math.atan2(-yz, yy), math.atan2(-zx, level), 0.0
+    return math.atan2(zy, zz), math.atan2(-zx, level), math.atan2(yx, xx)

@@ -1,4 +1,7 @@
-"""Rotations as quaternions, Euler angles and matrices, by the library transforms3d; quaternions are x, y, z, w."""
+"""Rotations as quaternions, Euler angles and matrices, by the library transforms3d; quaternions are x, y, z, w.
+
+As in ROS 2, transforms3d is installed by users of this package: nothing else needs it.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from transforms3d import affines, euler, quaternions
+
+try:
+    from transforms3d import affines, euler, quaternions
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(
+        "tf_transformations needs transforms3d: pip install transforms3d", name=error.name
+    ) from None
 
 Array = NDArray[np.float64]
 

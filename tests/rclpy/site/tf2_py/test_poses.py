@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tf2_py.poses import IDENTITY, Pose, multiply, rotate, slerp
-from transforms3d import quaternions
+from tf2_py.poses import IDENTITY, Pose, from_rpy, multiply, rotate, slerp, to_rpy
+from transforms3d import euler, quaternions
 
 LEFT = (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 """A quarter turn to the left."""
 numbers = st.floats(-10, 10)
 vectors = st.tuples(numbers, numbers, numbers)
+angles = st.floats(-1.5, 1.5)
 rotations = (
     st.tuples(numbers, numbers, numbers, numbers)
     .filter(lambda q: sum(n * n for n in q) > 0.1)
@@ -44,6 +45,23 @@ def test_rotations_are_those_of_the_library(a: tuple[float, ...], b: tuple[float
     one, other = np.roll(a, 1), np.roll(b, 1)
     assert np.roll(multiply(a, b), 1) == pytest.approx(quaternions.qmult(one, other), abs=1e-9)  # type: ignore[arg-type]
     assert rotate(a, v) == pytest.approx(quaternions.rotate_vector(v, one), abs=1e-9)  # type: ignore[arg-type]
+
+
+@given(angles, angles, angles)
+def test_roll_pitch_and_yaw_are_those_of_the_library(roll: float, pitch: float, yaw: float) -> None:
+    """There as its `sxyz`, and back."""
+    found = from_rpy(roll, pitch, yaw)
+    assert np.roll(found, 1) == pytest.approx(euler.euler2quat(roll, pitch, yaw, "sxyz"), abs=1e-9)
+    assert to_rpy(found) == pytest.approx((roll, pitch, yaw), abs=1e-6)
+
+
+@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
+def test_straight_up_or_down_there_is_no_yaw(pitch: float) -> None:
+    """Only the sum, or the difference, of roll and yaw can be told there."""
+    one = from_rpy(0.3, pitch, 0.2)
+    roll, same, yaw = to_rpy(one)
+    assert (same, yaw) == pytest.approx((pitch, 0.0))
+    assert abs(np.dot(from_rpy(roll, same, yaw), one)) == pytest.approx(1.0)
 
 
 def test_between_two_poses_it_turns_evenly_the_shorter_way() -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -66,3 +68,10 @@ def test_vectors() -> None:
     assert tf.unit_vector([3, 4]) == pytest.approx([0.6, 0.8])
     assert tf.unit_vector([[3, 4], [0, 2]], axis=1) == pytest.approx(np.array([[0.6, 0.8], [0, 1]]))
     assert tf.vector_norm(tf.random_quaternion()) == pytest.approx(1)
+
+
+def test_without_the_library_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    """transforms3d is no dependency: only programs that import this package need it."""
+    monkeypatch.setitem(sys.modules, "transforms3d", None)
+    with pytest.raises(ModuleNotFoundError, match="tf_transformations needs transforms3d: pip install transforms3d"):
+        importlib.reload(tf)

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from tf2_py.poses import Pose, Quaternion, Vector, multiply
+from tf2_py.poses import Pose, Vector, about, from_rpy
 
 MOVES = {"revolute", "continuous", "prismatic"}
 """The types of joints whose positions are told; all others stay where they are."""
@@ -46,7 +46,7 @@ class Joint(NamedTuple):
             x, y, z = self.axis
             return self.origin.of(Pose((x * position, y * position, z * position), (0.0, 0.0, 0.0, 1.0)))
         if self.type in MOVES:
-            return self.origin.of(Pose((0.0, 0.0, 0.0), _around(self.axis, position)))
+            return self.origin.of(Pose((0.0, 0.0, 0.0), about(self.axis, position)))
         return self.origin
 
 
@@ -114,7 +114,7 @@ def _joint(element: ElementTree.Element) -> Joint:
     x, y, z = (part / (length or 1.0) for part in axis)
     origin = element.find("origin")
     pose = Pose(
-        _numbers(origin, "xyz", (0.0, 0.0, 0.0), name), _turned(*_numbers(origin, "rpy", (0.0, 0.0, 0.0), name))
+        _numbers(origin, "xyz", (0.0, 0.0, 0.0), name), from_rpy(*_numbers(origin, "rpy", (0.0, 0.0, 0.0), name))
     )
     mimic = element.find("mimic")
     follows = None
@@ -157,14 +157,3 @@ def _number(text: str, joint: str) -> float:
     if not math.isfinite(number):
         raise URDFError(f"{text!r} at the joint {joint!r} is not finite")
     return number
-
-
-def _around(axis: Vector, angle: float) -> Quaternion:
-    sine = math.sin(angle / 2)
-    return axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(angle / 2)
-
-
-def _turned(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """The rotation about the fixed axes x, y and z, one after another."""
-    around_x, around_y = _around((1.0, 0.0, 0.0), roll), _around((0.0, 1.0, 0.0), pitch)
-    return multiply(_around((0.0, 0.0, 1.0), yaw), multiply(around_y, around_x))

@@ -14,9 +14,8 @@ from uuid import uuid4
 
 from rcl_interfaces.msg import ParameterDescriptor
 from tf2_py.core import message
-from tf2_py.poses import Pose, Quaternion
+from tf2_py.poses import Pose, Quaternion, from_rpy
 from tf2_ros import StaticTransformBroadcaster
-from tf_transformations import quaternion_from_euler
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -108,7 +107,7 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
         a, b, c, w = (usual if part is None else part for part, usual in zip(parts, (0.0, 0.0, 0.0, 1.0), strict=True))
     else:
         roll, pitch, yaw = (turn or 0.0 for turn in turns)
-        a, b, c, w = map(float, quaternion_from_euler(roll, pitch, yaw))
+        a, b, c, w = from_rpy(roll, pitch, yaw)
     return Pose((x, y, z), (a, b, c, w)), found.frame_id, found.child_frame_id
 
 

@@ -8,8 +8,8 @@ import math
 import sys
 
 from geometry_msgs.msg import TransformStamped
+from tf2_py.poses import AXES, rotate, to_rpy
 from tf2_ros import Buffer, TransformException, TransformListener
-from tf_transformations import euler_from_quaternion, quaternion_matrix
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -54,18 +54,19 @@ class Echo(Node):
 def described(found: TransformStamped) -> str:
     """A transform as lines."""
     t, r = found.transform.translation, found.transform.rotation
-    turns = euler_from_quaternion((r.x, r.y, r.z, r.w))
-    matrix = quaternion_matrix((r.x, r.y, r.z, r.w))
-    matrix[:3, 3] = t.x, t.y, t.z
+    rotation = (r.x, r.y, r.z, r.w)
+    turns = to_rpy(rotation)
+    columns = [*(rotate(rotation, axis) for axis in AXES), (t.x, t.y, t.z)]
+    rows = [*zip(*columns, strict=True), (0.0, 0.0, 0.0, 1.0)]
     return "\n".join(
         [
             f"At time {found.header.stamp.sec}.{found.header.stamp.nanosec:09}",
             f"- Translation: {_vector((t.x, t.y, t.z))}",
-            f"- Rotation: in Quaternion (xyzw) {_vector((r.x, r.y, r.z, r.w))}",
+            f"- Rotation: in Quaternion (xyzw) {_vector(rotation)}",
             f"- Rotation: in RPY (radian) {_vector(turns)}",
             f"- Rotation: in RPY (degree) {_vector(tuple(map(math.degrees, turns)))}",
             "- Matrix:",
-            *("".join(f" {number:6.3f}" for number in row) for row in matrix.tolist()),
+            *("".join(f" {number:z6.3f}" for number in row) for row in rows),
             "",
         ]
     )
