@@ -57,14 +57,13 @@ class Graph:
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
         self._tester: Node | None = None
+        self.loop: asyncio.AbstractEventLoop | None = None
+        """The event loop that its nodes run in, from the first on."""
 
     async def start(self, *nodes: Node) -> None:
         """Start nodes, each as if in a process of its own, and let them settle."""
         for node in nodes:
-            session = self.network.session(asyncio.get_running_loop())
-            context = Context(session, clock=self.clock, deadlock=self.deadlock)
-            self._contexts.append(context)
-            await core_of(node).start(context)
+            await core_of(node).start(self._context(deadlock=self.deadlock))
             self.nodes.append(node)
         await settle()
 
@@ -120,13 +119,16 @@ class Graph:
 
     def _test_node(self) -> Node:
         if self._tester is None:
-            context = Context(self.network.session(asyncio.get_running_loop()), clock=self.clock)
-            self._contexts.append(context)
             self._tester = Node(f"_test_{next(self._names)}")
             # Starting is a coroutine only for what it may wait for; a bare node waits for nothing.
-            _run_now(core_of(self._tester).start(context))
+            _run_now(core_of(self._tester).start(self._context()))
             self.nodes.append(self._tester)
         return self._tester
+
+    def _context(self, deadlock: DeadlockPolicy = "raise") -> Context:
+        self.loop = asyncio.get_running_loop()
+        self._contexts.append(Context(self.network.session(self.loop), clock=self.clock, deadlock=deadlock))
+        return self._contexts[-1]
 
 
 def _run_now(coroutine: Any) -> None:

@@ -1,23 +1,26 @@
 """The pytest plugin: the fixture `graph`, and `async def` tests run in an event loop of their own.
 
 Nothing heavy is imported before a test asks for it: the plugin is loaded by every pytest run of an environment that
-has graphflow installed. Where another plugin runs asynchronous tests (pytest-asyncio, anyio), it keeps those that
-do not use `graph`.
+has graphflow installed. Another plugin for asynchronous tests (pytest-asyncio, anyio) runs those that it has taken, in
+its own loop, and those that do not use `graph`; the limits of a test hold there, too.
 """
 
 from __future__ import annotations
 
 import asyncio
+import functools
 import inspect
 import sys
 import time
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Coroutine, Generator, Iterator
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pytest
 
 if TYPE_CHECKING:
     from graphflow.testing.graph import Graph
+
+Test: TypeAlias = Callable[..., Coroutine[Any, Any, None]]
 
 LIMIT = 60.0
 """Seconds of real time that an asynchronous test may take."""
@@ -48,37 +51,109 @@ def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
 
     made = Graph()
     yield made
-    graphflow_runner.run(made.close())
+    if made.loop in (None, graphflow_runner.get_loop()):  # in the loop of another plugin, the test has closed it
+        graphflow_runner.run(made.close())
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Limit an `async def` test that uses `graph` or `graphflow_runner`, whatever plugin runs it."""
+    if not isinstance(item, pytest.Function) or "graphflow_runner" not in item.fixturenames:
+        return (yield)
+    generated = getattr(item.obj, "hypothesis", None)
+    if generated is not None and inspect.iscoroutinefunction(generated.inner_test):
+        test = generated.inner_test
+        generated.inner_test = _by_examples(item, test)
+        try:
+            return (yield)
+        finally:
+            generated.inner_test = test
+    if inspect.iscoroutinefunction(item.obj):
+        item.obj = _limited(item, item.obj)
+    return (yield)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Run an `async def` test that uses `graph` or `graphflow_runner`."""
-    if not inspect.iscoroutinefunction(pyfuncitem.obj) or "graphflow_runner" not in pyfuncitem.fixturenames:
+    """Run such a test, unless another plugin does."""
+    if "graphflow_runner" not in pyfuncitem.fixturenames or "anyio_backend" in pyfuncitem.fixturenames:
         return None
     runner: Any = pyfuncitem.funcargs["graphflow_runner"]
-    wanted = pyfuncitem._fixtureinfo.argnames
-    arguments: dict[str, Any] = {name: pyfuncitem.funcargs[name] for name in wanted}
+    if inspect.iscoroutinefunction(pyfuncitem.obj):
+        runner.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}))
+        return True
+    generated = getattr(pyfuncitem.obj, "hypothesis", None)
+    if generated is not None and inspect.iscoroutinefunction(test := generated.inner_test):
 
-    began = time.monotonic()
+        @functools.wraps(test)
+        def run(*args: Any, **kwargs: Any) -> None:
+            runner.run(test(*args, **kwargs))
 
-    async def limited() -> None:
-        async with asyncio.timeout(LIMIT) as limit:
-            watching = asyncio.create_task(_end_when_idle(limit)) if "graph" in pyfuncitem.fixturenames else None
-            try:
-                await pyfuncitem.obj(**arguments)
-            finally:
-                if watching is not None:
-                    watching.cancel()
+        generated.inner_test = run
+    return None
 
-    try:
-        runner.run(limited())
-    except TimeoutError as error:
-        ended = error.__cause__ or error.__context__  # the first since Python 3.11.3
-        if isinstance(ended, asyncio.CancelledError):
-            error.add_note(_too_long(ended, time.monotonic() - began))
-        raise
-    return True
+
+def _limited(item: pytest.Function, test: Test) -> Test:
+    """A test that ends when it takes too long, or stands still."""
+    runner: Any = item.funcargs["graphflow_runner"]
+    made: Any = item.funcargs.get("graph")
+
+    @functools.wraps(test)
+    async def limited(*args: Any, **kwargs: Any) -> None:
+        graph = kwargs.get("graph", made)
+        loop = asyncio.get_running_loop()
+        if graph is not None and graph.loop not in (None, loop):
+            raise RuntimeError(
+                "a fixture has started nodes in another event loop than that of the test: mark the test for the "
+                "plugin of the fixture, as with @pytest.mark.asyncio"
+            )
+        began = time.monotonic()
+        try:
+            async with asyncio.timeout(LIMIT) as limit:
+                watching = asyncio.create_task(_end_when_idle(limit)) if graph is not None else None
+                try:
+                    await test(*args, **kwargs)
+                finally:
+                    if watching is not None:
+                        watching.cancel()
+        except TimeoutError as error:
+            ended = error.__cause__ or error.__context__  # the first since Python 3.11.3
+            if isinstance(ended, asyncio.CancelledError):
+                error.add_note(_too_long(ended, time.monotonic() - began))
+            raise
+        finally:
+            # An example's own is closed here; the fixture's too if another plugin may close this loop before it ends.
+            if graph is not None and graph.loop is loop and (graph is not made or runner.get_loop() is not loop):
+                await graph.close()
+
+    return limited
+
+
+def _by_examples(item: pytest.Function, test: Test) -> Test:
+    """A test of Hypothesis's, of which each example has a graph of its own."""
+    limited = _limited(item, test)
+    if "graph" not in item.funcargs:
+        return limited
+    fixtures = item._fixtureinfo.name2fixturedefs.items()
+    if users := [name for name, found in fixtures if found and "graph" in found[-1].argnames]:
+        raise RuntimeError(
+            f"each example has a graph of its own, which {users[0]!r} cannot have: start its nodes in the test"
+        )
+    from hypothesis import HealthCheck, settings
+
+    # Which looks for fixtures that are not made anew for each example; `settings` refuses to be used twice.
+    decorated: Any = getattr(item.obj, "__func__", item.obj)
+    given: Any = getattr(decorated, "_hypothesis_internal_use_settings", settings.default)
+    allowed = [*given.suppress_health_check, HealthCheck.function_scoped_fixture]
+    decorated._hypothesis_internal_use_settings = settings(given, suppress_health_check=allowed)
+
+    @functools.wraps(test)
+    async def example(*args: Any, **kwargs: Any) -> None:
+        from graphflow.testing.graph import Graph
+
+        await limited(*args, **kwargs | {"graph": Graph()})
+
+    return example
 
 
 async def _end_when_idle(limit: asyncio.Timeout) -> None:

@@ -26,6 +26,7 @@ that goes on, or of nodes that end.
 from __future__ import annotations
 
 import ast
+import asyncio
 import importlib.util
 import inspect
 import os
@@ -238,11 +239,23 @@ def _check_file(block: Block, project: Path) -> None:
 async def _run_tests(module: ModuleType) -> None:
     for name, function in vars(module).items():
         if name.startswith("test_") and inspect.iscoroutinefunction(function):
-            graph = Graph()
-            try:
-                await function(graph)
-            finally:
-                await graph.close()
+            await _run_test(function)
+        elif name.startswith("test_") and hasattr(function, "hypothesis"):
+            test = function.hypothesis.inner_test
+
+            def example(graph: None, *, test: Any = test, **arguments: Any) -> None:
+                asyncio.run(_run_test(test, **arguments))
+
+            function.hypothesis.inner_test = example
+            await asyncio.to_thread(function, graph=None)
+
+
+async def _run_test(test: Any, **arguments: Any) -> None:
+    graph = Graph()
+    try:
+        await test(graph=graph, **arguments)
+    finally:
+        await graph.close()
 
 
 def _is_profile(text: str) -> bool:

@@ -186,6 +186,143 @@ def test_other_asynchronous_tests_are_left_alone(pytester: pytest.Pytester) -> N
     assert "by the other plugin: ['test_other']" in result.stdout.str()
 
 
+TAKES_ALL = """
+    import asyncio, inspect, pytest
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(item):
+        test, made = item.obj, getattr(item.obj, "hypothesis", None)
+        if made is not None:
+            inner = made.inner_test
+            made.inner_test = lambda *args, **kwargs: asyncio.run(inner(*args, **kwargs))
+        elif inspect.iscoroutinefunction(test):
+            item.obj = lambda **kwargs: asyncio.run(test(**kwargs))
+        return (yield)
+"""
+"""Another plugin that runs all asynchronous tests, in loops that it closes, as pytest-asyncio does in its auto mode."""
+
+
+def test_another_plugin_may_run_a_test_with_the_fixture(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its nodes are stopped in the loop of that plugin, and the test is limited as any other."""
+    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.05)
+    pytester.makeconftest(TAKES_ALL)
+    result = run(
+        pytester,
+        """
+        import asyncio
+        from counter import Broken, Counter
+
+        async def test_it(graph, graphflow_runner):
+            node = Counter(rate=10)
+            await graph.start(node)
+            await graph.clock.advance(1.0)
+            assert node.count == 10
+            assert graphflow_runner.get_loop() is not asyncio.get_running_loop()
+
+        async def test_still(graph):
+            await asyncio.Event().wait()  # here
+
+        async def test_broken(graph):
+            await graph.start(Broken())
+        """,
+    )
+
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(["*waited in *test_it.py:12*", "*ValueError: broken*"])
+
+
+def test_nodes_of_another_loop_are_refused(pytester: pytest.Pytester) -> None:
+    """Where a fixture of another plugin has started them, but the test is not that plugin's."""
+    result = run(
+        pytester,
+        """
+        import asyncio, pytest
+        from counter import Counter
+
+        @pytest.fixture
+        def started(graph):
+            loop = asyncio.new_event_loop()
+            loop.run_until_complete(graph.start(Counter()))
+            yield
+            loop.run_until_complete(graph.close())
+            loop.close()
+
+        async def test_it(started, graph):
+            pass
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["*RuntimeError: a fixture has started nodes in another event loop*@pytest.mark.asyncio"]
+    )
+
+
+@pytest.mark.parametrize("conftest", ["", TAKES_ALL], ids=["ours", "another's"])
+def test_generated_examples_have_a_graph_each(pytester: pytest.Pytester, conftest: str) -> None:
+    """A test of Hypothesis's may be asynchronous and use `graph`: nothing of one example is left for the next."""
+    pytester.makeconftest(conftest)
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+        from hypothesis import given, settings, strategies as st
+
+        rates = st.sampled_from([1, 2, 5, 10])
+        graphs = []
+
+        @given(rate=rates)
+        @settings(max_examples=20, database=None)
+        async def test_it(graph, rate):
+            assert graph.nodes == []
+            node = Counter(rate=rate)
+            await graph.start(node)
+            await graph.clock.advance(1.0)
+            assert node.count == rate
+            graphs.append(graph)
+
+        def test_each(graph):
+            assert len(graphs) > 1 and not any(node.is_running for graph in graphs for node in graph.nodes)
+
+        class TestIt:
+            @given(rates)
+            @settings(database=None)
+            async def test_falsified(self, graph, rate):
+                node = Counter(rate=rate)
+                await graph.start(node)
+                await graph.clock.advance(1.0)
+                assert node.count < 5
+        """,
+    )
+
+    result.assert_outcomes(passed=2, failed=1)
+    result.stdout.fnmatch_lines(["*assert 5 < 5*", "*rate=5,*"])
+
+
+def test_generated_examples_share_no_node(pytester: pytest.Pytester) -> None:
+    """A fixture is made once for all examples, and so would be its graph."""
+    result = run(
+        pytester,
+        """
+        import pytest
+        from hypothesis import given, strategies as st
+
+        @pytest.fixture
+        def tap(graph):
+            return None
+
+        @given(n=st.integers())
+        async def test_it(graph, tap, n):
+            pass
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*each example has a graph of its own, which 'tap' cannot have*"])
+
+
 def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:
     """Nothing that one test left behind reaches the next, and its loop is closed."""
     result = run(
