@@ -81,7 +81,7 @@ if TYPE_CHECKING:
     from graphflow.times import Duration, Time
     from graphflow.wire.attachment import MessageInfo
 
-__version__ = "0.1.0"
+__version__ = "0.1.0.dev0"
 
 # Imported when first used: `graphflow --help` must not wait for zenoh and asyncio.
 _HOMES = {

@@ -18,6 +18,7 @@ OTHER_NAMES = {"eclipse-zenoh": "zenoh", "pyyaml": "yaml", "ruamel.yaml": "ruame
 """Modules that are not called as their distributions are."""
 USERS_CHOICE = {
     "cv2": "OpenCV comes in several distributions; cv_bridge names one where it is needed",
+    "hypothesis": "the plugin imports it for tests that do",
     "pytest": "the plugin is imported by pytest only",
     "transforms3d": "tf_transformations names it; as in ROS 2, its users install it",
 }
