@@ -22,8 +22,11 @@ def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
     """
     _refuse_others(os.stat(path), path)  # first: opening a device can do something
     with open(path, "rb", opener=_open_at_once) as file:
-        _refuse_others(os.fstat(file.fileno()), path)
-        data = file.read(bound + 1) or b""
+        about = os.fstat(file.fileno())
+        _refuse_others(about, path)
+        data = file.read(min(about.st_size, bound) + 1) or b""
+        while len(data) <= bound and (more := file.read(1 << 16)):  # it grows, or does not say how long it is
+            data += more
     if len(data) > bound:
         raise OSError(errno.EFBIG, f"it has more than {bound:,} bytes", str(path))
     return data

@@ -54,6 +54,11 @@ class TimeFields:
     def __add__(self, other: Duration | DurationFields) -> Time:
         return Time.from_msg(self).__add__(other)
 
+    def __eq__(self, other: object) -> bool:
+        return Time.from_msg(self) == other if isinstance(other, Time) else super().__eq__(other)
+
+    __hash__ = None  # type: ignore[assignment]  # messages can change
+
     def __lt__(self, other: Time | TimeFields) -> bool:
         return Time.from_msg(self) < _time(other)
 
@@ -76,6 +81,11 @@ class DurationFields:
 
     def __add__(self, other: Duration | DurationFields) -> Duration:
         return Duration.from_msg(self).__add__(other)
+
+    def __eq__(self, other: object) -> bool:
+        return Duration.from_msg(self) == other if isinstance(other, Duration) else super().__eq__(other)
+
+    __hash__ = None  # type: ignore[assignment]  # messages can change
 
     def __sub__(self, other: Duration | DurationFields) -> Duration:
         return Duration.from_msg(self).__sub__(other)
@@ -145,6 +155,11 @@ class Duration:
     def __neg__(self) -> Duration:
         return Duration(-self.nanoseconds)
 
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, DurationFields):
+            other = Duration.from_msg(other)
+        return self.nanoseconds == other.nanoseconds if isinstance(other, Duration) else NotImplemented
+
 
 @dataclass(frozen=True, order=True, slots=True)
 class Time:
@@ -189,3 +204,8 @@ class Time:
         if isinstance(other, (Duration, DurationFields)):
             return Time(self.nanoseconds - _duration(other).nanoseconds)
         return NotImplemented
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, TimeFields):
+            other = Time.from_msg(other)
+        return self.nanoseconds == other.nanoseconds if isinstance(other, Time) else NotImplemented

@@ -106,6 +106,8 @@ def test_messages_stand_in_place_of_times(one: int, other: int) -> None:
     assert (a < stamp_b) is (stamp_a < b) is (stamp_a < stamp_b) is (a < b)
     assert (a >= stamp_b) is (stamp_a >= b) is (stamp_a >= stamp_b) is (a >= b)
     assert Time.from_msg(stamp_a) == a
+    assert (a == stamp_b) is (stamp_a == b) is (stamp_a == stamp_b) is (a == b)
+    assert a == stamp_a == a
 
 
 @settings(derandomize=True, deadline=None)
@@ -121,6 +123,8 @@ def test_messages_stand_in_place_of_durations(one: int, other: int) -> None:
     assert Time(5) - fields_a == Time(5) - a
     assert -fields_a == -a
     assert Duration.from_msg(fields_a) == a
+    assert (a == fields_b) is (fields_a == b) is (a == b)
+    assert a == fields_a == a
 
 
 def test_stamps_and_spans_do_not_mix() -> None:
@@ -131,3 +135,5 @@ def test_stamps_and_spans_do_not_mix() -> None:
         Duration(1) - TimeMessage(sec=2)  # type: ignore[operator]
     with pytest.raises(TypeError):
         assert TimeMessage(sec=1) < DurationMessage(sec=2)  # type: ignore[operator]
+    assert Time(1) != Duration(1)
+    assert len({Time(1), Time(1), Duration(1)}) == 2

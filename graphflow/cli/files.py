@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def find_graph(text: str) -> Path:
-    """The file that `up NAME` means: a path, or the name of a graph that is installed or comes with graphflow.
+    """The file that `up NAME` means: a path, or the name of a graph of the project, an installed package or graphflow.
 
     Raises:
         UsageFault: `text` is neither.
@@ -31,8 +31,12 @@ def find_graph(text: str) -> Path:
             _refuse_source(path)
         return path
     from graphflow.graph import installed
-    from graphflow.graph.project import bundled_graphs
+    from graphflow.graph.project import bundled_graphs, project_root, shown
 
+    own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
+    if own.is_file():
+        output.talk(f"{text}: using that of the project, {shown(own)}")
+        return Path(shown(own))
     name, bundled, others = text.removesuffix(".yaml"), bundled_graphs(), installed.graphs()
     found = others.get(name) or ([bundled[name]] if name in bundled else [])
     if len(found) == 1:
@@ -109,6 +113,23 @@ def _difference(one: Plan, other: Plan) -> Iterator[str]:
     yield from unified_diff(ours, theirs, one.file, other.file, lineterm="", n=2)
 
 
+def _graph_meant(text: str) -> Path | None:
+    """The graph file that is to be checked; None for source. A graph's name counts more than a folder's.
+
+    Raises:
+        UsageFault: It is neither.
+    """
+    path = Path(text)
+    if text.endswith(".py") and not is_launch_file(path):
+        return None
+    try:
+        return find_graph(text)
+    except UsageFault:
+        if path.is_dir():
+            return None
+        raise
+
+
 @click.command()
 @_graph_or_source
 @_args
@@ -120,11 +141,11 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     remarks: names that nothing in the graph answers to. Of a Python file or a folder, node classes are imported, and
     the nodes that are written for rclpy only read. A launch file in Python is run, in a process of its own.
     """
-    if Path(graph).is_dir() or (graph.endswith(".py") and not is_launch_file(Path(graph))):
+    path = _graph_meant(graph)
+    if path is None:
         from graphflow.cli.sources import check_sources
 
         return check_sources([Path(graph), *map(Path, args)], as_json=as_json)
-    path = find_graph(graph)
     from graphflow.errors import GraphFileError
     from graphflow.graph.loose import loose_ends
     from graphflow.graph.static import findings

@@ -44,7 +44,7 @@ def is_users(file: str) -> bool:
 
 def is_installed(file: str) -> bool:
     """Whether a source file belongs to an installed package."""
-    return "/site-packages/" in file or "/dist-packages/" in file
+    return not {"site-packages", "dist-packages"}.isdisjoint(PurePath(file).parts)
 
 
 def is_ours(file: str) -> bool:

@@ -49,8 +49,11 @@ class Installed:
 @cache
 def installed() -> dict[str, Installed]:
     """The distributions that have nodes, or programs for rclpy, by their names."""
-    found = (_read(distribution) for distribution in distributions())
-    return {one.name: one for one in found if one is not None}
+    found: dict[str, Installed] = {}
+    for one in map(_read, distributions()):
+        if one is not None:
+            found.setdefault(one.name, one)  # of two, Python imports the first on its path
+    return found
 
 
 def package_of(name: str) -> Installed | None:

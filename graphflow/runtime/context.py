@@ -83,7 +83,7 @@ class Context:
         """What else runs callbacks of this process, for the search for deadlocks."""
         self.ledger = Ledger(self.loop)
         """What the handlers of this process wait for."""
-        self._offloads = asyncio.Semaphore(OFFLOAD_LIMIT)
+        self._offloads, self._is_full_told = asyncio.Semaphore(OFFLOAD_LIMIT), False
         self.search = Search(self, deadlock)
         self._inspection = Inspection(self, self.search)
         self._ids = itertools.count()
@@ -179,11 +179,14 @@ class Context:
         """A number no other node or endpoint of this process has."""
         return next(self._ids)
 
-    async def in_thread(self, fn: Callable[..., T], *args: Any, stays: bool = False) -> T:
-        """Run `fn(*args)` in a thread of its own, which cannot be cancelled.
+    async def in_thread(
+        self, fn: Callable[..., T], *args: Any, stays: bool = False, ended: Callable[[], None] | None = None
+    ) -> T:
+        """Run `fn(*args)` in a thread, which cannot be cancelled.
 
         Args:
             stays: Whether to wait for its end even when the waiting is cancelled, and raise the cancellation then.
+            ended: Called on the loop when the thread has done it, whether or not anybody still waits.
 
         The interpreter does not wait for such a thread when it ends, as it would for those of a pool.
         """
@@ -193,9 +196,16 @@ class Context:
         def done(result: T | None, error: BaseException | None) -> None:
             with suppress(RuntimeError):  # the loop has been closed meanwhile
                 self.loop.call_soon_threadsafe(_settle, future, result, error)
+                if ended is not None:
+                    self.loop.call_soon_threadsafe(ended)
 
         name = f"graphflow-{getattr(fn, '__name__', 'thread')}"
-        thread = THREADS.run(lambda: context.run(fn, *args), done, name)
+        try:
+            thread = THREADS.run(lambda: context.run(fn, *args), done, name)
+        except RuntimeError:  # no thread can be started
+            if ended is not None:
+                ended()
+            raise
         with self.ledger.thread_work(future, thread):
             if stays:
                 await _seen_through(future)
@@ -214,14 +224,16 @@ class Context:
 
     async def offload(self, fn: Callable[..., T], *args: Any) -> T:
         """Run `fn(*args)` as `in_thread` does, when fewer than `OFFLOAD_LIMIT` others are running."""
-        if self._offloads.locked():
-            logger.warning(
-                "offload: %s waits, since %d offloaded functions are running",
-                getattr(fn, "__name__", fn),
-                OFFLOAD_LIMIT,
-            )
-        async with self._offloads:
-            return await self.in_thread(fn, *args)
+        if self._offloads.locked() and not self._is_full_told:
+            self._is_full_told = True
+            name = getattr(fn, "__name__", fn)
+            logger.warning("offload: %s waits, since %d offloaded functions are running", name, OFFLOAD_LIMIT)
+        await self._offloads.acquire()
+        return await self.in_thread(fn, *args, ended=self._offload_ended)
+
+    def _offload_ended(self) -> None:
+        self._offloads.release()
+        self._is_full_told = False
 
     def on_change(self, listener: Callable[[GraphChange], None]) -> Callable[[], None]:
         """Call `listener` for every node or endpoint that comes or goes; returns a function that stops this."""

@@ -61,23 +61,20 @@ def catch_signals(stop: asyncio.Event) -> Callable[[], None]:
 
     # Not the loop's own handlers, which would wait for a handler that does not return.
     former = {number: signal.signal(number, caught) for number in _stop_signals()}
-    watch = loop.call_later(LOOK_EVERY, lambda: None)
+    watch = loop.call_later(LOOK_EVERY, lambda: look())
 
     def look() -> None:
         nonlocal watch
         others = {number: found for number in former if (found := signal.getsignal(number)) is not caught}
         for number, found in others.items():
             logger.warning(
-                "%s has taken the signal %s: it no longer stops the nodes, and their on_shutdown will not run. "
-                "Have it call what was there before (signal.getsignal), or keep it from handling signals",
+                "%s has taken the signal %s: unless it calls the handler that was there before, that signal no longer "
+                "stops the nodes, and their on_shutdown will not run",
                 _name(found),
                 number.name,
             )
         if not others:
             watch = loop.call_later(LOOK_EVERY, look)
-
-    watch.cancel()
-    look()
 
     def restore() -> None:
         watch.cancel()

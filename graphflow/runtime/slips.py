@@ -7,14 +7,19 @@ number, in a message that a method has made or been given.
 from __future__ import annotations
 
 import ast
+import logging
 import re
 import sys
+from collections import Counter
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from functools import cache
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from graphflow.deadlock.syntax import FunctionNode, syntax_of, walk
-from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.user_code import is_installed, is_users_module
 from graphflow.deadlock.uses import is_own
 from graphflow.errors import EncodeError, Place
 from graphflow.msgs.base import Message, no_field
@@ -22,27 +27,48 @@ from graphflow.names import nearest
 from graphflow.runtime import declared
 from graphflow.runtime.twice import definition_of
 
+logger = logging.getLogger("graphflow")
+
 _LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
 
 
 @cache
 def slips(cls: type) -> tuple[str, ...]:
     """A sentence for each, with its place; of the class and of those of the user's that it derives from."""
-    found: list[str] = []
+    try:
+        return tuple(_slips(cls))
+    except Exception as error:  # a remark must not keep a node from running
+        logger.debug("the source of %s was not looked at", cls.__name__, exc_info=error)
+        return ()
+
+
+def _slips(cls: type) -> Iterator[str]:
     for parent in cls.__mro__:
         source = definition_of(parent) if is_users_module(parent.__module__) else None
         if source is not None:
             definition, file = source
             mentioned = _mentioned(syntax_of(file).module)
             space = vars(sys.modules[parent.__module__])
-            found += _idle_methods(parent, definition, file, mentioned, space)
-            found += _stray_attributes(cls, definition, file, mentioned)
+            yield from _idle_methods(parent, definition, file, mentioned, space)
+            yield from _stray_attributes(cls, definition, file, mentioned)
             for method in definition.body:
                 if isinstance(method, FunctionNode):
-                    found += _wrong_fields(method, file, space)
-    return tuple(found)
+                    yield from _wrong_fields(method, file, space)
 
 
+def _other_modules(file: str) -> Iterator[ast.Module]:
+    """The project's other modules, which may call what is in one of its files."""
+    from graphflow.graph.project import project_root
+
+    root = project_root(Path(file))
+    others = {str(path) for module in list(sys.modules.values()) if (path := getattr(module, "__file__", None))}
+    for other in sorted(others - {file}):
+        if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
+            with suppress(OSError, SyntaxError, ValueError):  # no source to be read
+                yield syntax_of(other).module
+
+
+@cache
 def _mentioned(module: ast.Module) -> set[str]:
     """Attributes and names that a module reads, and words in its texts, by which an attribute may be found, too."""
     found: set[str] = set()
@@ -67,7 +93,8 @@ def _idle_methods(
             continue  # the parent calls it
         arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
         kind = _received(arguments[0], space) if len(arguments) == 1 else ""
-        if kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1):
+        is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
+        if is_like_one and not any(method.name in _mentioned(module) for module in _other_modules(file)):
             decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
             yield (
                 f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}, which looks like a "
@@ -92,7 +119,11 @@ def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
         case ast.Name(id=name):
             return space.get(name)
         case ast.Attribute(value=value, attr=name):
-            return getattr(_resolved(value, space), name)
+            owner = _resolved(value, space)
+            if isinstance(owner, ModuleType) and owner.__name__.startswith("graphflow.msgs"):
+                return getattr(owner, name, None)  # classes are made when they are asked for
+            # Anything else could run code of the user's, such as a property.
+            return vars(owner).get(name) if isinstance(owner, (ModuleType, type)) else None
         case ast.Constant(value=str(text)):
             return space.get(text)
     return None
@@ -114,16 +145,21 @@ def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned:
 
 def _wrong_fields(method: FunctionNode, file: str, space: dict[str, Any]) -> Iterator[str]:
     """Fields of messages made or received here that their type does not have, and literals that do not fit them."""
-    arguments = {a.arg: _message(a.annotation, space) for a in method.args.args}
-    made = {name: type_ for name, type_ in arguments.items() if type_ is not None}
+    bound = {a.arg: {_message(a.annotation, space)} for a in method.args.args}
+    times: Counter[str] = Counter()
     for node in ast.walk(method):
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                type_ = _type_made(value, space)
-                if name in made and made[name] is not type_:
-                    return  # it is one thing here and another there
-                if type_ is not None:
-                    made[name] = type_
+                bound.setdefault(name, set()).add(_type_made(value, space))
+                times[name] -= 1
+            case ast.Name(id=name, ctx=ast.Store()):
+                times[name] += 1
+    # A name that is one thing here and another there, or bound by a loop or the like, is known nowhere.
+    made = {
+        name: type_
+        for name, types in bound.items()
+        if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
+    }
     for node in ast.walk(method):
         match node:
             case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
@@ -139,10 +175,7 @@ def _type_made(value: ast.expr, space: dict[str, Any]) -> type[Message] | None:
 
 def _message(expression: ast.expr | None, space: dict[str, Any]) -> type[Message] | None:
     """The message class that an expression names."""
-    try:
-        type_ = _resolved(expression, space)
-    except AttributeError:
-        return None
+    type_ = _resolved(expression, space)
     return type_ if isinstance(type_, type) and issubclass(type_, Message) else None
 
 

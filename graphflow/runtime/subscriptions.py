@@ -292,7 +292,7 @@ class TopicSubscription(Endpoint, Generic[M]):
                 self._inbox.items.maxlen,
                 BYTES_BOUND >> 20,
             )
-        if not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
+        elif not self._has_told_loss and dropped >= LOSS_TOLD and 2 * dropped >= self.received:
             self._has_told_loss = True
             self.host.log.warning(
                 "%s: most messages are lost, %d of %d so far: they come faster than they are handled. Do less in the "

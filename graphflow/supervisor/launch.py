@@ -387,17 +387,20 @@ class _Launch:
 async def _warn(supervisor: Supervisor, plan: Plan, interfaces: Interfaces) -> None:
     """Report what is odd in the graph's files and, once it is up, the deadlocks that its source shows."""
     import asyncio
+    import logging
 
     from graphflow.graph.loose import loose_ends
     from graphflow.graph.static import findings, warnings
 
-    for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
-        supervisor.note(remark)  # it may be the reason why the graph does not come up
-    await supervisor.up.wait()
     try:
+        for remark in (*plan.remarks, *map(str, loose_ends(plan, interfaces))):
+            supervisor.note(remark)  # it may be the reason why the graph does not come up
+        await supervisor.up.wait()
         ways = await asyncio.to_thread(findings, plan, interfaces) if plan.deadlock != "off" else []
         for text in warnings(ways, plan.file):
             supervisor.note(text)
+    except Exception as error:  # remarks must not keep a graph from running
+        logging.getLogger("graphflow.supervisor").error("the graph was not examined: %s", error, exc_info=error)
     finally:  # `up -d` waits for it
         supervisor.doors.tell(event="checked")
 

@@ -125,7 +125,7 @@ class DaemonExecutor(ThreadPoolExecutor):
         super().__init__()
         self._order = threading.Lock()
         self._free = self._max_workers
-        self._waiting: deque[Callable[[], object]] = deque()
+        self._waiting: deque[tuple[Future[Any], Callable[[], object]]] = deque()
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         future: Future[T] = Future()
@@ -142,10 +142,15 @@ class DaemonExecutor(ThreadPoolExecutor):
 
         with self._order:
             if not self._free:
-                self._waiting.append(work)
+                self._waiting.append((future, work))
                 return future
             self._free -= 1
-        THREADS.run(lambda: self._work_off(work), lambda *_: None, f"graphflow-{getattr(fn, '__name__', 'thread')}")
+        try:
+            THREADS.run(lambda: self._work_off(work), lambda *_: None, f"graphflow-{getattr(fn, '__name__', 'thread')}")
+        except RuntimeError:
+            with self._order:
+                self._free += 1
+            raise
         return future
 
     def _work_off(self, work: Callable[[], object]) -> None:
@@ -155,9 +160,11 @@ class DaemonExecutor(ThreadPoolExecutor):
                 if not self._waiting:
                     self._free += 1
                     return
-                work = self._waiting.popleft()
+                _, work = self._waiting.popleft()
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Forget what has not begun."""
+        """Cancel what has not begun."""
         with self._order:
-            self._waiting.clear()
+            waiting, self._waiting = self._waiting, deque()
+        for future, _ in waiting:
+            future.cancel()

@@ -1,13 +1,14 @@
 """One viewer that is connected: what waits to be sent to it, within bounds.
 
-A viewer shows what is, so of what it reads too slowly the newest counts. Each channel has a short queue of its own, and
-small messages go before large ones. No more is sent than the viewer has been seen to read: what lies in the system's
-buffers can no longer be left out.
+A viewer shows what is, so of what it reads too slowly the newest counts. Each channel has a short queue of its own.
+Small messages go before large ones, and channels of large ones take turns. No more is sent than the viewer has been
+seen to read: what lies in the system's buffers can no longer be left out.
 """
 
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 from collections import deque
 from collections.abc import Awaitable, Callable
@@ -45,6 +46,9 @@ class Client:
         self._words: deque[str | bytes] = deque()
         self._waiting: dict[int, deque[bytes]] = {}
         """Messages by channel; never empty ones."""
+        self._turns = itertools.count(1)
+        self._sent_at: dict[int, int] = {}
+        """When each channel last had its turn."""
         self._words_bytes = self._sent = self._unread = 0
         """Bytes of words that wait; bytes of messages sent since it was asked; questions that are open."""
         self._is_new = asyncio.Event()
@@ -122,12 +126,18 @@ class Client:
             return
 
     def _next(self) -> bytes:
-        """The message to send: the oldest of the channel whose oldest is the smallest."""
-        channel = min(self._waiting, key=lambda channel: len(self._waiting[channel][0]))
+        """The message to send: a small one first, the smallest; of large ones, in turn by channel."""
+        channel = min(self._waiting, key=self._turn)
+        self._sent_at[channel] = next(self._turns)
         frame = self._waiting[channel].popleft()
         if not self._waiting[channel]:
             del self._waiting[channel]
         return frame
+
+    def _turn(self, channel: int) -> tuple[bool, int]:
+        size = len(self._waiting[channel][0])
+        is_large = size > CHANNEL_BOUND
+        return is_large, self._sent_at.get(channel, 0) if is_large else size
 
     async def _send(self, frame: bytes) -> None:
         await self._connection.send(frame)
@@ -147,6 +157,7 @@ class Client:
     def forget(self, channel: int) -> None:
         """Send no more of a channel."""
         self._waiting.pop(channel, None)
+        self._sent_at.pop(channel, None)
 
     def close(self) -> None:
         """End what is under way for it."""

@@ -109,6 +109,8 @@ class Decoder(Code):
         self.line("p = e")
 
     def unpacked(self, type_: FieldType, target: str, count: str) -> None:
+        """Numbers one by one: each takes many times the memory that it takes on the wire."""
+        self.limited(count)
         self.names["unpack_from"] = struct.unpack_from
         self.line(f"{target} = list(unpack_from(f'{self.order}{{{count}}}{self.format_of(type_.base)}', buf, p))")
 
@@ -117,6 +119,10 @@ class Decoder(Code):
 
         self.names["array_view"] = arrays.view
         return self.constant("D", arrays.DTYPES[type_.base].newbyteorder("<" if self.order == "<" else ">"))
+
+    def limited(self, count: str) -> None:
+        self.line(f"left[0] -= {count}")
+        self.line(f"if left[0] < 0: raise ValueError('its lists have more than {self.types.values:,} values')")
 
     def object_array(self, type_: FieldType, target: str) -> None:
         n, items = str(type_.size), self.fresh("l")
@@ -127,8 +133,7 @@ class Decoder(Code):
         element = type_._replace(array="")
         least = min_size(element, self.types.schema)
         self.line(f"if {n} * {least} > size - p: raise ValueError('a sequence claims more than the payload holds')")
-        self.line(f"left[0] -= {n} * {value_count(element, self.types.schema)}")
-        self.line(f"if left[0] < 0: raise ValueError('its lists have more than {self.types.values:,} values')")
+        self.limited(f"{n} * {value_count(element, self.types.schema)}")
         self.line(f"{items} = []")
         self.line(f"for _ in range({n}):")
         self.depth += 1

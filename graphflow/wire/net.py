@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import NamedTuple
 from urllib.parse import quote, unquote
@@ -51,6 +50,18 @@ def parse(text: str) -> NetToken | None:
 
 
 def _matches(pattern: str, name: str) -> bool:
-    parts = {"*": r"/[^/]+", "**": r"(?:/[^/]+)*"}
-    expression = "".join(parts.get(part, re.escape(f"/{part}")) for part in pattern.split("/")[1:])
-    return re.fullmatch(expression, name) is not None
+    """Whether a name is of a pattern. In time that grows with both lengths, since anybody may announce patterns."""
+    parts, names = pattern.split("/")[1:], name.split("/")[1:]
+    at = there = 0
+    star, begun = -1, 0  # the last `**`, and where in the name it ends so far: only there is it worth another try
+    while there < len(names):
+        if at < len(parts) and parts[at] == "**":
+            star, begun, at = at, there, at + 1
+        elif at < len(parts) and parts[at] in ("*", names[there]):
+            at, there = at + 1, there + 1
+        elif star >= 0:
+            begun += 1
+            at, there = star + 1, begun
+        else:
+            return False
+    return all(part == "**" for part in parts[at:])

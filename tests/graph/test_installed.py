@@ -140,3 +140,17 @@ def test_a_node_by_its_name(site: Path, tmp_path: Path, monkeypatch: pytest.Monk
     installed.installed.cache_clear()
     with pytest.raises(UsageFault, match="run one of my_robot blinker, other_robot blinker"):
         find_class("blinker", [])
+
+
+def test_of_two_installations_the_first_counts(site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it does for Python."""
+    other = tmp_path / "other/site-packages"
+    install(other, "my_robot")
+    (other / "my_robot-1.0.dist-info/entry_points.txt").write_text("[graphflow.nodes]\nold = my_robot.old:Old\n")
+    monkeypatch.syspath_prepend(str(other))
+    installed.installed.cache_clear()
+    assert installed.installed()["my_robot"].executables == ["old"]
+    monkeypatch.setattr(sys, "path", [*sys.path[1:], str(other)])
+    installed.installed.cache_clear()
+    assert "blinker" in installed.installed()["my_robot"].executables
+    installed.installed.cache_clear()

@@ -153,3 +153,26 @@ async def test_work_in_threads_is_limited(graph: Graph, caplog: pytest.LogCaptur
         assert "offload: wait waits, since 32 offloaded functions are running" in caplog.text
         gate.set()
     assert [work.result() for work in works] == [True] * len(works)
+
+
+async def test_work_that_nobody_waits_for_counts_as_long_as_it_runs(graph: Graph) -> None:
+    """The limit is one of threads, which a cancelled caller does not end."""
+    node, gate, inside = Talker(), threading.Event(), list[int]()
+    await graph.start(node)
+
+    def work() -> None:
+        inside.append(1)
+        gate.wait()
+
+    callers = [asyncio.create_task(node.offload(work)) for _ in range(OFFLOAD_LIMIT)]
+    while len(inside) < OFFLOAD_LIMIT:
+        await asyncio.sleep(0)
+    for caller in callers:
+        caller.cancel()
+    await asyncio.gather(*callers, return_exceptions=True)
+    late = asyncio.create_task(node.offload(work))
+    await settle()
+    assert len(inside) == OFFLOAD_LIMIT
+    gate.set()
+    await late
+    assert len(inside) == OFFLOAD_LIMIT + 1

@@ -89,6 +89,8 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "def work(self):\n    m = String()\n    m.data = 'x'",
         "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'",
         "def helper(self, pose): ...",
+        "def work(self, messages):\n    m = String()\n    for m in messages:\n        m.dat = 'x'",
+        "def work(self):\n    m = self.port.inbox.read()\n    m.dat = 'x'",
     ],
 )
 def test_what_is_no_slip(robot: object, body: str) -> None:
@@ -112,3 +114,35 @@ async def test_a_node_tells_them_when_it_starts(graph: Graph, robot: object, cap
     assert [record.levelname for record in caplog.records if "nothing calls Robot.on_pose" in record.message] == [
         "WARNING"
     ]
+
+
+def test_a_method_that_another_module_of_the_project_calls(robot: object, tmp_path: Path) -> None:
+    """As a child's does, or that of the program."""
+    cls = robot("def on_pose(self, message): ...")  # type: ignore[operator]
+    other = tmp_path / "slip_other.py"
+    other.write_text("def use(robot):\n    robot.on_pose(1)\n")
+    spec = importlib.util.spec_from_file_location("slip_other", other)
+    assert spec is not None
+    sys.modules["slip_other"] = importlib.util.module_from_spec(spec)
+    try:
+        assert slips(cls) == ()
+    finally:
+        del sys.modules["slip_other"]
+
+
+def test_nothing_of_the_users_runs(robot: object) -> None:
+    """Names are looked up without a property being asked."""
+    cls = robot(
+        "def work(self):\n    data = port.inbox.read()\n    data.x = 1\n"
+        "def heard(self, message: 'port.Type') -> None: ..."
+    )  # type: ignore[operator]
+
+    class Port:
+        @property
+        def inbox(self) -> object:
+            raise OSError("the port is not open")
+
+        Type = inbox
+
+    vars(sys.modules["slip_module"])["port"] = Port()
+    assert slips(cls) == ()

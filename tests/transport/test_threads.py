@@ -37,10 +37,10 @@ def test_work_is_never_queued() -> None:
     for _ in range(number):
         assert inside.acquire(timeout=10.0)
     gate.set()
-    for thread in threads:
-        thread.join(0.0 if thread.name == "graphflow-idle" else 1.0)
-    left = [thread for thread in threads if thread.is_alive()]
-    assert len(left) == IDLE_LIMIT
+    ended: list[threading.Thread] = []
+    while len(ended) < number - IDLE_LIMIT:
+        ended = [thread for thread in threads if not thread.is_alive()]
+    assert len(pool._idle) == IDLE_LIMIT
 
 
 @pytest.mark.parametrize("error", [ValueError("no"), SystemExit(3)])
@@ -131,7 +131,7 @@ def test_what_is_cancelled_while_it_waits_is_not_done() -> None:
     gate.set()
     assert all(future.result(10.0) for future in busy)
     assert done == []
-    assert not left.done()
+    assert left.cancelled()
 
 
 def test_the_end_of_a_loop_waits_for_no_thread() -> None:
@@ -146,3 +146,18 @@ def test_the_end_of_a_loop_waits_for_no_thread() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=30)
     assert (run.stdout, run.stderr) == ("done\n", "")
+
+
+def test_an_executor_without_threads_loses_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the system gives none, that is raised, and counts for nothing later."""
+    executor = DaemonExecutor()
+    with monkeypatch.context() as patch:
+        patch.setattr(ThreadPool, "run", refuse)
+        for _ in range(executor._max_workers):
+            with pytest.raises(RuntimeError, match="no more threads"):
+                executor.submit(int)
+    assert executor.submit(int).result(10.0) == 0
+
+
+def refuse(*_: object) -> None:
+    raise RuntimeError("no more threads")

@@ -114,3 +114,16 @@ async def test_work_that_fails(caplog: pytest.LogCaptureFixture) -> None:
     await asyncio.gather(*found._work)
     assert "no good" in str(found._words[0])
     assert "a request of a viewer has failed" in caplog.text
+
+
+async def test_large_messages_take_turns() -> None:
+    """The smaller of two large topics does not keep the other back for ever."""
+    slow, _ = made()
+    sent: list[int] = []
+    for _ in range(6):
+        for channel, size in ((1, 90_000), (2, 100_000)):
+            slow.show(channel, bytes([channel]) * size)
+        sent.append(slow._next()[0])
+    assert sent == [1, 2, 1, 2, 1, 2]
+    slow.show(3, b"\x03small")
+    assert slow._next()[0] == 3
