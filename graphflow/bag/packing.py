@@ -1,4 +1,4 @@
-"""What rosbag2 compresses itself, beside the chunks of MCAP: whole files, or each message.
+"""The compression of rosbag2 itself, beside that of MCAP chunks: of whole files, or of each message.
 
 Nothing is believed of how large it becomes: memory and disk are bounded while it is decompressed.
 

@@ -124,7 +124,7 @@ def _file(path: Path) -> File:
 
 
 def _loose(path: Path) -> Path:
-    """What a file is called when it is decompressed."""
+    """The name of a file once it is decompressed."""
     return path.with_suffix("") if path.suffix in SUFFIXES else path
 
 

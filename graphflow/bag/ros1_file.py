@@ -165,7 +165,7 @@ def _is_known(name: str) -> bool:
 
 
 def _name(there: str) -> str:
-    """What a type of a bag is called here."""
+    """The name here of a type in a bag."""
     package, _, short = _RENAMED.get(there, there).rpartition("/")
     return f"{package}/{short[:1].upper()}{short[1:].replace('_', '')}"
 

@@ -186,7 +186,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
 
 
 _DESCRIBING = b"def generate_launch_description", b"LaunchService"
-"""What a Python file has that describes a launch: a function that does, or the service that starts it."""
+"""Marks of a Python file that describes a launch: the function that returns it, or the service that starts it."""
 
 
 def is_launch_file(file: Path) -> bool:

@@ -77,7 +77,7 @@ def _named(what: str, root: Path, words: Sequence[str]) -> type[Node]:
 
 
 def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
-    """What to say where there is neither a node nor a package of that name."""
+    """The error text where there is neither a node nor a package of that name."""
     workspace = find_workspace(Path.cwd())
     packages = workspace.packages
     if what in packages and not packages[what].executables:

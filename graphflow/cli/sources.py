@@ -57,7 +57,7 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
 
 @dataclass
 class _Seen:
-    """What the source of nodes shows."""
+    """Findings in the source of nodes."""
 
     problems: list[Problem] = field(default_factory=list)
     ways: list[Finding] = field(default_factory=list)

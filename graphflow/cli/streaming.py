@@ -273,7 +273,7 @@ def _tell_loss(run: dict[str, Any], end: Callable[[], str]) -> int:
 
 
 def last_words(run: GraphRun) -> str:
-    """What the guardian has written of a supervisor's death; empty if it could not."""
+    """The report that the guardian has written of a supervisor's death; empty if it could not."""
     log = Path(run.logs) / SUPERVISOR_LOG
     try:
         lines = log.read_text(encoding="utf-8", errors="replace").splitlines()

@@ -1,4 +1,4 @@
-"""What the supervisors of the graphs here say of their nodes, for `graphflow doctor`: more than the network shows."""
+"""Node states from the supervisors of the graphs here, for `graphflow doctor`: more than the network shows."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _UNWELL = {
     "given_up": "has failed",
     "waiting": "has failed",
 }
-"""What is wrong, by the words of `ps`."""
+"""Faults, by the states of `ps`."""
 
 
 class Supervised(NamedTuple):
-    """What was found."""
+    """Faults and notes."""
 
     faults: list[str]
     unseen: list[str]
-    """What runs and cannot be seen on the network from here."""
+    """Nodes that run and cannot be seen on the network from here."""
 
 
 def supervised(seen: Collection[str]) -> Supervised:
-    """What is wrong by the word of supervisors.
+    """Faults that supervisors report.
 
     Args:
         seen: Nodes that the network shows.

@@ -23,7 +23,7 @@ HABITS = {
     "rosdep": "Python packages are installed by pip; packages of ROS 2's lie in the workspace, as source",
     "install": "nothing has to be installed for a package to run; graphflow ws shows the packages",
 }
-"""What a workspace of ROS 2 needs there and not here: the word, and what to say of it."""
+"""Commands that a ROS 2 workspace needs there and not here, each with the answer to it."""
 
 
 class Verbs(click.Group):

@@ -56,7 +56,7 @@ class Chains:
         return holders if waits and len(holders) >= limit else []
 
     def between(self, holders: list[Run], asked: bytes) -> tuple[list[int], int]:
-        """What a request has come through on its way from those that wait for it.
+        """The runs that a request has come through on its way from its first caller.
 
         Returns:
             The numbers of this process's runs on that way, and how many runs there are of other processes.

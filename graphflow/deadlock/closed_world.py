@@ -389,7 +389,7 @@ def method_of(task: Any) -> str:
 
 _PAUSING = {"sleep", "max", "min", "abs", "round", "float", "int"}
 _PAUSING |= {"time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns"}
-"""What a function may call that does nothing but let time pass."""
+"""Calls that a function may make which only lets time pass."""
 
 
 def only_pauses(frame: Frame) -> bool:

@@ -1,4 +1,4 @@
-"""What code has in its frames, copied while its owner is known to be there.
+"""Copies of frames, taken while the owner of their locals is known to be there.
 
 The locals of a generator's or coroutine's frame lie in the generator. CPython 3.13 reads freed memory when it is asked
 for them after the generator was closed (gh-125723), which another thread may do at any moment. So nothing keeps a frame
@@ -21,7 +21,7 @@ _OWNED = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATO
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """What a frame showed at one moment, under the names that CPython uses. Copies of one frame are equal."""
+    """A frame as it was at one moment, under the names that CPython uses. Copies of one frame are equal."""
 
     f_code: CodeType
     f_lineno: int

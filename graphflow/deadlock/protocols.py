@@ -82,7 +82,7 @@ class Elsewhere(Protocol):
         """What they are in, by node, as plain data. Called on any thread."""
 
     def stalls(self) -> list[str]:
-        """What keeps others waiting for long among them, as it was told. Called on any thread."""
+        """Reports of runs among them that keep others waiting for long. Called on any thread."""
 
 
 class Surroundings(Protocol):

@@ -29,7 +29,7 @@ class Problems(list[Problem]):
         self.remarks: list[Problem] = []
         """What was let pass."""
         self.left_out: list[Problem] = []
-        """What launch files start and nobody here has."""
+        """Programs that launch files start and nobody here has."""
 
     def add(self, place: Place, message: str) -> None:
         """Add a problem."""
@@ -140,7 +140,7 @@ def _is_model(kind: Any) -> bool:
 
 
 def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
-    """What to say of a key that is not known, and which was probably meant.
+    """The error text for an unknown key, with the key that was probably meant.
 
     Args:
         value: What is written under it.

@@ -20,7 +20,7 @@ _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
     "action": ("action client", "sends goals to"),
 }
 _NEEDS_ONE = ("subscription", "client", "action client")
-"""What does nothing without a counterpart; the others may well serve only what is outside the graph."""
+"""Endpoints that do nothing without a counterpart; the others may serve something outside of the graph."""
 _STEPS: Mapping[Deed, EndpointKind] = {"call": "client", "goal": "action client"}
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
 """Topics that tools and every node use."""

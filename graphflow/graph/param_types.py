@@ -40,7 +40,7 @@ def as_type(name: str, value: Any) -> Any:
 
 
 def from_yaml(text: str) -> Any:
-    """What a text reads as in YAML, where a parameter can have it: a mapping stays a text, and so does nothing."""
+    """The YAML value of a text, where a parameter can have it: a mapping stays a text, and so does nothing."""
     try:
         value = source.read(str(text), "value").data
     except GraphFileError:

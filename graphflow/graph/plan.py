@@ -164,7 +164,7 @@ class Plan:
     console: dict[str, Any] | None = None
     """The windows and panes that a console opens with, as `graph.console` reads them."""
     remarks: tuple[str, ...] = ()
-    """What is let pass, each with its place: what is odd in launch files of ROS's, and what lets others in."""
+    """Remarks, each with its place: oddities of ROS launch files, and settings that let others in."""
 
     def only(self, names: Iterable[str]) -> Plan:
         """The part of the graph that some nodes need: they, and what comes before them.

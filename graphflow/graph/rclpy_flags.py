@@ -1,4 +1,4 @@
-"""What loops of rclpy nodes poll, as their source shows: attributes, and which of the methods change them."""
+"""Attributes that loops of rclpy nodes poll, and the methods that change them, read from source."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Polled(NamedTuple):
     """A loop that only waits and looks again."""
 
     text: str
-    """What it waits for, as it is written: `while not self.there`."""
+    """The condition as it is written: `while not self.there`."""
     flags: frozenset[str]
     """The attributes that it looks at; empty where something else may end it."""
     gives_up: bool
@@ -26,7 +26,7 @@ class Polled(NamedTuple):
 
 
 class Changers(NamedTuple):
-    """What changes attributes."""
+    """Statements that change attributes."""
 
     methods: frozenset[str]
     """Callbacks, and what is called when an answer has come."""
@@ -35,7 +35,7 @@ class Changers(NamedTuple):
 
 
 def polled(loop: ast.While, methods: Methods) -> Polled | None:
-    """What a loop waits for that pauses in its body, or does nothing there; None for a loop that works."""
+    """The condition of a loop that pauses in its body, or does nothing there; None for a loop that works."""
     calls = [_last(node.func) for node in _inside(loop.body) if isinstance(node, ast.Call)]
     if {"sleep", "spin_once"}.isdisjoint(calls) and not all(isinstance(statement, ast.Pass) for statement in loop.body):
         return None

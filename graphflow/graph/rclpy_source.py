@@ -85,7 +85,7 @@ class _Wait(NamedTuple):
     spins: bool
     is_certain: bool
     polled: Polled | None = None
-    """What it looks at, if that is what a loop does."""
+    """The attributes that a loop only looks at."""
 
 
 @dataclass
@@ -226,7 +226,7 @@ class _Class:
                     yield _Wait(f"await {_word(awaited)}", node, name, False, False, is_sure)
 
     def _polls(self, loop: ast.While, rates: set[str]) -> Iterator[_Wait]:
-        """What a loop waits for that looks at attributes again and again."""
+        """The wait of a loop that looks at attributes again and again."""
         poll = polled(loop, self.methods)
         is_of_rate = any(
             isinstance(n, ast.Attribute) and n.attr == "sleep" and _word(n.value) in rates for n in ast.walk(loop)
@@ -402,7 +402,7 @@ def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
 
 
 def _made_by(tree: ast.AST, maker: str) -> set[str]:
-    """What a function makes, such as rates: names, and attributes with their `self.`."""
+    """Objects that a function makes, such as rates: names, and attributes with their `self.`."""
     found = set()
     for node in ast.walk(tree):
         match node:

@@ -312,7 +312,7 @@ def truth(value: Any) -> bool:
 
 
 def _is_true(text: str) -> bool:
-    """What a text stands for as a truth value of YAML, which may be `on` or `no`, too."""
+    """The truth value of a text in YAML, which may be `on` or `no`, too."""
     try:
         return bool(as_type("bool", text))
     except ValueError as error:

@@ -12,7 +12,7 @@ _NEEDED = 'to make it a package, write in it: <package format="3"><name>{name}</
 
 
 def why_no_package(name: str, workspace: Workspace) -> str | None:
-    """What there is of that name instead of a package, and what to do; None if there is nothing.
+    """The state of a folder of that name that is no package, with the next step; None if there is no such folder.
 
     Args:
         workspace: The one in which it was looked for.

@@ -34,7 +34,7 @@ Counts = Mapping[tuple[str, str], Mapping[str, float]]
 
 
 class Health(NamedTuple):
-    """What was found."""
+    """Faults and notes."""
 
     faults: list[str]
     hints: list[str]
@@ -209,7 +209,7 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
 
 
 def _nearest(cache: GraphCache, name: str, here: Kind, there: Kind) -> str:
-    """What is offered instead: the name most like one that nobody offers, else those that carry its type."""
+    """Names on offer instead of one that nobody offers: the most similar, else those of its type."""
     type_ = {e.type for e in cache.endpoints(here, name)}
     same = sorted(
         {e.name for e in cache.endpoints(there) if e.type in type_ and not is_hidden(e.name)} - {*_EVERYBODYS}

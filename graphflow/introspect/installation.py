@@ -1,4 +1,4 @@
-"""What is installed, from where, and what is wrong with it and with the environment: found without a graph."""
+"""The installation: versions, origin, and faults of it and of the environment, found without a graph."""
 
 from __future__ import annotations
 

@@ -234,7 +234,7 @@ def _member(activity: ActivityView, edge: Edge, graph: WaitGraph, beside: Sequen
 
 
 def _all_wanted(activity: ActivityView, edges: Sequence[Edge], graph: WaitGraph) -> str:
-    """What an activity waits for, of several things all or any."""
+    """The conditions that an activity waits for, all or any of them."""
     joint = " or " if isinstance(activity.wait, AnyOf) else " and "
     return joint.join(dict.fromkeys(wanted(edge, graph) for edge in edges))
 

@@ -144,7 +144,7 @@ def _each_of(ways: Iterable[Lacking]) -> Lacking:
 
 
 def _one_of(ways: Iterable[Lacking]) -> Lacking:
-    """What keeps all of several ways barred; empty if there is none, or one is open."""
+    """The reasons why all of several ways are barred; empty if there are none, or one is open."""
     things: list[str] = []
     for way in ways:
         if not way:

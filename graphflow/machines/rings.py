@@ -58,7 +58,7 @@ class Deadlock:
     is_partial: bool = False
     """Whether the failure of something alive, one of several things waited for, could still end the deadlock."""
     beside: Mapping[str, tuple[Edge, ...]] = field(default_factory=dict)
-    """What a member waits for as well, with the same `await`, and cannot get either: by member."""
+    """Further conditions of the same `await` that cannot come true either, by member."""
 
 
 def explained(graph: WaitGraph, dead: Iterable[str]) -> list[Deadlock]:

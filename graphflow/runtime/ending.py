@@ -94,7 +94,7 @@ def _stop_signals() -> Iterator[signal.Signals]:
 
 
 def _name(handler: Any) -> str:
-    """Who has set a handler: its function with its place, or what is known."""
+    """The function of a signal handler with its place, or as much as is known of it."""
     function = handler.__func__ if isinstance(handler, MethodType) else handler
     if isinstance(function, FunctionType):
         code = function.__code__
@@ -111,7 +111,7 @@ def _remind() -> None:
 
 
 def hindrances() -> Iterator[str]:
-    """What keeps this process from ending: lines of the user's code, by thread, and work in process pools."""
+    """The reasons why this process does not end: lines of the user's code, by thread, and work in process pools."""
     for thread in threading.enumerate():
         if thread.daemon or thread.ident is None:
             continue

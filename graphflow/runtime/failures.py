@@ -37,7 +37,7 @@ def report(log: logging.Logger, label: str, error: BaseException) -> None:
 
 
 def _with_line(label: str, error: DeadlockError) -> str:
-    """What a deadlock is, and where; the line of a handler that only passes the error on is not in it yet."""
+    """The text of a deadlock error, with the line of this handler, which only passes the error on."""
     head, newline, rest = str(error).partition("\n")
     place = PurePath(place_in(error)).name
     return f"{head}; {label} waited in {place}{newline}{rest}" if place and f"{place} " not in rest else str(error)

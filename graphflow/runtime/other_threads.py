@@ -1,4 +1,4 @@
-"""What threads that are not the event loop's may ask of a node: to call something there."""
+"""Requests of other threads to a node: to call something on its event loop."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                     raise self._not_sent(error) from None
 
     def _not_sent(self, error: Exception) -> Exception:
-        """What to raise for an error of the transport's: it is to be expected where another thread ends the node."""
+        """The error to raise for one of the transport's, which is to be expected where another thread ends the node."""
         return error if self.host.is_running else ClosedError(f"{self.name}: node {self.host.full_name} has ended")
 
     def assert_liveliness(self) -> None:

@@ -114,7 +114,7 @@ def _received(argument: ast.arg, space: dict[str, Any]) -> str:
 
 
 def _resolved(expression: ast.expr | None, space: dict[str, Any]) -> Any:
-    """What a name, or a name with dots, stands for in a module."""
+    """The value of a name, or of a name with dots, in a module."""
     match expression:
         case ast.Name(id=name):
             return space.get(name)

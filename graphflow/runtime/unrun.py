@@ -34,7 +34,7 @@ def _tell() -> None:
 
 
 def advice(file: Path, classes: list[str]) -> str:
-    """What to say of a file that has run to its end without a node; empty if it seems to have had other plans."""
+    """The remark on a file that has run to its end without a node; empty if it seems to have had other plans."""
     try:
         source = file.read_text(encoding="utf-8")
     except (OSError, ValueError):

@@ -339,7 +339,7 @@ _OF_PROCESSES = {
     "ros_arguments",
     "arguments",
 }
-"""What a container may be given that counts only at its nodes here."""
+"""Attributes of containers that count only at their nodes here."""
 
 
 def _components(said: Said) -> list[dict[str, Any]]:

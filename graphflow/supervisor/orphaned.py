@@ -21,7 +21,7 @@ from graphflow.supervisor import family
 from graphflow.supervisor.guardian import GRACE
 
 LOG_VARIABLE = "GRAPHFLOW_LOG"
-"""What the programs that a worker starts inherit: the file that its output goes to, which no other process has."""
+"""The variable that programs of a worker inherit: the file of its output, which no other process has."""
 
 
 class Orphan:

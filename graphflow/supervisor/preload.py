@@ -130,7 +130,7 @@ class _Preload:
             self._reap()
 
     def _hear(self, how: int = 0) -> bytes:
-        """What the supervisor sends; does not return when it has ended."""
+        """The next line of the supervisor; does not return when it has ended."""
         try:
             data = self._channel.recv(65536, how)
         except ConnectionError:  # it was killed, and had not read all answers

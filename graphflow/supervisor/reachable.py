@@ -1,4 +1,4 @@
-"""What verbs need to find a graph that runs: made again when it is taken away."""
+"""The run file and the control socket, by which verbs find a running graph: made again when they are removed."""
 
 from __future__ import annotations
 

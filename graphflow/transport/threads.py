@@ -116,7 +116,7 @@ THREADS = ThreadPool()
 
 
 class DaemonExecutor(ThreadPoolExecutor):
-    """What `asyncio.to_thread` and `run_in_executor(None, ...)` use: asyncio's limit, but on threads of this module.
+    """The executor of `asyncio.to_thread` and `run_in_executor(None, ...)`: asyncio's limit, on threads of this module.
 
     The end of the loop does not wait for functions that still run, nor does that of the interpreter.
     """

@@ -41,7 +41,7 @@ _PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
     **dict.fromkeys(("topic", "srv_name", "action_name"), ("a name", lambda value: isinstance(value, str))),
     **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
 }
-"""What the parameters of calls take, by their names."""
+"""The kinds of values that calls take, by parameter."""
 
 
 def explained(call: Callable[P, T]) -> Callable[P, T]:
@@ -72,7 +72,7 @@ def explained(call: Callable[P, T]) -> Callable[P, T]:
 
 
 def _fault(name: str, given: Mapping[str, Any], needed: list[str]) -> str:
-    """What is wrong with the arguments of a call; empty if they are of the right kinds."""
+    """The fault in the arguments of a call; empty if they are of the right kinds."""
     for words in combinations(needed, len(given)) if len(given) < len(needed) else ():
         if all(map(_fits, words, given.values())):
             values = dict(zip(words, map(_shown, given.values()), strict=True))

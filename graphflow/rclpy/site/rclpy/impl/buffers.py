@@ -17,7 +17,7 @@ class BufferWait(NamedTuple):
 
     buffer: Any
     what: str
-    """What is waited for, in words."""
+    """The awaited thing, in words."""
     timeout: float
     """Seconds until it gives up, from when it began."""
     fillers: tuple[str, ...]
@@ -50,7 +50,7 @@ def know_buffer(wait: Callable[..., Any], *fillers: str) -> None:
 
 
 def buffer_wait(frame: Frame, caller: Frame | None) -> BufferWait | None:
-    """What such a method waits for, if this is the frame of one, and that of its caller."""
+    """The wait of such a method, if this is the frame of one, and that of its caller."""
     fillers = _WAITS.get(frame.f_code)
     if fillers is None or caller is None:
         return None

@@ -42,7 +42,7 @@ logger = logging.getLogger("graphflow")
 class _Told(NamedTuple):
     text: str
     is_over: str
-    """What is said when it is over, before the seconds that it took."""
+    """The words for its end, before the seconds that it took."""
 
 
 class HeldUp:
@@ -64,7 +64,7 @@ class HeldUp:
 
     @property
     def texts(self) -> list[str]:
-        """What was told and lasts."""
+        """Reports that still hold."""
         return [told.text for told in list(self._told.values())]
 
     def look(self) -> None:
@@ -171,7 +171,7 @@ def _is_ready(entity: Any) -> bool:
 
 
 def _called(entity: Any) -> str:
-    """What an entity is called; empty for graphflow's own."""
+    """The name of an entity; empty for graphflow's own."""
     role = role_of(entity)
     if isinstance(entity, (Client, ActionClient)):
         return f"the answer of {role.handler}"

@@ -14,13 +14,13 @@ from graphflow.deadlock.source import Unknown, source_of
 from graphflow.deadlock.syntax import FunctionNode, first_line, syntax_of
 
 _MAKERS = {"create_service": 1, "ActionServer": 2}
-"""What makes servers, and where their names are among its arguments."""
+"""Calls that make servers, and the position of the name among their arguments."""
 _NAMES = {"srv_name", "action_name"}
 _ACTION = "/_action/"
 
 
 class Opening(NamedTuple):
-    """What brings about a server that is waited for."""
+    """The code that makes an awaited server."""
 
     handlers: frozenset[str]
     """Methods that are called as callbacks."""
@@ -60,7 +60,7 @@ class _Offer(NamedTuple):
 def opening_of(
     service: str, frames: list[Frame], node: Subject, others: Iterable[Any], files: Iterable[str]
 ) -> Opening | None:
-    """What makes the server of a service for which code waits; None where that is not known.
+    """The code that makes the server for which other code waits; None where that is not known.
 
     Args:
         frames: Those of the code that waits, the outermost first.

@@ -467,7 +467,7 @@ class _Look:
         return replace(condition, activities=(*condition.activities, mine))
 
     def _world(self, node: Any) -> tuple[list[tuple[Any, str]], list[Run], Any]:
-        """What a node's callbacks are, by entity; the tasks that run methods of it; and it as a subject."""
+        """A node's callbacks by entity, the tasks that run methods of it, and the node as a subject."""
         own = [(entity, role.handler) for entity, role in self._roles.items() if self._owners[entity] is node]
         own += [(entity, name) for entity in self._owners for name in after_answers(entity, node)]
         tasks = [task for task in self._runs if getattr(task.called, "__self__", None) is node]
