@@ -75,12 +75,12 @@ def with_graphflow(folder: Path, said: list[Record]) -> None:
             writer.add(record)
 
 
-def with_mcap(folder: Path, said: list[Record]) -> None:
+def with_mcap(folder: Path, said: list[Record], compression: str = "none") -> None:
     from mcap.writer import CompressionType
 
     folder.mkdir()
     with (folder / "a.mcap").open("wb") as stream:
-        writer: Any = Writer(stream, compression=CompressionType.NONE)
+        writer: Any = Writer(stream, compression=CompressionType[compression.upper()])
         writer.start("ros2")
         schema = writer.register_schema(TYPE, "ros2msg", TOPIC.definition.encode())
         channel = writer.register_channel("/data", "cdr", schema)

@@ -16,7 +16,7 @@ from dataclasses import replace
 from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import asked
-from graphflow.bag.writer import FLUSH_EVERY, BagWriter
+from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
 from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime import raw
@@ -28,6 +28,8 @@ logger = logging.getLogger("graphflow")
 
 CACHE = 100 << 20
 """Bytes that may wait to be written."""
+WRITE_EVERY = 0.05
+"""Seconds that a message may wait for others to be written with it: the thread that writes is not woken for each."""
 LOOK_EVERY = 0.1
 """Seconds between two looks for new topics."""
 HEARD = replace(BEST_AVAILABLE, depth=1000)
@@ -282,9 +284,10 @@ class Recorder:
                 self.dropped += 1
                 return
             self._queue.append(record)
+            was_low = self._waiting < self._cache // 4
             self._waiting += size
             self.recorded += 1
-            if len(self._queue) == 1:
+            if was_low and self._waiting >= self._cache // 4:
                 self._work.notify()
 
     # the thread
@@ -308,8 +311,8 @@ class Recorder:
     def _write_some(self) -> bool:
         """Write what waits; False when that was the last."""
         with self._work:
-            if not (self._queue and not self._is_snapshot) and not self._is_ending:
-                self._work.wait(FLUSH_EVERY)
+            if not self._is_ending:
+                self._work.wait(WRITE_EVERY)
             is_ending, split_after = self._is_ending, self._split_after
             topics, self._new = self._new, []
             batch: list[Record] = []

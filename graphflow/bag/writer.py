@@ -14,11 +14,12 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import IO, Any, Self, cast
+from typing import Self
 
 from graphflow import __version__
 from graphflow.bag import metadata
 from graphflow.bag.contents import Contents, Record, Topic, together
+from graphflow.bag.mcap_writer import McapWriter
 from graphflow.bag.metadata import FileContents
 from graphflow.errors import BagError
 
@@ -49,7 +50,7 @@ class _Stream:
     def _put(self, data: memoryview) -> int:
         return self._file.write(data)
 
-    def write(self, data: bytes) -> int:
+    def write(self, data: bytes | memoryview) -> int:
         left = memoryview(data)
         try:
             while left:
@@ -85,16 +86,11 @@ class _Part:
     """One file as it is being written."""
 
     def __init__(self, path: Path, compression: str, make_room: Callable[[], bool]) -> None:
-        from mcap.writer import CompressionType, Writer
-
         self.path = path
         self._file = _Stream(path, make_room)
-        self._writer: Any = Writer(
-            cast(IO[bytes], self._file),
-            CHUNK_SIZE,
-            CompressionType[compression.upper()] if compression else CompressionType.NONE,
+        self._writer = McapWriter(
+            self._file, f"graphflow {__version__}", chunk_size=CHUNK_SIZE, compression=compression
         )
-        self._writer.start("ros2", f"graphflow {__version__}")
         self._schemas: dict[tuple[str, str], int] = {}
         self._channels: dict[str, int] = {}
         self.topics: dict[str, Topic] = {}
@@ -147,6 +143,7 @@ class _Part:
         self._file.sync()
 
     def finish(self, said: str) -> None:
+        self._writer.flush()
         self._writer.add_metadata("rosbag2", {"serialized_metadata": said})
         self._writer.finish()
         self._file.sync()
