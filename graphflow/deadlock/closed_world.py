@@ -288,6 +288,9 @@ class Question:
                 if use.syntax in inside or use.method in below:
                     raise Unknown
                 changing.add(use.method)
+        for owner, names in conditions.held.items():
+            changing |= self._changing_held(owner, names, loop, below)
+            attributes |= {f"{owner}.{name}" for name in names}
         what = " and ".join([*(f"self.{name}" for name in sorted(attributes)), *sorted(conditions.names)])
         if conditions.tasks and not changing - beginnings_of(self._node):
             return Setters(what, frozenset(), tasks=tuple(conditions.tasks), pause=_pause(loop, place.frame))
@@ -295,6 +298,15 @@ class Question:
         module = place.frame.f_globals["__name__"] if conditions.names else ""
         tasks, pause = tuple(conditions.tasks), _pause(loop, place.frame)
         return found and found._replace(tasks=tasks, module=module, pause=pause)
+
+    def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
+        """The methods that change attributes of an object that is held, and that a loop polls.
+
+        Args:
+            names: The attributes of the object.
+            below: The methods that the loop calls, and those that they call.
+        """
+        raise Unknown
 
     def _changes(self, name: str) -> Iterator[Use]:
         """The uses of an attribute that may change it."""

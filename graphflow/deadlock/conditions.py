@@ -23,9 +23,9 @@ from typing import Any, NamedTuple
 from graphflow.deadlock.asyncio_frames import FUTURE
 from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.fresh import messages
-from graphflow.deadlock.source import ClassSource, Unknown
+from graphflow.deadlock.source import ClassSource, Unknown, source_of
 from graphflow.deadlock.syntax import FunctionNode, walk
-from graphflow.deadlock.user_code import is_users_module
+from graphflow.deadlock.user_code import is_users_module, is_users_object
 from graphflow.deadlock.uses import looks
 from graphflow.executor.ledger import PendingGoal
 
@@ -121,16 +121,160 @@ class _Scope(NamedTuple):
         )
 
 
-class LoopConditions:
-    """Which attributes of the node decide whether a loop ends."""
+_NOTHING = _Scope({}, frozenset(), {}, set())
+"""A place that knows no names."""
 
-    def __init__(self, loop: Loop, function: FunctionNode, frame: Frame, source: ClassSource, node: object) -> None:
-        self._loop, self._source, self._node = loop, source, node
+
+class Conditions:
+    """Which attributes of an object decide what expressions in its methods come to."""
+
+    def __init__(self, source: ClassSource, instance: object) -> None:
+        self._source, self._instance = source, instance
         self._found: set[str] = set()
         self.names: set[str] = set()
         """Names of the module that decide it, too, by values that can change."""
         self.tasks: list[asyncio.Future[Any]] = []
         """Things that decide it and that end by themselves."""
+
+    def _read(self, node: ast.AST, scope: _Scope, seen: frozenset[str] = frozenset()) -> None:
+        """Note the attributes that an expression is made of; `seen` are the names and methods that are being read."""
+        if scope.is_constant(node):
+            return
+        if isinstance(node, ast.Attribute) and (held := self._of_held(node)) is not None:
+            conditions, part = held
+            conditions._read(part, _NOTHING)
+            return
+        match node:
+            case ast.Constant():
+                return
+            case (
+                ast.BoolOp() | ast.UnaryOp() | ast.BinOp() | ast.Compare() | ast.IfExp() | ast.Tuple() | ast.List()
+                | ast.Set() | ast.Dict() | ast.JoinedStr() | ast.FormattedValue() | ast.Subscript() | ast.Slice()
+                | ast.Starred()
+            ):  # fmt: skip
+                for child in ast.iter_child_nodes(node):
+                    if isinstance(child, ast.expr):
+                        self._read(child, scope, seen)
+            case ast.NamedExpr(value=value):
+                self._read(value, scope, seen)
+            case ast.GeneratorExp(elt=element, generators=loops) | ast.ListComp(elt=element, generators=loops):
+                self._comprehension(element, loops, scope, seen)
+            case ast.Attribute(value=ast.Name(id="self"), attr=name):
+                self._attribute(name, seen)
+            case ast.Attribute(value=ast.Name(id=name), attr="done") if scope.tasks.get(name):
+                self.tasks += scope.tasks[name]
+            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr="done") if isinstance(
+                goal := getattr(self._instance, name, None), PendingGoal
+            ):
+                self._found.add(name)
+                self.tasks.append(goal.ended)
+            case ast.Attribute(value=ast.Name(), attr="request" | "is_cancel_requested"):
+                return  # a goal's: cancelling it ends any wait
+            case ast.Attribute(value=value):
+                self._read(value, scope, seen)
+            case ast.Call(func=function, args=arguments, keywords=[]):
+                for argument in arguments:
+                    self._read(argument, scope, seen)
+                self._call(function, scope, seen)
+            case ast.Name(id=name) if scope.locals.get(name) is not None and name not in seen:
+                for bound in scope.locals[name]:
+                    if bound is None:
+                        raise Unknown
+                    self._read(bound, scope, seen | {name})
+            case ast.Name(id=name) if scope.is_of_module(name):
+                self.names.add(name)
+            case _:
+                raise Unknown
+
+    def _comprehension(
+        self, element: ast.expr, loops: list[ast.comprehension], scope: _Scope, seen: frozenset[str]
+    ) -> None:
+        for loop in loops:
+            bound = {node.id for node in ast.walk(loop.target) if isinstance(node, ast.Name)}
+            match loop:
+                case ast.comprehension(target=ast.Name(id=each), iter=ast.Name(id=name)) if scope.tasks.get(name):
+                    scope = scope._replace(tasks={**scope.tasks, each: scope.tasks[name]})
+                    continue
+            self._read(loop.iter, scope, seen)
+            scope = scope._replace(constants=scope.constants | bound)
+            for test in loop.ifs:
+                self._read(test, scope, seen)
+        self._read(element, scope, seen)
+
+    def _call(self, function: ast.expr, scope: _Scope, seen: frozenset[str]) -> None:
+        """What the result of a call depends on besides its arguments."""
+        if isinstance(function, ast.Attribute) and (held := self._of_held(function)) is not None:
+            conditions, part = held
+            conditions._call(part, _NOTHING, frozenset())
+            return
+        match function:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name) if name in self._source.methods:
+                self._returned(name, seen)
+            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=asked) if (
+                asked in QUESTIONS and isinstance(getattr(self._instance, name, None), tuple(TOOLS))
+            ):
+                self._found.add(name)
+                if isinstance(task := getattr(self._instance, name), asyncio.Task):
+                    self.tasks.append(task)
+            case ast.Attribute(value=ast.Name(id=name), attr=asked) if asked in QUESTIONS and scope.tasks.get(name):
+                self.tasks += scope.tasks[name]
+            case ast.Attribute(value=value, attr=name) if name in LOOKING and not scope.is_mathematics(function):
+                self._read(value, scope, seen)
+            case _:
+                if not (scope.is_mathematics(function) or scope.asks_for_the_end(function)):
+                    raise Unknown
+
+    def _attribute(self, name: str, seen: frozenset[str]) -> None:
+        owner = next((c for c in type(self._instance).__mro__ if name in vars(c)), None)
+        declared = None if owner is None else vars(owner)[name]
+        if name == "is_running" and owner is not None and not is_users_module(owner.__module__):
+            return  # the end of the node ends any wait
+        if isinstance(declared, property):
+            self._returned(name, seen)
+            return
+        value = getattr(self._instance, name, self)
+        if hasattr(declared, "__get__") or not (_is_plain(value) or _holds_plain(value)):
+            raise Unknown
+        self._found.add(name)
+
+    def _of_held(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
+        """What decides of an object that this one holds, and an expression as that object's methods would have it."""
+        return None
+
+    def _returned(self, name: str, seen: frozenset[str]) -> None:
+        """What a method or property returns, if it only looks and computes; its arguments have been read."""
+        functions = self._source.methods.get(name, [])
+        if len(functions) != 1 or name in seen or isinstance(functions[0], ast.AsyncFunctionDef):
+            raise Unknown
+        [function] = functions
+        arguments = frozenset(a.arg for a in [*function.args.args, *function.args.kwonlyargs]) - {"self"}
+        bound = {name: [value for _, value in pairs] for name, pairs in _bindings(function).items()}
+        if arguments & set(bound):
+            raise Unknown
+        scope = _Scope(bound, arguments, _globals_of(type(self._instance), name), self._source.rebound)
+        todo: list[ast.stmt] = list(function.body)
+        while todo:
+            match todo.pop():
+                case ast.Return(value=ast.expr() as value):
+                    self._read(value, scope, seen | {name})
+                case ast.If(test=test, body=body, orelse=orelse):
+                    self._read(test, scope, seen | {name})
+                    todo += [*body, *orelse]
+                case ast.Assign(targets=targets) if all(isinstance(t, (ast.Name, ast.Tuple)) for t in targets):
+                    pass  # it is read where it is used
+                case ast.AnnAssign(target=ast.Name()) | ast.Expr(value=ast.Constant()) | ast.Pass():
+                    pass
+                case _:
+                    raise Unknown
+
+
+class LoopConditions(Conditions):
+    """Which attributes of the node decide whether a loop ends."""
+
+    def __init__(self, loop: Loop, function: FunctionNode, frame: Frame, source: ClassSource, node: object) -> None:
+        super().__init__(source, node)
+        self._loop = loop
+        self._held: dict[str, Conditions] = {}
         inside = set(ast.walk(loop))
         code, values = frame.f_code, frame.f_locals
         bound = _bindings(function)
@@ -191,124 +335,30 @@ class LoopConditions:
                     self._read(guard, self._scope)
         return self._found
 
-    def _read(self, node: ast.AST, scope: _Scope, seen: frozenset[str] = frozenset()) -> None:
-        """Note the attributes that an expression is made of; `seen` are the names and methods that are being read."""
-        if scope.is_constant(node):
-            return
-        match node:
-            case ast.Constant():
-                return
-            case (
-                ast.BoolOp() | ast.UnaryOp() | ast.BinOp() | ast.Compare() | ast.IfExp() | ast.Tuple() | ast.List()
-                | ast.Set() | ast.Dict() | ast.JoinedStr() | ast.FormattedValue() | ast.Subscript() | ast.Slice()
-                | ast.Starred()
-            ):  # fmt: skip
-                for child in ast.iter_child_nodes(node):
-                    if isinstance(child, ast.expr):
-                        self._read(child, scope, seen)
-            case ast.NamedExpr(value=value):
-                self._read(value, scope, seen)
-            case ast.GeneratorExp(elt=element, generators=loops) | ast.ListComp(elt=element, generators=loops):
-                self._comprehension(element, loops, scope, seen)
-            case ast.Attribute(value=ast.Name(id="self"), attr=name):
-                self._attribute(name, seen)
-            case ast.Attribute(value=ast.Name(id=name), attr="done") if scope.tasks.get(name):
-                self.tasks += scope.tasks[name]
-            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr="done") if isinstance(
-                goal := getattr(self._node, name, None), PendingGoal
-            ):
-                self._found.add(name)
-                self.tasks.append(goal.ended)
-            case ast.Attribute(value=ast.Name(), attr="request" | "is_cancel_requested"):
-                return  # a goal's: cancelling it ends any wait
-            case ast.Attribute(value=value):
-                self._read(value, scope, seen)
-            case ast.Call(func=function, args=arguments, keywords=[]):
-                for argument in arguments:
-                    self._read(argument, scope, seen)
-                self._call(function, scope, seen)
-            case ast.Name(id=name) if scope.locals.get(name) is not None and name not in seen:
-                for bound in scope.locals[name]:
-                    if bound is None:
-                        raise Unknown
-                    self._read(bound, scope, seen | {name})
-            case ast.Name(id=name) if scope.is_of_module(name):
-                self.names.add(name)
-            case _:
-                raise Unknown
+    @property
+    def held(self) -> dict[str, set[str]]:
+        """By the attributes that hold them, the objects that decide it, too, and their attributes that do."""
+        return {owner: conditions._found for owner, conditions in self._held.items()}
 
-    def _comprehension(
-        self, element: ast.expr, loops: list[ast.comprehension], scope: _Scope, seen: frozenset[str]
-    ) -> None:
-        for loop in loops:
-            bound = {node.id for node in ast.walk(loop.target) if isinstance(node, ast.Name)}
-            match loop:
-                case ast.comprehension(target=ast.Name(id=each), iter=ast.Name(id=name)) if scope.tasks.get(name):
-                    scope = scope._replace(tasks={**scope.tasks, each: scope.tasks[name]})
-                    continue
-            self._read(loop.iter, scope, seen)
-            scope = scope._replace(constants=scope.constants | bound)
-            for test in loop.ifs:
-                self._read(test, scope, seen)
-        self._read(element, scope, seen)
+    def _of_held(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
+        owner, *path = _path(node) or [""]
+        held = getattr(self._instance, "__dict__", {}).get(owner)
+        if not path or _is_plain(held) or _holds_plain(held) or isinstance(held, (PendingGoal, *TOOLS)):
+            return None
+        if not is_users_object(held):
+            return None
+        conditions = self._held.setdefault(owner, Conditions(source_of(held), held))
+        conditions.tasks = self.tasks
+        return conditions, ast.parse(".".join(["self", *path]), mode="eval").body
 
-    def _call(self, function: ast.expr, scope: _Scope, seen: frozenset[str]) -> None:
-        """What the result of a call depends on besides its arguments."""
-        match function:
-            case ast.Attribute(value=ast.Name(id="self"), attr=name) if name in self._source.methods:
-                self._returned(name, seen)
-            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=asked) if (
-                asked in QUESTIONS and isinstance(getattr(self._node, name, None), tuple(TOOLS))
-            ):
-                self._found.add(name)
-                if isinstance(task := getattr(self._node, name), asyncio.Task):
-                    self.tasks.append(task)
-            case ast.Attribute(value=ast.Name(id=name), attr=asked) if asked in QUESTIONS and scope.tasks.get(name):
-                self.tasks += scope.tasks[name]
-            case ast.Attribute(value=value, attr=name) if name in LOOKING and not scope.is_mathematics(function):
-                self._read(value, scope, seen)
-            case _:
-                if not (scope.is_mathematics(function) or scope.asks_for_the_end(function)):
-                    raise Unknown
 
-    def _attribute(self, name: str, seen: frozenset[str]) -> None:
-        owner = next((c for c in type(self._node).__mro__ if name in vars(c)), None)
-        declared = None if owner is None else vars(owner)[name]
-        if name == "is_running" and owner is not None and not is_users_module(owner.__module__):
-            return  # the end of the node ends any wait
-        if isinstance(declared, property):
-            self._returned(name, seen)
-            return
-        value = getattr(self._node, name, self)
-        if hasattr(declared, "__get__") or not (_is_plain(value) or _holds_plain(value)):
-            raise Unknown
-        self._found.add(name)
-
-    def _returned(self, name: str, seen: frozenset[str]) -> None:
-        """What a method or property returns, if it only looks and computes; its arguments have been read."""
-        functions = self._source.methods.get(name, [])
-        if len(functions) != 1 or name in seen or isinstance(functions[0], ast.AsyncFunctionDef):
-            raise Unknown
-        [function] = functions
-        arguments = frozenset(a.arg for a in [*function.args.args, *function.args.kwonlyargs]) - {"self"}
-        bound = {name: [value for _, value in pairs] for name, pairs in _bindings(function).items()}
-        if arguments & set(bound):
-            raise Unknown
-        scope = _Scope(bound, arguments, _globals_of(type(self._node), name), self._source.rebound)
-        todo: list[ast.stmt] = list(function.body)
-        while todo:
-            match todo.pop():
-                case ast.Return(value=ast.expr() as value):
-                    self._read(value, scope, seen | {name})
-                case ast.If(test=test, body=body, orelse=orelse):
-                    self._read(test, scope, seen | {name})
-                    todo += [*body, *orelse]
-                case ast.Assign(targets=targets) if all(isinstance(t, (ast.Name, ast.Tuple)) for t in targets):
-                    pass  # it is read where it is used
-                case ast.AnnAssign(target=ast.Name()) | ast.Expr(value=ast.Constant()) | ast.Pass():
-                    pass
-                case _:
-                    raise Unknown
+def _path(node: ast.expr) -> list[str]:
+    """The attributes by which an expression leads on from `self`; none where it is anything else."""
+    path: list[str] = []
+    while isinstance(node, ast.Attribute):
+        path.append(node.attr)
+        node = node.value
+    return path[::-1] if isinstance(node, ast.Name) and node.id == "self" else []
 
 
 def _globals_of(cls: type, name: str) -> dict[str, Any]:

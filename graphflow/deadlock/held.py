@@ -11,12 +11,15 @@ from typing import Any
 
 from graphflow.deadlock.asyncio_frames import is_inside, object_wait
 from graphflow.deadlock.closed_world import BEGINNINGS, Question, Setters, handlers_above, is_library, only_pauses
+from graphflow.deadlock.conditions import TOOLS, Loop
 from graphflow.deadlock.frames import Frame
 from graphflow.deadlock.protocols import Subject
 from graphflow.deadlock.source import ClassSource, Unknown, source_of
-from graphflow.deadlock.user_code import is_users, is_users_object
+from graphflow.deadlock.user_code import is_users, is_users_module, is_users_object
 from graphflow.deadlock.uses import Use
 
+_HARMLESS = ("builtins", "typing", "abc")
+"""Modules that are not the user's and whose classes call no methods of those that inherit from them."""
 _MADE_BY = {"__init__", "__post_init__"}
 """Methods that make an object."""
 
@@ -55,13 +58,23 @@ def _question(frames: list[Frame], node: Subject) -> Question:
     for name, value in vars(node.instance).items() if things else ():  # a dataclass of the node's with an event in it
         if is_users_object(value) and any(is_inside(part, t) for part in vars(value).values() for t in things):
             return HeldQuestion(frames, node, name, value)
-    return Question(frames, node)
+    return NodeQuestion(frames, node)
+
+
+class NodeQuestion(Question):
+    """What ends a wait in a method of the node, which may poll objects that it holds."""
+
+    def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
+        held = HeldQuestion([], self._node, owner, getattr(self._instance, owner))
+        return held.changing(names, loop, below)
 
 
 class HeldQuestion(Question):
     """What ends a wait in an object that the node holds in one attribute, made by the node, and given to nobody."""
 
     def __init__(self, frames: list[Frame], node: Subject, owner: str, held: object) -> None:
+        if not all(is_users_module(cls.__module__) or cls.__module__ in _HARMLESS for cls in type(held).__mro__):
+            raise Unknown  # the class that it inherits from may call its methods, as that of a node calls handlers
         self.owner = owner
         super().__init__(frames, node, held)
         self._looked: set[str] = set()
@@ -75,8 +88,30 @@ class HeldQuestion(Question):
         self._looked.add(name)
         return super()._changes(name)
 
+    def changing(self, names: set[str], loop: Loop, below: set[str]) -> set[str]:
+        """The methods of the node that change attributes of the object, which a loop of the node's polls.
+
+        Args:
+            names: The attributes.
+            below: The methods of the node that the loop calls, and those that they call.
+
+        Raises:
+            Unknown: Something else does, or the loop itself.
+        """
+        source, inside = source_of(self._node.instance), set(ast.walk(loop))
+        own = [use for use in source.uses(self.owner) if use.syntax in inside or use.method in below]
+        run = {name for use in own if use.name in self._source.methods for name in self._source.below(use.name)}
+        changing = {use.method for name in names for use in self._changes(name)}
+        is_own = any(use.kind == "changed" and use.name in names and self._ends(use, source) for use in own)
+        if is_own or changing & run or self._source.may_fail(loop, run):
+            raise Unknown
+        return self._ending(changing)
+
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
-        """The node's handlers that end the wait: by the object's methods, or in the object itself."""
+        return handlers_above(what.replace("self.", f"self.{self.owner}."), self._ending(methods), self._node)
+
+    def _ending(self, methods: Iterable[str]) -> set[str]:
+        """The methods of the node that end the wait: by the object's methods, or in the object itself."""
         known = set(self._source.methods)
         ending = self._source.above(set(methods) - _MADE_BY, known, self.owner)
         source, found = source_of(self._node.instance), set[str]()
@@ -94,9 +129,11 @@ class HeldQuestion(Question):
                     raise Unknown
                 if use.kind == "changed" and self._ends(use, source):
                     found.add(use.method)
+            if use.kind == "part" and use.name in ending:  # a method that is handed on, or a property
+                raise Unknown
             if use.kind == "called" and use.name in ending:
                 found.add(use.method)
-        return handlers_above(what.replace("self.", f"self.{self.owner}."), found, self._node)
+        return found
 
     def _ended(self, name: str, thing: Any, methods: tuple[str, ...]) -> Setters | None:
         self._endings = methods
@@ -107,4 +144,6 @@ class HeldQuestion(Question):
         nodes = [n for function in source.methods.get(use.method, []) for n in ast.walk(function)]
         parts = {n for n in nodes if isinstance(n, ast.Attribute) and n.value is use.syntax}
         called = {n.attr for n in nodes if isinstance(n, ast.Attribute) and n.value in parts}
-        return not (self._endings and called) or bool(called & {*self._endings})
+        value = getattr(self._instance, use.name, None)
+        endings = self._endings or next((methods for tool, methods in TOOLS.items() if isinstance(value, tool)), ())
+        return not (endings and called) or bool(called & {*endings})

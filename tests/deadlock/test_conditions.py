@@ -47,6 +47,21 @@ def own_function(a): return time.time() < a
 async def pause():
     await asyncio.get_running_loop().create_future()
 
+class Navigator:
+    has_arrived = False
+
+    def __init__(self):
+        self.pose = Pose()
+        self.legs = [1.0]
+        self.lifted = threading.Event()
+        self.next = self
+
+    @property
+    def nearly(self): return self.is_near(LIMIT)
+    def is_near(self, distance): return abs(self.pose.x) < distance
+    def is_done(self): return self.has_arrived
+    def draws(self): return random.random() > 0.5
+
 class N:
     there = False
     level: int = 3
@@ -63,6 +78,7 @@ class N:
         self.words = asyncio.Queue()
         self.lifted = threading.Event()
         self.thing = object()
+        self.nav = Navigator()
         self.goal = Goal()
         self.task = asyncio.get_running_loop().create_task(pause())
 
@@ -123,7 +139,9 @@ async def read(written: Written, body: str) -> tuple[set[str], int]:
     loop = next(n for n in ast.walk(function.syntax) if isinstance(n, (ast.While, ast.For, ast.AsyncFor)))
     conditions = LoopConditions(loop, function.syntax, frame, source, node)
     try:
-        return conditions.attributes(), len(conditions.tasks)
+        found = conditions.attributes()
+        parts = {f"{owner}.{name}" for owner, names in conditions.held.items() for name in names}
+        return found | parts, len(conditions.tasks)
     finally:
         coroutine.close()
 
@@ -161,6 +179,12 @@ def polls(condition: str) -> str:
         ("self.lifted.is_set()", {"lifted"}),
         ("self.words.qsize() > self.level", {"words", "level"}),
         ("message > self.level", {"level"}),
+        ("self.nav.has_arrived", {"nav.has_arrived"}),
+        ("self.nav.is_done()", {"nav.has_arrived"}),
+        ("self.nav.is_near(self.level)", {"nav.pose", "level"}),
+        ("self.nav.nearly", {"nav.pose"}),
+        ("self.nav.lifted.is_set() and self.there", {"nav.lifted", "there"}),
+        ("self.nav.legs[0] > 3", {"nav.legs"}),
         ("self.level > math.pi", {"level"}),
     ],
 )
@@ -193,6 +217,10 @@ async def test_conditions_that_are_understood(
         "self.goal.cancel()",
         "local(3) or self.there",
         "self.arrived.clear()",
+        "self.nav",
+        "self.nav.draws()",
+        "self.nav.next.is_done()",
+        "self.nav.lifted.clear()",
     ],
 )
 async def test_conditions_that_are_not(graphflow_runner: asyncio.Runner, written: Written, condition: str) -> None:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import pytest
 
-from graphflow import Node
+from graphflow import Node, subscription
 from graphflow.msgs.geometry_msgs.msg import Pose, PoseStamped
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
@@ -34,6 +34,10 @@ class Navigator:
         self.is_there = True
 
     def look(self) -> bool:
+        return self.is_there
+
+    @property
+    def has_arrived(self) -> bool:
         return self.is_there
 
 
@@ -59,6 +63,28 @@ class NavigatesByHand(Navigates):
         self.nav.is_there = True
 
 
+class PollsAMethod(Navigates):
+    """The most usual way to wait for a navigator."""
+
+    async def go(self, _: String) -> None:
+        while not self.nav.look():
+            await self.clock.sleep(0.05)
+
+
+class PollsAProperty(Navigates):
+    async def go(self, _: String) -> None:
+        while self.is_running and not self.nav.has_arrived:
+            await self.clock.sleep(0.05)
+
+
+class PollsAnAttribute(NavigatesByHand):
+    has_given_up = False
+
+    async def go(self, _: String) -> None:
+        while not (self.nav.is_there or self.has_given_up):
+            await self.clock.sleep(0.05)
+
+
 class KeepsState(Robot):
     def __init__(self) -> None:
         super().__init__()
@@ -69,6 +95,12 @@ class KeepsState(Robot):
 
     async def arrive(self, _: String) -> None:
         self.state.ready.set()
+
+
+class PollsAnEvent(KeepsState):
+    async def go(self, _: String) -> None:
+        while not self.state.ready.is_set():
+            await self.clock.sleep(0.05)
 
 
 class Comes(Robot):
@@ -179,6 +211,10 @@ class Gathers(KeepsState):
     [
         (Navigates, "self.nav.is_there", "arrive, which sets it,"),
         (NavigatesByHand, "self.nav.is_there", "arrive, which sets it,"),
+        (PollsAMethod, "self.nav.is_there", "arrive, which sets it,"),
+        (PollsAProperty, "self.nav.is_there", "arrive, which sets it,"),
+        (PollsAnAttribute, "self.has_given_up and self.nav.is_there", "arrive, which sets it,"),
+        (PollsAnEvent, "self.state.ready", "arrive, which sets it,"),
         (KeepsState, "self.state.ready", "arrive, which sets it,"),
         (Comes, "self.barrier", "arrive, which comes to it,"),
         (RunsWhile, "self.pose", "arrive, which sets it,"),
@@ -257,6 +293,135 @@ class OnlyLooks(Navigates):
         self.nav.look()
 
 
+class HandsAMethodOn(Navigates):
+    """It is called whenever that is."""
+
+    async def on_start(self) -> None:
+        threading.Timer(600.0, self.nav.mark).cancel()
+
+
+class PollsWhatIsHandedOn(PollsAMethod, HandsAMethodOn):
+    """The same."""
+
+
+class PollsWhatIsMarkedOutside(PollsAMethod):
+    def __init__(self) -> None:
+        super().__init__()
+        self.create_subscription(String, "/free", self.free, 10)
+
+    def free(self, _: String) -> None:
+        self.nav.mark()
+
+
+class PollsWhatIsGivenAway(PollsAMethod, GivesItAway):
+    """Somebody else may mark it."""
+
+
+class PollsWhatIsThereByItself(PollsAMethod, IsThereByItself):
+    """A timer of its own marks it."""
+
+
+class Stepping(Navigator):
+    """Goes on by being asked to, and is there after some steps."""
+
+    def step(self) -> None:
+        self.mark()
+
+    def fail(self) -> None:
+        raise TimeoutError
+
+
+class PollsAndSteps(PollsAMethod):
+    """What it polls it changes itself."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav: Stepping = Stepping()
+
+    async def go(self, _: String) -> None:
+        while not self.nav.look():
+            await self.clock.sleep(600.0)
+            self.nav.step()
+
+
+class PollsAndSets(PollsAMethod):
+    async def go(self, _: String) -> None:
+        while not self.nav.look():
+            await self.clock.sleep(600.0)
+            self.nav.is_there = True
+
+
+class PollsAndFails(PollsAndSteps):
+    """An error ends the loop."""
+
+    async def go(self, _: String) -> None:
+        while not self.nav.look():
+            await self.clock.sleep(600.0)
+            self.nav.fail()
+
+
+class Driver(threading.Thread):
+    """Runs by itself."""
+
+    is_there = False
+
+    def run(self) -> None:
+        self.is_there = True
+
+    def mark(self) -> None:
+        self.is_there = True
+
+    def look(self) -> bool:
+        return self.is_there
+
+
+class PollsAThread(Robot):
+    """What it inherits calls its methods."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav = Driver()
+
+    async def go(self, _: String) -> None:
+        while not self.nav.look():
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, _: String) -> None:
+        self.nav.mark()
+
+
+class Other(Node):
+    """A node, whose handlers are called for it."""
+
+    is_there = False
+
+    @subscription(String, "/free")
+    async def mark(self, _: String) -> None:
+        self.is_there = True
+
+    async def wait(self) -> None:
+        while not self.is_there:
+            await asyncio.sleep(0.05)
+
+
+class PollsANode(Robot):
+    def __init__(self) -> None:
+        super().__init__()
+        self.nav = Other()
+
+    async def go(self, _: String) -> None:
+        while not self.nav.is_there:
+            await self.clock.sleep(0.05)
+
+    async def arrive(self, message: String) -> None:
+        await self.nav.mark(message)
+
+
+class WaitsInANode(PollsANode):
+    async def go(self, _: String) -> None:
+        await self.nav.wait()
+
+
 class FillsWhatMayBeTheNode(Robot):
     """What is filled is no message."""
 
@@ -314,6 +479,17 @@ class MarkedOutside(Navigates):
         IsThereByItself,
         IsReplaced,
         OnlyLooks,
+        HandsAMethodOn,
+        PollsWhatIsHandedOn,
+        PollsWhatIsMarkedOutside,
+        PollsWhatIsGivenAway,
+        PollsWhatIsThereByItself,
+        PollsAndSteps,
+        PollsAndSets,
+        PollsAndFails,
+        PollsAThread,
+        PollsANode,
+        WaitsInANode,
         WorksMeanwhile,
         FillsWhatMayBeTheNode,
         MarkedOutside,
