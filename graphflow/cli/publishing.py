@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from graphflow.cli import exits, output
 from graphflow.cli.stamps import Path, stamp
@@ -36,22 +37,30 @@ class PubOptions:
     keep_alive: float = 0.1
     node_name: str | None = None
     qos: Qos = DEFAULT
-    stamps: list[Path] = field(default_factory=list)
-    """Fields that get the time of each message."""
+    is_series: bool = False
+    """Whether each message is sent once, one after the other; otherwise there is one, which is sent again and again."""
 
 
-def run(topic: str, message: Message, options: PubOptions) -> int:
+class Draft(NamedTuple):
+    """A message to be sent."""
+
+    message: Message
+    stamps: Sequence[Path] = ()
+    """Fields that get the time at which it is sent."""
+
+
+def run(topic: str, drafts: Sequence[Draft], options: PubOptions) -> int:
     """Publish until done or stopped; returns the exit code."""
 
     async def work(node: Node) -> int:
-        return await _publish(node, topic, message, options)
+        return await _publish(node, topic, drafts, options)
 
     return visit(work, options.node_name)
 
 
-async def _publish(node: Node, topic: str, message: Message, options: PubOptions) -> int:
+async def _publish(node: Node, topic: str, drafts: Sequence[Draft], options: PubOptions) -> int:
     times = 1 if options.once else options.times
-    publisher = node.create_publisher(type(message), topic, options.qos)
+    publisher = node.create_publisher(type(drafts[0].message), topic, options.qos)
     needed = options.wait_matching_subscriptions
     if needed is None:
         needed = 1 if times else 0
@@ -68,11 +77,12 @@ async def _publish(node: Node, topic: str, message: Message, options: PubOptions
             is_told = True
             near = did_you_mean(topic, [e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)])
             output.talk(f"no node hears {topic} so far{near}")
-        stamp(message, options.stamps, node.clock.time_ns())
+        message, stamps = drafts[n % len(drafts)]
+        stamp(message, stamps, node.clock.time_ns())
         if options.print_every and n % options.print_every == 0:
             output.data(f"publishing #{n + 1}: {message!r}\n")
         publisher.publish(message)
-        if times is not None and n + 1 >= times:
+        if n + 1 == times or (options.is_series and n + 1 == len(drafts)):
             break
     await node.clock.sleep(options.keep_alive)
     return exits.OK

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,9 +13,9 @@ from graphflow.cli.plot_options import plot_options
 from graphflow.cli.profiles import qos_options, take_qos
 from graphflow.cli.types import names_of_type
 from graphflow.cli.verbs import GraphVerbs
-from graphflow.cli.words import ValueCommand, message_values, stdin_option
+from graphflow.cli.words import ValueCommand, message_values, messages_in, stdin_option
 from graphflow.domain import domain_id
-from graphflow.errors import CallError, UsageFault
+from graphflow.errors import CallError, EncodeError, UsageFault
 from graphflow.introspect.elsewhere import nothing_here
 from graphflow.introspect.view import View
 from graphflow.machines.cache import GraphCache
@@ -23,6 +24,9 @@ from graphflow.names import did_you_mean, expand, is_hidden
 from graphflow.qos import DEFAULT, INFINITE_NS
 from graphflow.wire.gid import gid_text
 from graphflow.wire.liveliness import Entity, Kind
+
+if TYPE_CHECKING:
+    from graphflow.cli.publishing import Draft
 
 
 @click.group(cls=GraphVerbs)
@@ -318,19 +322,19 @@ def _learn(*topics: str) -> None:
 @click.option("--keep-alive", type=click.FloatRange(0), default=0.1, help="Seconds to stay after the last message.")
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @stdin_option
+@click.option("--yaml-file", type=click.Path(path_type=Path), help="Publish the messages in a file, each once.")
 @qos_options
 def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> int:
     """Publish messages: VALUES are the message in YAML, such as "{data: hello}"; quotes are optional.
 
-    `header: auto` and `stamp: now` stand for the time at which each message is sent.
+    `header: auto` and `stamp: now` stand for the time at which each message is sent. A --yaml-file has messages as
+    `topic echo` prints them, with `---` between; each is published once.
     """
     from graphflow.cli import publishing
-    from graphflow.cli.stamps import taken as taken_stamps
     from graphflow.cli.types import agree, use_project
     from graphflow.errors import SupervisorError
     from graphflow.introspect.definitions import learn
     from graphflow.msgs import registry
-    from graphflow.msgs.values import from_plain
 
     use_project()
     full = expand(name, "/", "cli")
@@ -347,8 +351,32 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     wanted = registry.full_name(type_name)
     if known:
         wanted = agree(wanted, known, full)
-    values_read, stamps = taken_stamps(wanted, message_values(values, from_stdin=options.pop("from_stdin")))
-    message = from_plain(registry.interface_class(wanted), values_read)
+    file: Path | None = options.pop("yaml_file")
+    from_stdin = options.pop("from_stdin")
+    if file is not None and (values or from_stdin):
+        raise UsageFault(f"--yaml-file reads the messages from {file}; leave out {values[0] if values else '--stdin'}")
+    given = [("", message_values(values, from_stdin=from_stdin))] if file is None else messages_in(file)
+    drafts = [_draft(wanted, data, place) for place, data in given]
     options["qos"] = take_qos(options, DEFAULT)
-    chosen = publishing.PubOptions(**options, stamps=stamps)
-    return publishing.run(full, message, chosen)
+    return publishing.run(full, drafts, publishing.PubOptions(**options, is_series=file is not None))
+
+
+def _draft(type_name: str, data: Any, place: str) -> Draft:
+    """A message of plain values.
+
+    Args:
+        place: Where it stands, for errors; empty for the command line.
+
+    Raises:
+        UsageFault: The values do not fit.
+    """
+    from graphflow.cli.publishing import Draft
+    from graphflow.cli.stamps import taken as taken_stamps
+    from graphflow.msgs import registry
+    from graphflow.msgs.values import from_plain
+
+    values, stamps = taken_stamps(type_name, data)
+    try:
+        return Draft(from_plain(registry.interface_class(type_name), values), stamps)
+    except EncodeError as error:
+        raise UsageFault(f"{place}: {error}" if place else str(error)) from None

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -20,6 +21,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 _QUOTED = re.compile(r"""(?<!\w)("(?:\\.|[^"\\])*"|'[^']*')""")
 _TIGHT = re.compile(r"\w:\S")
+_BETWEEN_DOCUMENTS = re.compile(r"^---(?=\s|\Z)", re.MULTILINE)
+"""Nothing else begins a line so, not even in a text of several lines: YAML 1.2.2, section 9.1.2."""
+_IS_SAID = re.compile(r"^\s*[^\s#]", re.MULTILINE)
+"""Something other than a comment."""
 _WITH_NUMBER = re.compile(r"(-[A-Za-z])\d+(\.\d*)?\Z")
 
 
@@ -108,3 +113,30 @@ def message_values(words: Sequence[str], *, from_stdin: bool = False) -> Any:
     if any(_TIGHT.search(key) for key in keys):
         raise UsageFault(f"{text!r}: write a space after each colon and quotes around all, for example '{{x: 2.0}}'")
     return values
+
+
+def messages_in(file: Path) -> list[tuple[str, Any]]:
+    """The values of the messages in a file, each with its place there: documents of YAML, as `topic echo` prints them.
+
+    Raises:
+        UsageFault: It cannot be read, has no message, or one of its documents is not YAML.
+    """
+    from graphflow.errors import GraphFileError, UsageFault
+    from graphflow.graph.source import read
+
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageFault(f"{file}: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}") from None
+    found, line = [], 0
+    for document in _BETWEEN_DOCUMENTS.split(text):
+        if _IS_SAID.search(document):
+            first = line + document[: len(document) - len(document.lstrip())].count("\n") + 1
+            try:
+                found.append((f"{file}:{first}", read("\n" * line + document, str(file)).data))
+            except GraphFileError as error:
+                raise UsageFault(str(error)) from None
+        line += document.count("\n")
+    if not found:
+        raise UsageFault(f"{file} has no message; graphflow topic echo TOPIC > {file} writes some")
+    return found

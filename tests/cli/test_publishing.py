@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
 import pytest
 
 from graphflow import Node
 from graphflow.cli import exits
-from graphflow.cli.publishing import UNHEARD_AFTER, PubOptions, _publish
+from graphflow.cli.publishing import UNHEARD_AFTER, Draft, PubOptions, _publish
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 
@@ -19,7 +20,7 @@ NEVER = 0
 async def begun(graph: Graph, options: PubOptions) -> asyncio.Task[int]:
     """A hidden node that is publishing."""
     await graph.start(node := Node("_pub"))
-    task = asyncio.ensure_future(_publish(node, "/said", WORD, options))
+    task = asyncio.ensure_future(_publish(node, "/said", [Draft(WORD)], options))
     await graph.settle()
     return task
 
@@ -76,7 +77,7 @@ async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) ->
     node, listener = Node("publishing"), Node("listener")
     listener.create_subscription(String, "/chatter", lambda _: None)
     await graph.start(node, listener)
-    publishing = asyncio.create_task(_publish(node, "/chater", String(data="x"), PubOptions(rate=10.0)))
+    publishing = asyncio.create_task(_publish(node, "/chater", [Draft(WORD)], PubOptions(rate=10.0)))
     await graph.clock.advance(UNHEARD_AFTER + 3.0)
     publishing.cancel()
     told = capsys.readouterr().err
@@ -104,3 +105,15 @@ async def test_only_some_are_told(
     assert len(heard) == 5
     lines = capsys.readouterr().out.splitlines()
     assert [int(line.partition("#")[2].partition(":")[0]) for line in lines if "#" in line] == told
+
+
+@pytest.mark.parametrize(("options", "told"), [({}, "abc"), ({"times": 2}, "ab"), ({"once": True}, "a")])
+async def test_a_series(graph: Graph, options: dict[str, Any], told: str) -> None:
+    """Each message is sent once, one after the other, or only the first of them."""
+    heard = graph.tap(String, "/said")
+    await graph.start(node := Node("_pub"))
+    drafts = [Draft(String(data=word)) for word in "abc"]
+    task = asyncio.ensure_future(_publish(node, "/said", drafts, PubOptions(**options, is_series=True)))
+    await graph.clock.advance(20.0)
+    assert task.result() == exits.OK
+    assert [message.data for message in heard] == list(told)

@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import click
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 
 from graphflow.cli.param import set_
 from graphflow.cli.topic import pub
-from graphflow.cli.words import message_values, split_values
+from graphflow.cli.words import message_values, messages_in, split_values
 from graphflow.errors import UsageFault
 from graphflow.msgs.geometry_msgs.msg import Twist, Vector3
 from graphflow.msgs.std_msgs.msg import Int32, String
@@ -182,3 +183,31 @@ def test_values_from_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     assert message_values([], from_stdin=True) == {"a": 2, "b": 3}
     with pytest.raises(UsageFault, match=r"--stdin reads the values from standard input; leave out '\{a:'"):
         message_values(["{a:", "2}"], from_stdin=True)
+
+
+def test_messages_in_a_file(tmp_path: Path) -> None:
+    """As `topic echo` prints them, each with its line; what says nothing is passed over."""
+    file = tmp_path / "said.yaml"
+    file.write_text("---\ndata: a\n---\n---\n\n# a remark\ndata: |\n  one\n  --- two\n--- {data: c}\n---\n")
+    found = [(2, "a"), (6, "one\n--- two\n"), (10, "c")]
+    assert messages_in(file) == [(f"{file}:{line}", {"data": data}) for line, data in found]
+
+
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [
+        (None, "No such file or directory"),
+        (b"\xff", "is not UTF-8 text"),
+        (b"---\n# nothing\n---\n", "has no message; graphflow topic echo TOPIC > "),
+        (b"data: a\n---\ndata: {\n", ":3:8: not valid YAML"),
+    ],
+)
+def test_files_without_messages(tmp_path: Path, data: bytes | None, told: str) -> None:
+    """The file is named, and the line."""
+    file = tmp_path / "said.yaml"
+    if data is not None:
+        file.write_bytes(data)
+    with pytest.raises(UsageFault) as caught:
+        messages_in(file)
+    assert str(caught.value).startswith(str(file))
+    assert told in str(caught.value)
