@@ -33,10 +33,14 @@ def _kinds(command: F) -> F:
 @interface.command()
 @click.argument("type_name", metavar="TYPE")
 @click.option("--all-comments", is_flag=True, help="Comments of nested types, too.")
-@click.option("--no-comments", is_flag=True, help="Without comments.")
+@click.option("--no-comments", is_flag=True, help="Without comments and empty lines.")
 def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
-    """Show a definition, with the fields of nested types below each. `-` reads the type from standard input."""
+    """Show a definition, with the fields of nested types below each. `-` reads the type from standard input.
+
+    Comments are those of your own definitions; those that come with graphflow have none.
+    """
     from graphflow.msgs import registry
+    from graphflow.wire.idl import without_comment
 
     use_project()
     if type_name == "-":
@@ -45,8 +49,8 @@ def show(type_name: str, all_comments: bool, no_comments: bool) -> None:
     registry.interface(name)
     package = name.partition("/")[0]
     for line in registry.definition(name).splitlines():
-        text = line.partition("#")[0].rstrip() if no_comments else line
-        if not text and line:
+        text = without_comment(line).rstrip() if no_comments else line
+        if no_comments and not text:
             continue
         output.data(text)
         output.lines(_nested(text, package, 1, all_comments and not no_comments))
@@ -165,7 +169,7 @@ def _nested(line: str, package: str, depth: int, has_comments: bool) -> Iterator
     inner = type_.base.partition("/")[0]
     registry.message_schema(type_.base)  # which refuses one that contains itself
     for text in registry.definition(type_.base).splitlines():
-        shown = text.rstrip() if has_comments else text.partition("#")[0].rstrip()
-        if shown:
-            yield "\t" * depth + shown
+        shown = text.rstrip() if has_comments else idl.without_comment(text).rstrip()
+        if shown or has_comments:
+            yield "\t" * depth + shown if shown else ""
         yield from _nested(text, inner, depth + 1, has_comments)

@@ -89,7 +89,7 @@ def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
         if line.strip() == "---":
             sections.append([])
         else:
-            bare = _without_comment(line).strip()
+            bare = without_comment(line).strip()
             if bare:
                 sections[-1].append((number, bare))
     if len(sections) != expected:
@@ -100,7 +100,8 @@ def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
     return sections
 
 
-def _without_comment(line: str) -> str:
+def without_comment(line: str) -> str:
+    """A line of a definition up to its comment; a `#` in a text is none."""
     quote, escaped = "", False
     for i, c in enumerate(line):
         if escaped:

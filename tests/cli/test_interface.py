@@ -86,9 +86,9 @@ def test_the_projects_own_with_its_comments(own: Path, show: Show) -> None:
 
 
 def test_without_comments(own: Path, show: Show) -> None:
-    """`--no-comments` leaves the definition alone."""
+    """`--no-comments` leaves the definition alone, as it leaves out empty lines."""
     assert show("show_msgs/msg/Leg", "--no-comments")[1] == (
-        "\nuint8 WALK=1\ngeometry_msgs/Point[2] ends\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n\nuint8 how 1\n"
+        "uint8 WALK=1\ngeometry_msgs/Point[2] ends\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\nuint8 how 1\n"
     )
 
 
@@ -235,10 +235,11 @@ def test_comments(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatc
     folder.mkdir(parents=True)
     (tmp_path / "pyproject.toml").touch()
     (folder / "Outer.msg").write_text("# outer\nInner inner\n")
-    (folder / "Inner.msg").write_text("# inner\nint32 x # why\n")
+    (folder / "Inner.msg").write_text("# inner\n\nint32 x # why\nstring y '#' # what\n")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "_roots", list(registry._roots))
     words = ("show", "commented_msgs/msg/Outer")
-    assert looked(capsys, *words, "--all-comments") == "# outer\nInner inner\n\t# inner\n\tint32 x # why\n"
-    assert looked(capsys, *words) == "# outer\nInner inner\n\tint32 x\n"
-    assert looked(capsys, *words, "--no-comments") == "Inner inner\n\tint32 x\n"
+    nested = "\t# inner\n\n\tint32 x # why\n\tstring y '#' # what\n"
+    assert looked(capsys, *words, "--all-comments") == f"# outer\nInner inner\n{nested}"
+    assert looked(capsys, *words) == "# outer\nInner inner\n\tint32 x\n\tstring y '#'\n"
+    assert looked(capsys, *words, "--no-comments") == "Inner inner\n\tint32 x\n\tstring y '#'\n"
