@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from collections.abc import Iterator, Mapping
 from importlib import metadata
@@ -48,7 +49,10 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
     if click.get_current_context().invoked_subcommand is not None:
         return exits.OK
     here = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
-    rclpy = list(_whose_rclpy())
+    remarks = {
+        "rclpy": list(_whose_rclpy()),
+        "starts": list(installation.compiled_anew(installation, writes=not sys.dont_write_bytecode)),
+    }
     try:
         faults, notes, count = _graph()
     except SupervisorError as error:
@@ -59,14 +63,14 @@ def doctor(report: bool, report_failed: bool, include_warnings: bool, as_json: b
 
             output.lines(installed())
         if as_json:
-            output.as_json({**here, "rclpy": rclpy})
+            output.as_json({**here, **remarks})
         elif not report:
-            output.lines(text for texts in [*here.values(), rclpy] for text in texts)
+            output.lines(text for texts in [*here.values(), *remarks.values()] for text in texts)
         if any(here.values()) or not report:
             raise
         return exits.OK
     faults |= here
-    notes["rclpy"] = rclpy
+    notes |= remarks
     failed = [name for name, texts in faults.items() if texts]
     if as_json:
         output.as_json({**faults, **notes})
@@ -135,7 +139,7 @@ def _look(view: View) -> Look:
 def _print(faults: Findings, notes: Findings, count: int) -> None:
     output.lines(f"{text}\n" for name in ("deadlocks", "stalls") for text in faults[name])
     output.lines(t for name, texts in faults.items() if name not in ("deadlocks", "stalls") for t in texts)
-    output.lines([*notes["late"], *notes["hints"], *notes["rclpy"]])
+    output.lines([*notes["late"], *notes["hints"], *notes["rclpy"], *notes["starts"]])
     if notes["silent"]:
         beyond = ", or beyond a net profile" if notes["kept_back"] else ""
         output.data(f"not graphflow nodes{beyond}, so their handlers are unknown: {', '.join(notes['silent'])}")

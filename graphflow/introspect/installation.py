@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
 from collections.abc import Callable, Iterator, Mapping
 from importlib import metadata
+from pathlib import Path
+from types import ModuleType
 from urllib.parse import unquote, urlsplit
 
 from graphflow.domain import DEFAULT_ENDPOINT, DOMAIN_VARIABLES, rendezvous_endpoint
@@ -58,6 +61,23 @@ def faults(env: Mapping[str, str], version: Callable[[str], str | None]) -> Iter
         yield f"eclipse-zenoh {zenoh} is too old: pip install -U 'eclipse-zenoh>={'.'.join(map(str, OLDEST_ZENOH))}'"
     if env.get("AMENT_PREFIX_PATH"):
         yield from _sourced(env)
+
+
+def compiled_anew(module: ModuleType, *, writes: bool) -> Iterator[str]:
+    """Why each start compiles graphflow, which takes it several times as long.
+
+    Args:
+        module: A module that has been imported: Python has kept what it compiled, or could not.
+        writes: Whether Python may keep it.
+    """
+    cached = module.__spec__.cached if module.__spec__ is not None else None
+    if cached is None or os.path.exists(cached):
+        return
+    why = f"{os.path.dirname(cached)} cannot be written" if writes else "PYTHONDONTWRITEBYTECODE is set"
+    yield (
+        f"each start compiles graphflow anew: {why}; compile it once, with the rights to write there: "
+        f"python -m compileall -q {shlex.quote(str(Path(__file__).parents[1]))}"
+    )
 
 
 def _sourced(env: Mapping[str, str]) -> Iterator[str]:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
 import pytest
 
-from graphflow.introspect.installation import faults, requirement
+from graphflow.introspect.installation import compiled_anew, faults, requirement
 
 ROS = {"AMENT_PREFIX_PATH": "/opt/ros/jazzy", "ROS_DISTRO": "jazzy", "RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
@@ -85,3 +90,31 @@ def test_requirement(monkeypatch: pytest.MonkeyPatch, origin: str, words: str) -
 
     monkeypatch.setattr("importlib.metadata.distribution", lambda _: Distribution())
     assert requirement("plot") == words
+
+
+def imported(folder: Path) -> ModuleType:
+    """A module that Python has just imported from a folder."""
+    (folder / "m.py").write_text("")
+    spec = importlib.util.spec_from_file_location("m", folder / "m.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_each_start_compiles_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where Python keeps no bytecode, or cannot; the words say what ends it."""
+    monkeypatch.setattr(sys, "pycache_prefix", None)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    module = imported(tmp_path)
+    [text] = compiled_anew(module, writes=False)
+    assert "PYTHONDONTWRITEBYTECODE is set; compile it once" in text
+    assert text.endswith("graphflow")
+    [text] = compiled_anew(module, writes=True)
+    assert f"{tmp_path / '__pycache__'} cannot be written" in text
+
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    kept = imported(tmp_path)
+    assert list(compiled_anew(kept, writes=True)) == []
+    assert list(compiled_anew(kept, writes=False)) == []
