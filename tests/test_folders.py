@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from graphflow import folders
+from graphflow.errors import SupervisorError
 from graphflow.supervisor import rundir
 
 
@@ -18,6 +20,27 @@ def test_where_the_state_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     for given in ("", "here"):
         monkeypatch.setenv("XDG_STATE_HOME", given)
         assert folders.state_root() == tmp_path / ".local/state/graphflow"
+
+
+def test_without_a_home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """As in a container, whose user is a mere number: a private folder, where the run directories are, too."""
+
+    def unknown(uid: int) -> None:
+        raise KeyError(uid)
+
+    monkeypatch.delenv("HOME", raising=False)
+    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
+    monkeypatch.setattr("pwd.getpwuid", unknown)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    assert folders.home() is None
+    root = folders.state_root()
+    assert root == tmp_path / f"graphflow-{os.getuid()}" / "state"
+    assert root.parent.stat().st_mode & 0o777 == 0o700
+
+    monkeypatch.setattr("graphflow.folders.user_id", lambda: os.getuid() + 1)
+    (tmp_path / f"graphflow-{os.getuid() + 1}").symlink_to(tmp_path)
+    with pytest.raises(SupervisorError, match="belongs to another user; set XDG_STATE_HOME to a folder of your own"):
+        folders.state_root()
 
 
 def test_the_newest_logs_are_where_a_run_puts_them(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.completing import SCRIPTS, choices
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import UsageFault
+from graphflow.folders import home
 
 _FILES = {
     "bash": ".local/share/bash-completion/completions/graphflow",
@@ -35,7 +36,10 @@ def install(shell: str | None) -> int:
     name = shell or Path(os.environ.get("SHELL", "")).name
     if name not in SCRIPTS:
         raise UsageFault(f"which shell is meant? graphflow completion install {'|'.join(SCRIPTS)}")
-    file = Path.home() / _FILES[name]
+    at = home()
+    if at is None:
+        raise UsageFault(f"there is no home folder: set HOME, or place the output of graphflow completion show {name}")
+    file = at / _FILES[name]
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(SCRIPTS[name], encoding="utf-8")

@@ -17,6 +17,7 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
+from graphflow.folders import home
 from graphflow.names import did_you_mean
 from graphflow.reading import found_text
 from graphflow.system import SITE
@@ -192,7 +193,7 @@ def workspace_around(start: Path) -> Workspace | None:
     highest = next((f for f in reversed(folders) if (f / "package.xml").is_file()), None)
     if highest is not None:  # beside it there may be others, and below the folder that one stands in
         here = Path.cwd()
-        if here in highest.parent.parents and here not in (Path(here.anchor), Path.home()):  # which hold anything
+        if here in highest.parent.parents and here not in (Path(here.anchor), home()):  # which hold anything
             around = read_workspace(here, here)
             if any(package.folder == highest for package in around.packages.values()):
                 return around

@@ -137,12 +137,13 @@ def _of_workspace() -> list[str]:
     """Make the messages of the workspace around known; returns the folders that Python is to import from."""
     from pathlib import Path
 
+    from graphflow.folders import home
     from graphflow.graph.workspace import workspace_around
     from graphflow.msgs import registry
 
     program = Path(sys.argv[0]) if sys.argv and sys.argv[0].endswith(".py") else Path.cwd()
     found = workspace_around(program) or workspace_around(Path.cwd())
-    if found is None or found.root in (Path.home(), Path(found.root.anchor)):  # whose src may hold anything
+    if found is None or found.root in (home(), Path(found.root.anchor)):  # whose src may hold anything
         return []
     for name, folder in found.interfaces.items():
         KNOWN[name] = str(folder)

@@ -14,9 +14,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import stat
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Iterable
@@ -26,8 +24,8 @@ from typing import Any
 
 from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
-from graphflow.folders import log_root, named, newest_logs
-from graphflow.system import is_portable, user_id
+from graphflow.folders import log_root, make_private, named, newest_logs, temporary_root
+from graphflow.system import is_portable
 
 SUPERVISOR_LOG = "+supervisor.log"
 """What the supervisor says of itself; no node can be called so."""
@@ -46,15 +44,10 @@ def runtime_root() -> Path:
         SupervisorError: The folder cannot be made, or belongs to another user.
     """
     given = named("XDG_RUNTIME_DIR")
-    root = given / "graphflow" if given else Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
-    try:
-        root.mkdir(mode=0o700, parents=True, exist_ok=True)
-        found = root.lstat()
-    except OSError as error:
-        raise SupervisorError(f"{root}: {error.strerror}; set XDG_RUNTIME_DIR to a folder you can write to") from None
-    if found.st_uid != user_id() or not stat.S_ISDIR(found.st_mode):
-        raise SupervisorError(f"{root} belongs to another user; set XDG_RUNTIME_DIR to a folder of your own")
-    return root
+    if given is None:
+        return temporary_root("XDG_RUNTIME_DIR")
+    make_private(given / "graphflow", "XDG_RUNTIME_DIR")
+    return given / "graphflow"
 
 
 def new_run_id() -> str:
@@ -262,11 +255,7 @@ class RunDirectory:
         if len(os.fsencode(inside)) <= SOCKET_PATH_LIMIT:
             return inside
         digest = hashlib.sha256(os.fsencode(inside)).hexdigest()[:16]
-        folder = Path(tempfile.gettempdir()) / f"graphflow-{user_id()}"
-        folder.mkdir(mode=0o700, exist_ok=True)
-        if folder.stat().st_uid != user_id():
-            raise SupervisorError(f"{folder} belongs to another user; set XDG_RUNTIME_DIR to a shorter path")
-        return folder / f"{digest}.sock"
+        return temporary_root("XDG_RUNTIME_DIR") / f"{digest}.sock"
 
     def write(self, run: GraphRun) -> None:
         """Write the run file, whole or not at all."""
