@@ -1,13 +1,18 @@
-"""Loose ends of a plan: names with no counterpart in the graph. Each may be one outside it, so none is a mistake."""
+"""Loose ends of a plan: names with no counterpart in the graph, and classes that an included file may not mean.
+
+Each may be meant so, and none is a mistake.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.errors import Place, Problem
 from graphflow.graph.check import Interfaces, resolver
 from graphflow.graph.plan import Deed, Plan, PlannedNode, PlannedStep
+from graphflow.graph.project import project_root, shown
 from graphflow.interface import EndpointKind, Interface, may_make
 from graphflow.names import Kind, nearest
 
@@ -37,17 +42,37 @@ class _End(NamedTuple):
 
 
 def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
-    """Names that nothing in the graph answers to: of steps, of remaps, and of endpoints that have a near namesake.
+    """Names that nothing in the graph answers to, of steps, of remaps, and of endpoints that have a near namesake; and
+    classes of included files whose own project has another of that name.
 
-    Nothing is said of a graph with programs, or with classes that cannot be imported: their names are unknown.
+    No names are told of a graph with programs, or with classes that cannot be imported: their names are unknown.
     """
+    classes = list(_of_classes(plan, interfaces))
     known = [found for found in interfaces.values() if isinstance(found, Interface)]
     if len(known) < len(interfaces) or any(node.command for node in plan.nodes):
-        return []
+        return classes
     ends = [end for node in plan.nodes for end in _ends(node, interfaces)]
     made = [interface.dynamic_names for interface in known]
     found = [*_of_steps(plan, ends), *_of_nodes(ends)]
-    return [problem for name, problem in found if not any(may_make(names, name) for names in made)]
+    return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
+
+
+def _of_classes(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Classes that come from this graph's project, though the project of the file that names them has its own."""
+    for node in plan.nodes:
+        interface = interfaces.get(node.class_path)
+        if not isinstance(interface, Interface) or not node.class_place.file:
+            continue
+        root = project_root(Path(node.class_place.file))
+        stem = root.joinpath(*node.class_path.partition(":")[0].split("."))
+        own = next((file for file in (stem.with_suffix(".py"), stem / "__init__.py") if file.is_file()), None)
+        taken = Path(interface.place.file)
+        if own is not None and str(root) != plan.root and not own.samefile(taken):
+            text = (
+                f"{node.class_path} is that of {shown(taken)}, not that of this file's project, {shown(own)}: "
+                "graphs cannot mix modules of one name; give one of the two packages another name"
+            )
+            yield Problem(node.class_place, text)
 
 
 def _ends(node: PlannedNode, interfaces: Interfaces) -> Iterator[_End]:

@@ -110,3 +110,27 @@ def test_nothing_is_said_of_what_cannot_be_known() -> None:
     assert told(f"{text}  /p: {{command: [sleep, '1']}}\n") == []
     assert told(f"{text}  /a: {{class: a:Any}}\n") == []
     assert told(text, {**KNOWN, "a:Talker": Problem(CODE, "broken")}) == []
+
+
+def test_a_class_that_the_project_of_an_included_file_has_too(tmp_path: Path) -> None:
+    """One module of a name is imported: that of the including project."""
+    for project in ("ours", "theirs"):
+        for folder in ("graphs", "nodes"):
+            (tmp_path / project / folder).mkdir(parents=True)
+        (tmp_path / project / "nodes" / "talk.py").touch()
+    (tmp_path / "ours/nodes/only.py").touch()
+    theirs = tmp_path / "theirs/graphs/theirs.yaml"
+    theirs.write_text("nodes: {/t: {class: 'nodes.talk:Talk'}, /o: {class: 'nodes.only:Only'}}")
+    ours = tmp_path / "ours/graphs/ours.yaml"
+    text = f"include: {theirs}\nnodes: {{/u: {{class: 'nodes.talk:Talk'}}}}\n"
+    plan = resolve(source.read(text, str(ours)), ours, [], {})
+
+    def imported(project: str) -> Interfaces:
+        places = {name: Place(str(tmp_path / project / "nodes" / f"{name}.py")) for name in ("talk", "only")}
+        return {f"nodes.{n}:{n.title()}": Interface(f"nodes.{n}:{n.title()}", n, at) for n, at in places.items()}
+
+    [problem] = loose_ends(plan, imported("ours"))
+    assert problem.place.file == str(theirs)
+    assert f"ours/nodes/talk.py, not that of this file's project, {tmp_path}/theirs/nodes/talk.py" in problem.message
+    (tmp_path / "theirs/nodes/only.py").touch()
+    assert loose_ends(plan, imported("theirs")) == []
