@@ -1,7 +1,9 @@
-"""A worker whose preload process or supervisor has ended: it ends what it has started, for perhaps nobody else can.
+"""Ending a worker: it ends what it has started, for perhaps nobody is left above it who could.
 
-It is asked to end by the preload process, or by the kernel (`system.end_with_parent`). What is there after `GRACE` is
-killed by those of the three above the workers that live; if all were killed together, each worker kills its own.
+A worker that ends by itself does so before; what one leaves that was killed, the preload process ends. If that or the
+supervisor has ended, the worker is asked to end by the other or by the kernel (`system.end_with_parent`). What is there
+after `GRACE` is killed by those of the three above the workers that live; if all were killed together, each worker
+kills its own.
 
 Source: pipe(7) and poll(2) for a pipe whose other end is closed: of the orders' pipe the preload process alone has it,
 of the status pipe the supervisor.
@@ -42,7 +44,7 @@ class Orphan:
         signal.signal(signal.SIGTERM, self._end_by)
 
     def _end_by(self, number: int, frame: FrameType | None) -> None:
-        self.end_own()
+        self._end_own_if_orphaned()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
 
@@ -53,12 +55,16 @@ class Orphan:
     def _wait(self) -> None:
         _poll(self._orders, None)
         time.sleep(GRACE)
-        self.end_own()
+        self._end_own_if_orphaned()
         os.kill(os.getpid(), signal.SIGKILL)
 
-    def end_own(self) -> None:
-        """End what this process has started, if it is orphaned; else the preload process will."""
+    def _end_own_if_orphaned(self) -> None:
         if os.getppid() != self._parent or _poll(self._status, 0):
+            self.end_own()
+
+    def end_own(self) -> None:
+        """End what this process has started; a look at all processes, unless it has started none."""
+        if family.has_started_any():
             family.end_all(partial(left_by, self._log), family.reap_children)
 
 

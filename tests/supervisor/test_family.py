@@ -81,6 +81,21 @@ def test_all_of_a_family_end(ancestor: subprocess.Popen[str]) -> None:
     assert not any(alive(pid) for pid in found)
 
 
+@pytest.mark.parametrize("ends", [False, True])
+def test_whether_a_process_has_started_any(ends: bool) -> None:
+    """Children that live count, and those that were waited for."""
+    program = (
+        "import subprocess\n"
+        "from graphflow.supervisor.family import has_started_any\n"
+        "before = has_started_any()\n"
+        "child = subprocess.Popen(['cat'], stdin=subprocess.PIPE)\n"
+        f"if {ends}: child.communicate()\n"
+        "print(before, has_started_any())\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (run.stdout, run.stderr) == ("False True\n", "")
+
+
 def test_what_tells_whose_a_process_is(ancestor: subprocess.Popen[str]) -> None:
     """The variables that it was started with, and the files that it has open; nothing of one that is gone."""
     child = int(line(ancestor))

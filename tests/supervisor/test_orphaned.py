@@ -53,6 +53,36 @@ def test_a_blocked_loop_and_a_program(machine: Machine, project: Path) -> None:
         file.unlink()
 
 
+LEAVING = """\
+import os, subprocess
+from graphflow import Node
+
+class Leaving(Node):
+    def __init__(self):
+        super().__init__("leaving")
+        subprocess.Popen(["sleep", "600"], start_new_session=True)
+        subprocess.run(["sh", "-c", "setsid sleep 600 &"])
+"""
+
+
+def test_a_worker_that_ends_leaves_nothing(machine: Machine, project: Path) -> None:
+    """Even before the preload process has noticed, and so whatever is killed then."""
+    (project / "nodes" / "leaving.py").write_text(LEAVING)
+    machine.run("up", "-d", write(project, "nodes:\n  /n: {class: nodes.leaving:Leaving}\n"), cwd=project)
+    worker = rows(machine)["/n"]["pid"]
+    supervisor = psutil.Process(supervisor_of(machine)["pid"])
+    [preload] = supervisor.children()
+    started = [child.pid for child in preload.children(recursive=True)]
+    assert len(started) == 3
+    for process in (supervisor, preload):
+        process.suspend()
+    os.kill(worker, signal.SIGTERM)
+    machine.until(lambda: not any(map(alive, started)), "the worker and what it has started are gone")
+    for process in (supervisor, preload):
+        process.resume()
+    machine.look("down")
+
+
 def test_what_a_worker_has_left(tmp_path: Path) -> None:
     """It is known by its parent, its environment or its output; who only reads the log is left alone."""
     log = tmp_path / "n.log"
