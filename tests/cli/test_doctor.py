@@ -61,6 +61,7 @@ def test_nothing_runs(machine: Machine) -> None:
     assert "no such command 'now'" in machine.look("doctor", "now", code=2)
 
 
+@slow
 def test_a_stopped_process(machine: Machine, tmp_path: Path) -> None:
     """It is told at once, and still when the network has forgotten it; a program that is no node is told likewise."""
     (tmp_path / "g.yaml").write_text("nodes: {/talker: {class: nodes.talker:Talker}, /p: {command: [sleep, '99']}}\n")

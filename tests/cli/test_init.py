@@ -55,6 +55,7 @@ def test_its_nodes_are_never_shadowed_by_ours(machine: Machine, tmp_path: Path) 
     assert node.end() == 0
 
 
+@slow
 def test_its_nodes_have_names(machine: Machine, tmp_path: Path) -> None:
     """As its `pyproject.toml` says, before it is installed, too; no package of its wheel is called `nodes`."""
     machine.look("init", "mylab", cwd=tmp_path)

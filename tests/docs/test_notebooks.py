@@ -7,14 +7,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import nbclient
+import nbformat
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 from tests.docs.test_docs import blocks
-
-nbclient = pytest.importorskip("nbclient")
-nbformat = pytest.importorskip("nbformat")
-pytest.importorskip("ipykernel")
 
 pytestmark = pytest.mark.real
 
@@ -36,7 +35,7 @@ def run_cells(sources: list[str], machine: Machine, folder: Path, monkeypatch: p
     for name, value in {**machine.env, "JUPYTER_PATH": str(folder / "jupyter"), "IPYTHONDIR": str(folder)}.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(folder / "jupyter"))
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
     nbclient.NotebookClient(
         notebook, timeout=LIMIT, kernel_name="this", resources={"metadata": {"path": folder}}
     ).execute()
@@ -52,6 +51,7 @@ def shown(cell: Any) -> str:
     return "".join(texts)
 
 
+@slow
 def test_the_page(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """No cell fails; numbers, logged errors, the turtle and the plot appear in the cells that make them."""
     sources = [block.text for block in blocks(PAGE, "python")]

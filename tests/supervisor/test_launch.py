@@ -192,7 +192,7 @@ def test_a_supervisor_that_dies(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.real
 @pytest.mark.skipif(is_portable(), reason="the portable way has no guardian")
-@pytest.mark.parametrize("victim", ["guardian", "supervisor", "preload"])
+@pytest.mark.parametrize("victim", some(["guardian", "supervisor", "preload"], "preload"))
 def test_a_start_whose_processes_are_killed(machine: Machine, project: Path, victim: str) -> None:
     """As soon as the last of the three is there: the end is told with its cause, and nothing is left."""
     shutil.copy(PROGRAMS / "supervisor" / "slow_import.py", project / "nodes")

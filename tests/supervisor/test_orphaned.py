@@ -13,6 +13,7 @@ import pytest
 
 from graphflow.supervisor.orphaned import LOG_VARIABLE, left_by
 from graphflow.system import is_portable
+from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import rows, supervisor_of, write
 
@@ -37,6 +38,7 @@ class Stuck(Node):
 GRAPH = "nodes:\n  /n: {class: nodes.stuck:Stuck}\n  /p: {command: [sleep, '600']}\n"
 
 
+@slow
 def test_a_blocked_loop_and_a_program(machine: Machine, project: Path) -> None:
     """Neither cleans up by itself; both end, and so does what the node has started."""
     (project / "nodes" / "stuck.py").write_text(STUCK)

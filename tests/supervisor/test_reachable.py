@@ -27,6 +27,7 @@ def test_a_run_directory_that_is_taken_away(machine: Machine, project: Path) -> 
     assert up.wait() == 0
 
 
+@slow
 @pytest.mark.skipif(is_portable(), reason="the portable way has a port")
 def test_a_socket_that_is_removed(machine: Machine, project: Path) -> None:
     """It is made again; `down` waits for that, and the nodes are stopped as ever."""

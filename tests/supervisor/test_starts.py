@@ -13,6 +13,7 @@ from graphflow.errors import SupervisorError
 from graphflow.supervisor import starts
 from graphflow.supervisor.rundir import runtime_root
 from graphflow.supervisor.starts import Announcement, Start, starting, wait_started
+from tests.cases import slow
 from tests.conftest import PROGRAMS, Machine
 from tests.supervisor.running import nothing_is_left, write
 
@@ -66,6 +67,7 @@ def test_a_start_that_takes_too_long(here: Path, monkeypatch: pytest.MonkeyPatch
     announced.end()
 
 
+@slow
 @pytest.mark.real
 def test_down_while_a_graph_is_being_started(machine: Machine, project: Path) -> None:
     """It is waited for and stopped, and the command that starts it fails."""
