@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from graphflow.cli import output
@@ -36,7 +36,7 @@ Take = Callable[[bytes, int, int], object]
 """Takes in a message that came at a moment of the monotonic clock, and of the clock of stamps, in nanoseconds."""
 
 
-def hz(topics: list[str], window: int, expression: str) -> int:
+def hz(topics: list[str], window: int, expression: str, *, as_json: bool) -> int:
     """Tell how often messages come; returns the exit code."""
     condition = compiled(expression) if expression else None
     rates = {topic: Arrivals(window) for topic in topics}
@@ -48,29 +48,36 @@ def hz(topics: list[str], window: int, expression: str) -> int:
         decode = registry.codec(type_name).decode
         return lambda payload, now_ns, _: condition(decode(payload)) and add(now_ns)
 
-    def text(_: int) -> str:
-        return table(rates) if len(topics) > 1 else rates[topics[0]].text()
+    def tell(_: int) -> None:
+        if as_json:
+            _tell_numbers({topic: one.numbers() for topic, one in rates.items()})
+        else:
+            _tell_text(table(rates) if len(topics) > 1 else rates[topics[0]].text())
 
-    return visit(lambda node: _measure(node, topics, meter, text))
+    return visit(lambda node: _measure(node, topics, meter, tell))
 
 
-def bw(topics: list[str], window: int) -> int:
+def bw(topics: list[str], window: int, *, as_json: bool) -> int:
     """Tell how many bytes come; returns the exit code."""
     weights = {topic: Weights(window) for topic in topics}
-    output.lines(f"Subscribed to [{topic}]" for topic in topics)
+    if not as_json:
+        output.lines(f"Subscribed to [{topic}]" for topic in topics)
 
     def meter(topic: str, _: str) -> Take:
         add = weights[topic].add
         return lambda payload, now_ns, _: add(now_ns, len(payload))
 
-    def text(now_ns: int) -> str:
+    def tell(now_ns: int) -> None:
+        if as_json:
+            _tell_numbers({topic: one.numbers(now_ns) for topic, one in weights.items()})
+            return
         texts = {topic: words for topic, one in weights.items() if (words := one.text(now_ns))}
-        return "\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items())
+        _tell_text("\n".join(f"{topic}: {words}" if len(topics) > 1 else words for topic, words in texts.items()))
 
-    return visit(lambda node: _measure(node, topics, meter, text))
+    return visit(lambda node: _measure(node, topics, meter, tell))
 
 
-def delay(topic: str, window: int) -> int:
+def delay(topic: str, window: int, *, as_json: bool) -> int:
     """Tell how old messages are when they come; returns the exit code."""
     delays = Delays(window)
 
@@ -86,11 +93,28 @@ def delay(topic: str, window: int) -> int:
 
         return take
 
-    return visit(lambda node: _measure(node, [topic], meter, lambda _: delays.text()))
+    def tell(_: int) -> None:
+        _tell_numbers({topic: delays.numbers()}) if as_json else _tell_text(delays.text())
+
+    return visit(lambda node: _measure(node, [topic], meter, tell))
 
 
-async def _measure(node: Node, topics: list[str], meter: Callable[[str, str], Take], text: Callable[[int], str]) -> int:
-    """Listen to topics, as soon as each is there, and print a text every second."""
+def _tell_text(words: str) -> None:
+    if words:  # of a single message there is nothing to tell yet
+        output.data(words)
+
+
+def _tell_numbers(found: Mapping[str, Mapping[str, float] | None]) -> None:
+    """A line of JSON for each topic of which there is something to tell."""
+    for topic, numbers in found.items():
+        if numbers is not None:
+            output.as_json({"topic": topic, **numbers})
+
+
+async def _measure(
+    node: Node, topics: list[str], meter: Callable[[str, str], Take], tell: Callable[[int], None]
+) -> int:
+    """Listen to topics, as soon as each is there, and tell of them every second."""
     clock, cache = node.clock, node.context.cache
     failed: list[UsageFault] = []
     count = 0
@@ -122,8 +146,7 @@ async def _measure(node: Node, topics: list[str], meter: Callable[[str, str], Ta
             next_ns += to_ns(EVERY)
             if count > told:
                 told, heard_ns, is_silence_told = count, now_ns, False
-                if words := text(now_ns):  # of a single message there is nothing to tell yet
-                    output.data(words)
+                tell(now_ns)
         if now_ns - heard_ns >= to_ns(SILENT) and not is_silence_told:
             is_silence_told = True
             _tell_silence(cache, sorted(waiting))

@@ -231,35 +231,38 @@ def find(type_name: str, count_topics: bool, include_hidden_topics: bool, as_jso
 @click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
 @click.option("--filter", "expression", default="", help="Count only messages m for which this holds: 'm.data > 3'.")
 @click.option("--wall-time", is_flag=True, help="By the wall clock, as always here.")
-def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool) -> int:  # noqa: ARG001 - ROS 2's word
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second for each topic.")
+def hz(names: tuple[str, ...], window: int, expression: str, wall_time: bool, as_json: bool) -> int:  # noqa: ARG001 - ROS 2's word
     """Show how often messages are published. Ctrl-C stops it."""
     from graphflow.cli import measuring
 
     topics = list(dict.fromkeys(expand(name, "/", "cli") for name in names))
     _learn(*topics if expression else ())
-    return measuring.hz(topics, window, expression)
+    return measuring.hz(topics, window, expression, as_json=as_json)
 
 
 @topic.command()
 @click.argument("names", metavar="TOPIC...", nargs=-1, required=True)
 @click.option("-w", "--window", type=click.IntRange(1), default=100, show_default=True, help="Messages to average.")
-def bw(names: tuple[str, ...], window: int) -> int:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second for each topic.")
+def bw(names: tuple[str, ...], window: int, as_json: bool) -> int:
     """Show how many bytes are published. Ctrl-C stops it."""
     from graphflow.cli import measuring
 
-    return measuring.bw(list(dict.fromkeys(expand(name, "/", "cli") for name in names)), window)
+    return measuring.bw(list(dict.fromkeys(expand(name, "/", "cli") for name in names)), window, as_json=as_json)
 
 
 @topic.command()
 @click.argument("name", metavar="TOPIC")
 @click.option("-w", "--window", type=click.IntRange(1), default=10000, show_default=True, help="Messages to average.")
-def delay(name: str, window: int) -> int:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line every second.")
+def delay(name: str, window: int, as_json: bool) -> int:
     """Show how old messages are when they come, by the stamps in their headers. Ctrl-C stops it."""
     from graphflow.cli import measuring
 
     full = expand(name, "/", "cli")
     _learn(full)
-    return measuring.delay(full, window)
+    return measuring.delay(full, window, as_json=as_json)
 
 
 @topic.command(short_help="Draw numbers of messages as curves.")

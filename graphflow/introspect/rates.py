@@ -54,6 +54,11 @@ class Arrivals:
         """Messages a second."""
         return 1 / gaps.mean if gaps.mean else 0.0
 
+    def numbers(self) -> dict[str, float] | None:
+        """For programs: messages a second, and seconds between them; None while there is nothing to tell."""
+        gaps = self.gaps()
+        return None if gaps is None else {"rate": self.rate(gaps), **_named(gaps)}
+
     def text(self) -> str:
         """As `ros2 topic hz` prints it; empty while there is nothing to tell."""
         gaps = self.gaps()
@@ -75,11 +80,20 @@ class Delays:
     def add(self, delay_ns: int) -> None:
         self._delays.append(delay_ns / 1e9)
 
+    def spread(self) -> Spread | None:
+        """Seconds; None while there is no message."""
+        return Spread.of(list(self._delays)) if self._delays else None
+
+    def numbers(self) -> dict[str, float] | None:
+        """For programs, in seconds; None while there is nothing to tell."""
+        spread = self.spread()
+        return None if spread is None else {"delay": spread.mean, **_named(spread)}
+
     def text(self) -> str:
         """As `ros2 topic delay` prints it; empty while there is nothing to tell."""
-        if not self._delays:
+        spread = self.spread()
+        if spread is None:
             return ""
-        spread = Spread.of(list(self._delays))
         return f"average delay: {spread.mean:.3f}\n\t{_spread(spread)}"
 
 
@@ -103,14 +117,29 @@ class Weights:
         seconds = (now_ns - self._came[0][0]) / 1e9
         return sum(size for _, size in self._came) / seconds if seconds > 0 else 0.0
 
+    def sizes(self) -> Spread | None:
+        """Bytes of messages; None while there are fewer than two."""
+        return Spread.of([float(size) for _, size in self._came]) if len(self._came) > 1 else None
+
+    def numbers(self, now_ns: int) -> dict[str, float] | None:
+        """For programs: bytes a second, and bytes of messages; None while there is nothing to tell."""
+        sizes = self.sizes()
+        if sizes is None:
+            return None
+        return {"bytes_per_second": self.per_second(now_ns), "mean": sizes.mean, **_named(sizes)}
+
     def text(self, now_ns: int) -> str:
         """As `ros2 topic bw` prints it; empty while there are fewer than two messages."""
-        if len(self._came) < 2:
+        sizes = self.sizes()
+        if sizes is None:
             return ""
-        sizes = Spread.of([float(size) for _, size in self._came])
         unit, by = _unit(self.per_second(now_ns))  # for all, as ROS 2 has it
         total, mean, least, most = (f"{n / by:.2f} {unit}" for n in (self.per_second(now_ns), *sizes[:3]))
         return f"{total}/s from {sizes.window} messages\n\tMessage size mean: {mean} min: {least} max: {most}"
+
+
+def _named(spread: Spread) -> dict[str, float]:
+    return {"min": spread.least, "max": spread.most, "std_dev": spread.deviation, "window": spread.window}
 
 
 def _spread(spread: Spread) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import signal
 from collections.abc import Iterator
@@ -121,3 +122,18 @@ def test_what_cannot_be_measured(things: Machine) -> None:
     assert "has no header, and so no stamp to tell a delay by" in things.run("topic", "delay", "/rosout", code=2)
     assert "AttributeError" in things.run("topic", "hz", "/things", "--filter", "m.y", code=2, cwd=Path("/"))
     watch(things, "hz", "/thing", until="topic [/thing] does not appear to be published yet; did you mean '/things'?")
+
+
+@slow
+@pytest.mark.parametrize(
+    ("words", "number"),
+    [("hz /things /rosout", "rate"), ("bw /things", "bytes_per_second"), ("delay /things", "delay")],
+)
+def test_for_programs(things: Machine, words: str, number: str) -> None:
+    """A line of JSON every second, and nothing else."""
+    program = things.start("topic", *words.split(), "--json", cwd=Path("/"))
+    program.wait_for("window")
+    assert program.end(signal.SIGINT) == 0
+    first = json.loads(program.text.splitlines()[0])
+    assert first["topic"] == "/things"
+    assert first[number] > 0

@@ -99,3 +99,20 @@ def test_no_weight_at_all() -> None:
     assert weights.per_second(5) == 0.0
     weights.add(5, 100)
     assert weights.per_second(5) == 0.0
+
+
+def test_numbers_for_programs() -> None:
+    """The same as the words have, in SI units; nothing before there is anything to tell."""
+    arrivals, delays, weights = Arrivals(100), Delays(100), Weights(100)
+    assert (arrivals.numbers(), delays.numbers(), weights.numbers(0)) == (None, None, None)
+    for ms in (0, 250, 1000):
+        arrivals.add(ms * 10**6)
+        delays.add(ms * 10**6)
+        weights.add(ms * 10**6, 100 + ms)
+    assert arrivals.numbers() == {"rate": 2.0, "min": 0.25, "max": 0.75, "std_dev": 0.25, "window": 2}
+    found = delays.numbers()
+    assert found is not None
+    assert {**found, "std_dev": 0} == {"delay": pytest.approx(1.25 / 3), "min": 0, "max": 1, "std_dev": 0, "window": 3}
+    found = weights.numbers(2 * 10**9)
+    assert found is not None
+    assert (found["bytes_per_second"], found["min"], found["max"], found["window"]) == (775, 100, 1100, 3)
