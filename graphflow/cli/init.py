@@ -98,7 +98,7 @@ args:
   text: {default: hello, doc: What the greeter says.}
 
 nodes:
-  /greeter:
+  greeter:
     class: @name.greeter:Greeter
     params: {text: $(var text), rate: 2.0}
 """,

@@ -37,7 +37,7 @@ from graphflow.supervisor import debugging, family, logfile
 from graphflow.supervisor.classes import add_root, import_class
 from graphflow.supervisor.container import Container
 from graphflow.supervisor.orders import Orders
-from graphflow.supervisor.orphaned import Orphan
+from graphflow.supervisor.orphaned import LOG_VARIABLE, Orphan
 from graphflow.system import end_with_parent
 from graphflow.transport import loop
 
@@ -349,7 +349,7 @@ def _start() -> None:
         status, orders, parent = map(int, sys.argv[1:])
         end_with_parent(parent, signal.SIGTERM)
         job = json.load(sys.stdin)
-        main(job, PipeReporter(status, orders, Orphan(parent, status, orders, job["log"])))
+        main(job, PipeReporter(status, orders, Orphan(parent, status, orders, os.environ[LOG_VARIABLE])))
     given = json.load(sys.stdin)
     main(given["job"], SocketReporter(int(sys.argv[1]), given["token"], given["job"]["process"]))
 

@@ -211,12 +211,8 @@ class _ZenohRequest:
         return attachment.to_bytes() if attachment is not None else None
 
     def reply(self, payload: Payload, attachment: bytes) -> None:
-        with self._query as query:
-            if self._key.startswith(OWN):  # one that reads no answers must not hold the loop
-                drop = zenoh.CongestionControl.DROP
-                query.reply(self._key, payload, attachment=attachment, congestion_control=drop)
-            else:
-                query.reply(self._key, payload, attachment=attachment)
+        with self._query as query:  # whether the answer may be dropped is what the query says of itself
+            query.reply(self._key, payload, attachment=attachment)
 
     def reply_error(self, payload: bytes) -> None:
         with self._query as query:

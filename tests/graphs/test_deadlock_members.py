@@ -74,7 +74,9 @@ def test_kill_minus_9_of_a_member(lab: Lab, is_reporter: bool) -> None:
     wait_for_all(up, [f"[{before}]: ServerLost: the server of /{dead}/answer went away", *answered(last)])
     up.wait_for("has cleared")
     assert lab.machine.look("waits") == "nothing is waiting\n"
-    assert "nothing wrong" in lab.machine.look("doctor")
+    told = lab.machine.look("doctor", code=1)
+    assert f"/{dead} has failed: signal SIGKILL" in told
+    assert "DEADLOCK" not in told
     assert up.end() == 1
     assert len(reports(up.text)) == 1
     assert up.text.count("has cleared") == 1

@@ -26,7 +26,7 @@ def write(project: Path, text: str, name: str = "lab.yaml") -> str:
 
 
 def rows(machine: Machine) -> dict[str, dict[str, Any]]:
-    return {row["node"]: row for row in json.loads(machine.look("ps", "--json"))}
+    return {row["node"]: row for row in json.loads(machine.look("ps", "--json").splitlines()[0])}
 
 
 def supervisor_of(machine: Machine) -> dict[str, Any]:

@@ -211,6 +211,27 @@ async def test_a_session_that_leaves_withdraws_all_at_once(
     await other.close()
 
 
+async def test_questions_about_the_process_are_answered(
+    graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
+) -> None:
+    """Also where warnings are errors, as in these tests: Zenoh's are of arguments that it no longer knows."""
+    loop = asyncio.get_running_loop()
+    client, server = ZenohSession(loop), ZenohSession(loop)
+    requests = Inbox(server.bell, None, lambda: requests.items.popleft().reply(b"yes", b""))
+    server.open_server("@graphflow/0/groups/1", requests)
+    caller = client.open_caller("@graphflow/0/groups/1", lambda: None)
+    answers = list[Answer]()
+    async with asyncio.timeout(LIMIT):
+        while not caller.has_server:
+            await asyncio.sleep(0.01)
+        done = loop.create_future()
+        caller.call(b"", b"", lambda answer: done.set_result(None) if answer is None else answers.append(answer))
+        await done
+    client.raw.close()  # type: ignore[no-untyped-call]
+    server.raw.close()  # type: ignore[no-untyped-call]
+    assert [answer.payload for answer in answers] == [b"yes"]
+
+
 async def test_an_answer_does_not_overtake_what_was_published_before_it(
     graphflow_runner: asyncio.Runner, foreign_router: zenoh.Session
 ) -> None:
