@@ -126,8 +126,15 @@ def _types(view: View, name: str) -> list[str]:
     help="Seconds to wait until a server accepts.",
 )
 @stdin_option
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for all that happens.")
 def send_goal(
-    name: str, type_name: str | None, values: tuple[str, ...], feedback: bool, timeout: float, from_stdin: bool
+    name: str,
+    type_name: str | None,
+    values: tuple[str, ...],
+    feedback: bool,
+    timeout: float,
+    from_stdin: bool,
+    as_json: bool,
 ) -> int:
     """Send a goal: VALUES are its fields in YAML, such as "{theta: 1.57}". Ctrl-C cancels the goal.
 
@@ -156,4 +163,4 @@ def send_goal(
     goal = from_plain(registry.interface_class(f"{actual}_Goal"), message_values(values, from_stdin=from_stdin))
     if not there:
         output.talk(f"there is no action {full} yet{did_you_mean(full, actions)}")
-    return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout)
+    return send(full, registry.interface_class(actual), goal, show_feedback=feedback, timeout=timeout, as_json=as_json)

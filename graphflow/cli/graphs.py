@@ -50,6 +50,7 @@ PS_LIMIT = 1.0
 )
 @click.option("--domain", type=click.IntRange(0), help="Domain id; overrides the file's.")
 @click.option("--wire", type=click.Choice(PROFILES), help="ROS 2 distribution whose message definitions to use.")
+@click.option("--json", "as_json", is_flag=True, help="Print what happens as JSON, a line each; without the console.")
 @reach_options
 def up(
     graph: str,
@@ -65,6 +66,7 @@ def up(
     debug: tuple[str, ...],
     domain: int | None,
     wire: str | None,
+    as_json: bool,
     connect: tuple[str, ...],
     net: str | None,
 ) -> int:
@@ -89,7 +91,7 @@ def up(
     # Nothing heavy may be imported before the fork: the children share what this process has.
     from graphflow.supervisor.launch import launch
 
-    uses_console = not detach and not no_console and output.is_terminal()
+    uses_console = not (detach or no_console or as_json) and output.is_terminal()
     report, launched = launch(path, list(args), domain, only, debug, watch=watch)
     if not report["ok"]:
         output.error(report["message"]) if report["exit_code"] != exits.USAGE else output.talk(report["message"])
@@ -99,7 +101,7 @@ def up(
         return _open_console(report["run"])
     from graphflow.cli.streaming import stream
 
-    code = stream(report["run"], report["classes"], detach=detach, end=launched.wait)
+    code = stream(report["run"], report["classes"], detach=detach, end=launched.wait, as_json=as_json)
     if detach:
         launched.let_go()
     return code
@@ -166,7 +168,8 @@ def _show_args(path: Path) -> int:
 @_graph
 @_everywhere
 @click.option("--now", is_flag=True, help="Kill at once, without time for cleanup.")
-def down(name: str | None, everything: bool, now: bool) -> int:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for each graph.")
+def down(name: str | None, everything: bool, now: bool, as_json: bool) -> int:
     """Stop a running graph; returns when all its processes have ended.
 
     Without --graph or --all it is the one of this domain.
@@ -174,7 +177,7 @@ def down(name: str | None, everything: bool, now: bool) -> int:
     runs = _to_stop(name, everything=everything)
     from graphflow.cli.streaming import take_down
 
-    return max(take_down(run, now=now) for run in runs)
+    return max(take_down(run, now=now, as_json=as_json) for run in runs)
 
 
 def _to_stop(name: str | None, *, everything: bool) -> list[GraphRun]:
@@ -257,6 +260,7 @@ def _table(rows: list[dict[str, Any]]) -> list[str]:
 @click.option("--level", type=click.Choice(LEVELS), help="Only messages of this level or a more serious one.")
 @click.option("--since", metavar="TIME", help="Only messages of the last 30s, 5m or 2h, or since 14:05[:30].")
 @_graph
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, a line for each line.")
 def logs(
     nodes: tuple[str, ...],
     follow: bool,
@@ -265,6 +269,7 @@ def logs(
     level: str | None,
     since: str | None,
     name: str | None,
+    as_json: bool,
 ) -> int:
     """Show what the nodes of a graph have written, even after it has ended."""
     from graphflow.cli.loglines import Chosen
@@ -290,7 +295,7 @@ def logs(
         if node not in files:
             raise UsageFault(f"{node!r} has no log in {folder}{did_you_mean(node, files)}")
     chosen = Chosen(level, since) if level or since else None
-    reader = LogReader([files[n] for n in wanted], max(map(len, wanted), default=0), chosen)
+    reader = LogReader([files[n] for n in wanted], max(map(len, wanted), default=0), chosen, as_json=as_json)
     reader.show(last=lines)
     while follow and alive:
         time.sleep(0.1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from pathlib import Path
+from typing import Any
 
 from graphflow.errors import UsageFault
 
@@ -45,6 +46,18 @@ class Chosen:
                 found.append(line)
         self._goes_on[file] = is_wanted
         return found
+
+
+def record(node: str, line: str) -> dict[str, Any]:
+    """A line of a log for programs: its level, time, logger and text; of one without a head only the text."""
+    head = _HEAD.match(line)
+    if head is None:
+        return {"event": "log", "node": node, "level": None, "stamp_ns": None, "logger": None, "text": line}
+    seconds, _, fraction = head[2].partition(".")
+    logger, _, text = line[head.end() :].partition("]: ")
+    stamp_ns = int(seconds) * 10**9 + int(fraction.ljust(9, "0"))
+    found = {"level": head[1], "stamp_ns": stamp_ns, "logger": logger.removeprefix("["), "text": text}
+    return {"event": "log", "node": node, **found}
 
 
 def time_of(text: str, now: float) -> float:

@@ -95,29 +95,42 @@ def status(node: str, name: str | None, as_json: bool) -> int:
 @click.option("--ended", is_flag=True, help="Until they have ended.")
 @click.option("--timeout", type=click.FloatRange(0), default=60.0, show_default=True, help="Seconds to wait.")
 @_graph
-def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None) -> int:
+@click.option("--json", "as_json", is_flag=True, help="Print how the nodes are then as JSON, as `ps` does.")
+def wait(nodes: tuple[str, ...], ready: bool, ended: bool, timeout: float, name: str | None, as_json: bool) -> int:
     """Wait until nodes are ready, or all nodes of a graph that is being started; it may not even have begun to.
 
     Exit code 0: they are; 1: one has failed; 4: not within --timeout.
     """
     if ready and ended:
         raise UsageFault("--ready and --ended: one of them")
+    rows, code, why = _waited(nodes, name, timeout, ended=ended)
+    if as_json:
+        output.as_json(rows)
+    if why:
+        output.error(why)
+    return code
+
+
+def _waited(
+    nodes: tuple[str, ...], graph: str | None, timeout: float, *, ended: bool
+) -> tuple[list[dict[str, Any]], int, str]:
+    """Wait for nodes; returns their rows, the exit code and, if they are not as wanted, why."""
     deadline = time.monotonic() + timeout
     while True:
-        rows = _rows_if_any(name)
+        rows = _rows_if_any(graph)
         if rows is None and ended:
-            return exits.OK
+            return [], exits.OK, ""
         wanted = _wanted(nodes, rows) if rows is not None else []
         failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
         if failed and not ended:
-            output.error(f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}")
-            return exits.FAILED
+            text = f"{failed[0]['node']} has failed: {failed[0]['detail']}\n  its log: {failed[0]['log']}"
+            return wanted, exits.FAILED, text
         good = OVER if ended else ("ready", "ended")
         if wanted and all(row["state"] in good for row in wanted):
-            return exits.OK
+            return wanted, exits.OK, ""
         if time.monotonic() > deadline:
             left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
-            raise SupervisorError(f"after {timeout:g} s {left or _not_there()}", exits.TIMEOUT)
+            return wanted, exits.TIMEOUT, f"after {timeout:g} s {left or _not_there()}"
         time.sleep(LOOK_EVERY)
 
 

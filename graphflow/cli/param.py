@@ -195,7 +195,8 @@ def _described(d: ParameterDescriptor) -> str:
 @click.argument("name", metavar="NODE")
 @_hidden
 @_timeout
-def dump(name: str, timeout: float) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def dump(name: str, timeout: float, as_json: bool) -> None:
     """Write the parameters of a node as a file that `param load`, `--params-file` and ROS 2 read."""
     from graphflow.graph.params_file import write
     from graphflow.runtime.values import from_message
@@ -205,7 +206,11 @@ def dump(name: str, timeout: float) -> None:
         remote = RemoteParameters(view, node, timeout)
         names = remote.names()
         values = dict(zip(names, map(from_message, remote.get(names)), strict=True))
-    output.data(write(node, {n: v for n, v in values.items() if v is not None}).rstrip())
+    set_ones = {n: v for n, v in values.items() if v is not None}
+    if as_json:
+        output.as_json({"node": node, "parameters": set_ones})
+    else:
+        output.data(write(node, set_ones).rstrip())
 
 
 @param.command()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from asyncio import CancelledError
 from textwrap import indent
-from typing import Any
+from typing import Any, NamedTuple
 
 from graphflow.cli import exits, output
 from graphflow.cli.visiting import visit
@@ -19,59 +19,75 @@ STRAGGLERS = 0.1
 """Seconds in which feedback may still arrive after the goal has ended."""
 
 
-def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float) -> int:
+class _Words(NamedTuple):
+    """How it is told what becomes of a goal."""
+
+    as_json: bool
+
+    def tell(self, text: str, event: str = "", **more: Any) -> None:
+        """Print a text or, for programs, an event; a text without one is not for them."""
+        if not self.as_json:
+            output.data(text)
+        elif event:
+            output.as_json({"event": event, **more})
+
+
+def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: float, as_json: bool = False) -> int:
     """Send a goal and follow it to its end; returns the exit code."""
+    words = _Words(as_json)
 
     async def work(node: Node) -> int:
         client = node.create_action_client(type_, name)
-        output.data("Waiting for an action server to become available...")
+        words.tell("Waiting for an action server to become available...")
         try:
             await client.expect_ready(timeout)
         except ServiceUnavailable as error:
             output.error(str(error))
             return exits.TIMEOUT
-        output.data(f"Sending goal:\n{_shown(goal)}")
+        words.tell(f"Sending goal:\n{_shown(goal)}")
         try:
-            return await _follow(client.send(goal, timeout=timeout), show_feedback)
+            return await _follow(client.send(goal, timeout=timeout), show_feedback, words)
         except GoalRejected as error:
-            output.data("Goal was rejected.")
+            words.tell("Goal was rejected.", "rejected")
             output.talk(str(error))
             return exits.FAILED
 
     return visit(work)
 
 
-async def _follow(sending: Any, show_feedback: bool) -> int:
+async def _follow(sending: Any, show_feedback: bool, words: _Words) -> int:
     sent: ClientGoalHandle[Any, Any, Any] | None = None
     try:
         async with sending as sent:
             assert sent is not None
-            output.data(f"Goal accepted with ID: {sent.goal_id.hex()}\n")
+            words.tell(f"Goal accepted with ID: {sent.goal_id.hex()}\n", "accepted", goal_id=sent.goal_id.hex())
             try:
                 if show_feedback:
-                    await _show_feedback(sent)
+                    await _show_feedback(sent, words)
                     # The result takes another path through the network than feedback and may overtake the last of it.
                     await asyncio.sleep(STRAGGLERS)
-                    await _show_feedback(sent)
-                return await _result(sent)
+                    await _show_feedback(sent, words)
+                return await _result(sent, words)
             except CancelledError:
-                output.data("Canceling goal...")
+                words.tell("Canceling goal...", "canceling")
                 raise
     except CancelledError:
         if sent is not None:
             is_canceled = sent.status.name == "CANCELED"
-            output.data("Goal canceled." if is_canceled else f"Goal is {sent.status.name}.")
+            words.tell(
+                "Goal canceled." if is_canceled else f"Goal is {sent.status.name}.", "end", status=sent.status.name
+            )
             return exits.OK if is_canceled else exits.FAILED
-        output.data("Goal withdrawn before it was accepted.")
+        words.tell("Goal withdrawn before it was accepted.", "withdrawn")
         raise
 
 
-async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any]) -> None:
+async def _show_feedback(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> None:
     async for feedback in sent.feedback():
-        output.data(f"Feedback:\n{_shown(feedback)}")
+        words.tell(f"Feedback:\n{_shown(feedback)}", "feedback", feedback=plain(feedback))
 
 
-async def _result(sent: ClientGoalHandle[Any, Any, Any]) -> int:
+async def _result(sent: ClientGoalHandle[Any, Any, Any], words: _Words) -> int:
     code = exits.FAILED
     try:
         result = await sent.result()
@@ -82,8 +98,8 @@ async def _result(sent: ClientGoalHandle[Any, Any, Any]) -> int:
     except GoalLost as error:
         output.error(str(error))
         return exits.FAILED
-    output.data(f"Result:\n{_shown(result)}")
-    output.data(f"Goal finished with status: {sent.status.name}")
+    words.tell(f"Result:\n{_shown(result)}", "result", result=plain(result))
+    words.tell(f"Goal finished with status: {sent.status.name}", "end", status=sent.status.name)
     return code
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from graphflow.cli import exits, output
-from graphflow.cli.loglines import Chosen
+from graphflow.cli.loglines import Chosen, record
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
 from graphflow.supervisor.control import ControlClient
@@ -31,6 +31,8 @@ _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
 _SOCKET_LIMIT = 3.0
 """Seconds that a supervisor may take to see that its socket was removed, and to make it again."""
+_TOLD = ("up", "step", "said", "note", "exited", "stopping", "error", "end")
+"""Events of the supervisor's that `up --json` prints."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
 
 
@@ -40,10 +42,13 @@ class LogReader:
     Args:
         width: Of the names.
         chosen: Which lines; None for all.
+        as_json: A line of JSON for each, for programs.
     """
 
-    def __init__(self, files: Iterable[Path], width: int, chosen: Chosen | None = None) -> None:
-        self._chosen = chosen
+    def __init__(
+        self, files: Iterable[Path], width: int, chosen: Chosen | None = None, *, as_json: bool = False
+    ) -> None:
+        self._chosen, self._as_json = chosen, as_json
         self._files = dict.fromkeys(files, (0, b""))
         self._width = width
         self._colours = {path: _COLOURS[i % len(_COLOURS)] for i, path in enumerate(self._files)}
@@ -75,7 +80,10 @@ class LogReader:
     def _print(self, path: Path, texts: list[str]) -> None:
         self.count += len(texts)
         name = path.stem.ljust(self._width)
-        if self._is_terminal:
+        if self._as_json:
+            for text in texts:
+                output.as_json(record(path.stem, text))
+        elif self._is_terminal:
             output.colored(name, self._colours[path], (f" | {text}" for text in texts))
         else:
             output.lines(f"{name} | {text}" for text in texts)
@@ -91,11 +99,14 @@ def _rest(path: Path, offset: int) -> bytes:
         return b""
 
 
-def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str]) -> int:
+def stream(
+    run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: Callable[[], str], as_json: bool = False
+) -> int:
     """Follow a graph from its start, to its end or until it is up; returns the exit code of `up`.
 
     Args:
         end: Waits for the guardian, and says what ended it and the supervisor.
+        as_json: Print what happens and what is logged as lines of JSON, too.
     """
     interrupts: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -105,7 +116,7 @@ def stream(run: dict[str, Any], classes: dict[str, str], *, detach: bool, end: C
         nodes = _list_nodes(run["socket"])
         with ControlClient(run["socket"]) as client:
             client.send(do="follow")
-            followed = _Stream(run, classes, nodes, client, detach, interrupts).run()
+            followed = _Stream(run, classes, nodes, client, detach, interrupts, as_json=as_json).run()
     except SupervisorError:
         if not GraphRun(**run).wait_gone(_GONE_LIMIT):
             raise
@@ -134,7 +145,10 @@ class _Stream:
         client: ControlClient,
         detach: bool,
         interrupts: list[int],
+        *,
+        as_json: bool = False,
     ) -> None:
+        self._as_json = as_json
         self._run, self._classes, self._client, self._detach = run, classes, client, detach
         self._interrupts = interrupts
         """Signals that asked to stop, in order of arrival."""
@@ -149,7 +163,7 @@ class _Stream:
     def run(self) -> int | None:
         """Returns the exit code of `up`; None if the supervisor has gone without a word."""
         files = list(dict.fromkeys(Path(n["log"]) for n in self._nodes))
-        self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0))
+        self._logs = LogReader(files, width=max((len(f.stem) for f in files), default=0), as_json=self._as_json)
         while True:
             select.select([self._client], [], [], _POLL)
             events = self._client.pending()
@@ -186,6 +200,9 @@ class _Stream:
     def _show(self, event: dict[str, Any]) -> int | None:
         """Show one event; returns an exit code when it is the last."""
         what = event["event"]
+        if self._as_json and what in _TOLD:
+            more = {"graph": self._run["graph"], "domain": self._run["domain"], "logs": self._run["logs"]}
+            output.as_json({**event, **(more | {"nodes": self._nodes} if what == "up" else {})})
         if what == "step":
             mark = "done" if event["ok"] else "FAILED"
             output.talk(f"step {event['step']} {mark}: {event['text']}")
@@ -293,7 +310,7 @@ def _shown(place: str) -> str:
     return f"{shown(Path(path))}{colon}{line}" if path else ""
 
 
-def take_down(run: GraphRun, *, now: bool) -> int:
+def take_down(run: GraphRun, *, now: bool, as_json: bool = False) -> int:
     """Stop a graph and say what ends; returns the exit code."""
     output.talk(f"stopping graph {run.graph} in domain {run.domain}")
     if not _answers(run):
@@ -306,10 +323,14 @@ def take_down(run: GraphRun, *, now: bool) -> int:
                     output.talk(f"  {', '.join(event['nodes'])} ended")
                 elif event["event"] == "end":
                     break
-    if not run.wait_gone(2 * _GONE_LIMIT):
+    is_down = run.wait_gone(2 * _GONE_LIMIT)
+    if as_json:
+        output.as_json({"graph": run.graph, "domain": run.domain, "is_down": is_down})
+    if not is_down:
         output.error(f"the supervisor of {run.graph}, process {run.pid}, is still running")
         return exits.TIMEOUT
-    output.data(f"graph {run.graph} is down")
+    if not as_json:
+        output.data(f"graph {run.graph} is down")
     return exits.OK
 
 

@@ -120,7 +120,8 @@ def _show(node: str, known: list[dict[str, Any]], *, as_json: bool) -> None:
 @click.argument("handlers", metavar="HANDLER...", nargs=-1, required=True)
 @click.argument("group")
 @click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, show_default=True, help="Seconds.")
-def move(node: str, handlers: tuple[str, ...], group: str, timeout: float) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def move(node: str, handlers: tuple[str, ...], group: str, timeout: float, as_json: bool) -> None:
     """Move handlers of a running node into another group, made if missing; `none` for no group.
 
     Prints the lines of a graph file that make the move permanent.
@@ -138,6 +139,9 @@ def move(node: str, handlers: tuple[str, ...], group: str, timeout: float) -> No
             if answer.is_error:
                 raise UsageFault(RemoteError.from_payload(answer.payload, "").message)
     told = json.loads(answer.payload)
+    if as_json:
+        output.as_json({"node": full, **told})
+        return
     _show(full, told["groups"], as_json=False)
     output.data(f"\nTo keep it so, {told['where']}")
     output.lines(told["yaml"])

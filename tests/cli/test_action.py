@@ -101,3 +101,13 @@ def test_echo(standing: Machine) -> None:
     found = json.loads(program.text)
     assert found["feedback"]["sequence"][:3] == [0, 1, 1]
     assert len(found["goal_id"]["uuid"]) == 16
+
+
+def test_a_goal_for_programs(standing: Machine) -> None:
+    """What becomes of it, a line of JSON each."""
+    text = standing.look("action", "send_goal", "/fibonacci", TYPE, "{order: 3}", "-f", "--json")
+    told = [json.loads(line) for line in text.splitlines()]
+    assert told[0]["event"] == "accepted"
+    assert {one["event"] for one in told[1:-2]} == {"feedback"}
+    assert told[-2] == {"event": "result", "result": {"sequence": [0, 1, 1, 2]}}
+    assert told[-1] == {"event": "end", "status": "SUCCEEDED"}

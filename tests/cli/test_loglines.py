@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.cli.loglines import Chosen, time_of
+from graphflow.cli.loglines import Chosen, record, time_of
 from graphflow.errors import UsageFault
 
 A, B = Path("a.log"), Path("b.log")
@@ -64,3 +64,12 @@ def test_no_time(text: str) -> None:
     """It is said how one is written."""
     with pytest.raises(UsageFault, match="write 30s, 5m or 2h for so long ago"):
         time_of(text, 0.0)
+
+
+def test_for_programs() -> None:
+    """A line with a head in its parts, any other as text."""
+    found = record("a", "[WARN] [1795223522.100807190] [lab.a]: no]: way")
+    parts = {"level": "WARN", "stamp_ns": 1795223522100807190, "logger": "lab.a", "text": "no]: way"}
+    assert found == {"event": "log", "node": "a", **parts}
+    nothing = dict.fromkeys(("level", "stamp_ns", "logger"))
+    assert record("a", LINES[0]) == {"event": "log", "node": "a", **nothing, "text": LINES[0]}

@@ -59,6 +59,8 @@ def test_waiting(standing: Machine) -> None:
     standing.look("wait", "--ready", "talker", "/office/clerk")
     text = standing.look("wait", "--ended", "talker", "--timeout", "0.1", code=4)
     assert "after 0.1 s /talker is ready" in text
+    [row] = json.loads(standing.look("wait", "talker", "--json"))
+    assert (row["node"], row["state"]) == ("/talker", "ready")
     assert "--ready and --ended: one of them" in standing.look("wait", "--ready", "--ended", code=2)
     assert "has no node /tolker; did you mean '/talker'?" in standing.look("wait", "tolker", code=2)
 

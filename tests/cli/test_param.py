@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +102,9 @@ def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> N
     """Values and types come back, numbers in quotes included; what is read-only is no failure when it is the same."""
     ready(start(machine, tmp_path))
     dumped = machine.run("param", "dump", "/robot")
+    found = json.loads(machine.look("param", "dump", "/robot", "--json"))
+    assert found["node"] == "/robot"
+    assert found["parameters"]
     assert dumped == DUMP
     (tmp_path / "p.yaml").write_text(dumped)
     for name, value in (("title", "other"), ("gain", "7.5"), ("words", "[x]"), ("limits.speed", "4"), ("raw", "[7]")):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import signal
 import sys
 from pathlib import Path
@@ -129,6 +130,30 @@ def test_the_end_has_the_graphs_exit_code(tmp_path: Path, capsys: pytest.Capture
     assert streaming(tmp_path)._show({"event": "end", "exit_code": 1}) == 1
     assert capsys.readouterr().err == "graph lab has ended\n"
     assert streaming(tmp_path, detach=True)._show({"event": "end", "exit_code": 0}) == exits.FAILED
+
+
+def test_events_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each is a line of JSON, beside the words on stderr; logs are, too; what only consoles need is left out."""
+    told = streaming(tmp_path)
+    told._as_json = True
+    for event in (
+        {"event": "up", "seconds": 0.25},
+        {"event": "consoles", "consoles": []},
+        {"event": "note", "text": "x"},
+    ):
+        told._show(event)
+    append(tmp_path / "a.log", "hello\n")
+    LogReader([tmp_path / "a.log"], width=1, as_json=True).show()
+    out, err = capsys.readouterr()
+    up, note, log = map(json.loads, out.splitlines())
+    assert (up["event"], up["graph"], up["nodes"][0]["node"], note) == (
+        "up",
+        "lab",
+        "/a",
+        {"event": "note", "text": "x"},
+    )
+    assert (log["event"], log["node"], log["text"]) == ("log", "a", "hello")
+    assert "graph lab is up" in err
 
 
 def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
