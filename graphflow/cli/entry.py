@@ -1,8 +1,15 @@
 """The way in: Ctrl-C ends the process quietly from here on, even while commands are still being imported."""
 
+from __future__ import annotations
+
 import os
 import signal
 import sys
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from graphflow.supervisor.starts import Announcement
 
 
 def _end(*_: object) -> None:
@@ -17,6 +24,9 @@ if _IS_HEARD:
 
 def main() -> None:
     """Run the command that the command line names."""
+    is_start = sys.argv[1:2] == ["up"]
+    if is_start:
+        _announce()
     if os.environ.get("GRAPHFLOW_ENDS_WITH"):
         from graphflow.system import end_with_parent
 
@@ -28,7 +38,23 @@ def main() -> None:
     try:
         main()
     except SystemExit as end:
+        if is_start:
+            _announced().end()
         _leave(end)
+
+
+def _announce() -> None:
+    """Let a `down` that begins after this wait for the graph, while the command is still being imported."""
+    from graphflow.errors import SupervisorError
+
+    with suppress(SupervisorError):  # which the command will tell
+        _announced().begin()
+
+
+def _announced() -> Announcement:
+    from graphflow.supervisor.starts import ANNOUNCEMENT
+
+    return ANNOUNCEMENT
 
 
 def _leave(end: SystemExit) -> None:

@@ -23,6 +23,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from graphflow.supervisor import family
 from graphflow.supervisor.guardian import guard, leave_note
+from graphflow.supervisor.starts import ANNOUNCEMENT
 from graphflow.system import detached, is_portable, offer_ros2
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from graphflow.runtime.context import Context
     from graphflow.supervisor.rundir import GraphRun, RunDirectory
     from graphflow.supervisor.starter import Starter
-    from graphflow.supervisor.starts import Announcement
     from graphflow.supervisor.supervisor import Supervisor
 
 Report = dict[str, Any]
@@ -81,6 +81,7 @@ def launch(
         `{"ok": true, "run": {...}, "classes": {...}}` or `{"ok": false, "exit_code": n, "message": text}`.
     """
     offer_ros2()
+    ANNOUNCEMENT.begin(file)
     begin = _begin_portable if is_portable() else _begin_forked
     begun = begin(
         {"file": str(file), "given": given, "domain": domain, "only": list(only), "debug": list(debug), "watch": watch}
@@ -91,6 +92,7 @@ def launch(
             data += chunk
     finally:
         os.close(begun.report)
+        ANNOUNCEMENT.end()
     if not data.endswith(b"\n"):
         return {"ok": False, "exit_code": 1, "message": f"{begun.wait()} before the graph was up"}, begun
     report: Report = json.loads(data)
@@ -110,6 +112,7 @@ def _begin_forked(job: dict[str, Any]) -> Launched:
         try:
             os.close(report)
             os.close(lifeline)
+            ANNOUNCEMENT.leave()
             os.setsid()
             # Told here: a supervisor that asked for its parent might get an answer after the guardian's end.
             begun = _Launch(job, write, watched, note, guardian=os.getpid())
@@ -201,7 +204,6 @@ class _Launch:
         self._is_watching, self._debug = bool(job["watch"]), job["debug"]
         self._report_pipe, self._lifeline, self._note = report, _Lifeline(lifeline), note
         self._guardian = guardian
-        self._announcement: Announcement | None = None
         self._starter: Starter
 
     def supervise(self) -> int:
@@ -218,7 +220,6 @@ class _Launch:
             keep = (self._report_pipe, *(fd for fd in (self._note,) if fd >= 0))
             starter = self._starter = _make_starter(keep)
             self._lifeline.watch()
-            self._announce()
             return self._run()
         except GraphFileError as error:
             count = len(error.problems)
@@ -232,15 +233,8 @@ class _Launch:
 
             return self._refuse(1, f"the supervisor failed:\n{traceback.format_exc()}")
         finally:
-            if self._announcement is not None:
-                self._announcement.end()
             if starter is not None:
                 starter.end()
-
-    def _announce(self) -> None:
-        from graphflow.supervisor.starts import Announcement
-
-        self._announcement = Announcement(self._file)
 
     def _report(self, **report: Any) -> None:
         if self._report_pipe < 0:  # the command already knows that the graph is up; what comes now goes to the log
@@ -344,8 +338,6 @@ class _Launch:
         await self._starter.open(Path(run.logs) / rundir.SUPERVISOR_LOG, supervisor.heard, supervisor.starter_lost)
         run = replace(run, socket=await control.open(directory.socket))
         directory.write(run)
-        assert self._announcement is not None
-        self._announcement.end()
         stop = partial(supervisor.begin_stop, now=False, reason="SIGTERM")
         signal.signal(signal.SIGTERM, lambda *_: context.loop.call_soon_threadsafe(stop))
         classes = {path: str(interface.place) for path, interface in interfaces.items()}

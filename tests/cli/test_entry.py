@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import graphflow
 
@@ -40,6 +42,20 @@ def test_a_command_has_pythons_own_handler() -> None:
     code = "import signal, graphflow.cli.main as m; m.main = lambda: print(signal.getsignal(signal.SIGINT).__name__)"
     done = run(f"import graphflow.cli.entry; {code}; graphflow.cli.entry.main()")
     assert done.stdout == "default_int_handler\n"
+
+
+def test_a_graph_is_announced_before_the_command_is_imported(tmp_path: Path) -> None:
+    """As long as the command lasts: a `down` that begins meanwhile imports as much before it looks."""
+    code = (
+        "import os, sys, graphflow.cli.entry as entry; sys.argv = ['graphflow', 'up']; "
+        "assert 'click' not in sys.modules; sys.modules['graphflow.cli.main'] = sys; "
+        "from graphflow.supervisor.starts import starting; "
+        "sys.main = lambda: sys.exit(0 if [s.pid for s in starting()] == [os.getpid()] else 3); entry.main()"
+    )
+    environment = {**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], check=False, timeout=60, env=environment)
+    assert done.returncode == 0
+    assert not list((tmp_path / "graphflow").iterdir())
 
 
 def test_the_package_is_a_command() -> None:

@@ -169,7 +169,8 @@ def test_a_graph_that_is_being_started(
 ) -> None:
     """Is told by every verb that finds nothing running, once; without a run directory there is none."""
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", free_endpoint())
-    announced = Announcement(tmp_path / "chase.yaml")
+    announced = Announcement()
+    announced.begin(tmp_path / "chase.yaml")
     about = f"being started: {tmp_path}/chase.yaml (process {os.getpid()}); wait for it with: graphflow wait\n"
     for words in (["ps"], ["ls"], ["logs"], ["topic", "list"]):
         assert ends(*words) == exits.NOT_RUNNING

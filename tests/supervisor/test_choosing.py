@@ -66,7 +66,8 @@ def test_graphs_elsewhere(domain: str, endpoint: str, where: str, monkeypatch: p
 def test_a_graph_that_is_being_started(here: Path, running: list[str]) -> None:
     """Is named in place of the advice to start one, and with the way to wait for it."""
     directories = [start(graph, domain=8) for graph in running]
-    announced = Announcement(here / "chase.yaml")
+    announced = Announcement()
+    announced.begin(here / "chase.yaml")
     about = f"being started: {here}/chase.yaml (process {os.getpid()}); wait for it with: graphflow wait"
     with pytest.raises(SupervisorError) as caught:
         choose(None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import threading
 from pathlib import Path
 
@@ -25,14 +26,46 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def begun(file: Path | None) -> Announcement:
+    announced = Announcement()
+    announced.begin(file)
+    return announced
+
+
 def test_a_start_is_seen_until_it_is_done(here: Path) -> None:
     """With its process and its file; ending it twice is harmless."""
-    announced = Announcement(here / "g.yaml")
+    announced = begun(None)
+    assert [str(start) for start in starting()] == [f"a graph, which is being started by process {os.getpid()}"]
+    announced.begin(here / "g.yaml")
     assert starting() == [Start(os.getpid(), str(here / "g.yaml"))]
     announced.end()
     announced.end()
     assert starting() == []
     assert not list(runtime_root().iterdir())
+
+
+def test_a_start_whose_file_becomes_known(here: Path) -> None:
+    """Is waited for all the same; a fork of its process does not keep it."""
+    announced, told = begun(None), list[Start]()
+    child = os.fork()
+    if child == 0:
+        announced.leave()
+        signal.pause()
+    ender = threading.Timer(0.01, announced.end)
+
+    def tell(start: Start) -> None:
+        told.append(start)
+        announced.begin(here / "g.yaml")
+        ender.start()
+
+    try:
+        assert wait_started(tell)
+        ender.join()
+        assert told == [Start(os.getpid(), "")]
+        assert starting() == []
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
 
 
 @pytest.mark.usefixtures("here")
@@ -48,7 +81,9 @@ def test_starts_are_waited_for(here: Path) -> None:
     """Those that are meant, until they are done; without one there is nothing to wait for."""
     told: list[Start] = []
     assert not wait_started(told.append)
-    announced = Announcement(here / "g.yaml")
+    announced = begun(None)
+    assert not wait_started(told.append, here / "g.yaml")
+    announced.begin(here / "g.yaml")
     assert not wait_started(told.append, here / "other.yaml")
     ender = threading.Timer(0.01, announced.end)
     ender.start()
@@ -60,7 +95,7 @@ def test_starts_are_waited_for(here: Path) -> None:
 def test_a_start_that_takes_too_long(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Is an error that says how to break it off, with the exit code of a timeout."""
     monkeypatch.setattr(starts, "PATIENCE", 0.0)
-    announced = Announcement(here / "g.yaml")
+    announced = begun(here / "g.yaml")
     with pytest.raises(SupervisorError, match=rf"is not up after 0 s; to break that off: kill {os.getpid()}") as error:
         wait_started(lambda _: None)
     assert error.value.exit_code == 4
