@@ -31,6 +31,8 @@ _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
 _SOCKET_LIMIT = 3.0
 """Seconds that a supervisor may take to see that its socket was removed, and to make it again."""
+_ANSWERS = ("stopping", "exited", "end", "error")
+"""Events by which a supervisor answers a request to stop; others may have been under way when it was sent."""
 _TOLD = ("up", "step", "said", "note", "exited", "stopping", "error", "end")
 """Events of the supervisor's that `up --json` prints."""
 _COLOURS = (36, 33, 32, 35, 34, 31)
@@ -171,7 +173,8 @@ class _Stream:
                 self._logs.show()
                 return None
             for event in events:
-                self._unanswered_since = None
+                if event["event"] in _ANSWERS:
+                    self._unanswered_since = None
                 code = self._show(event)
                 if code is not None:
                     return code
