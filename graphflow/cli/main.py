@@ -16,7 +16,7 @@ import click
 from graphflow import __version__
 from graphflow.cli import exits, output
 from graphflow.cli.reaching import reach, reach_options
-from graphflow.cli.verbs import HABITS, NOT_YET, Verbs
+from graphflow.cli.verbs import HABITS, NOT_NEEDED, Verbs
 from graphflow.errors import GraphflowError, SupervisorError, UsageFault
 from graphflow.names import nearest
 from graphflow.wire.profile import PROFILES, VARIABLE, wire_profile
@@ -87,7 +87,9 @@ class _Verbs(Verbs):
 
     def unknown(self, ctx: click.Context, word: str) -> str:
         meant = (
-            "" if word in NOT_YET or word in HABITS else _OTHER_WORDS.get(nearest(word, [*_OTHER_WORDS, *_VERBS]) or "")
+            ""
+            if word in NOT_NEEDED or word in HABITS
+            else _OTHER_WORDS.get(nearest(word, [*_OTHER_WORDS, *_VERBS]) or "")
         )
         return f"no such command {word!r}; did you mean {meant!r}?" if meant else super().unknown(ctx, word)
 

@@ -9,14 +9,14 @@ import click
 
 from graphflow.names import did_you_mean
 
-NOT_YET = {
+_BUILT_IN = "its verbs are built in; graphflow pkg executables lists what packages bring"
+NOT_NEEDED = {
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
-    "extensions": "graphflow --help lists its verbs",
-    "extension_points": "graphflow --help lists its verbs",
+    **dict.fromkeys(("extensions", "extension_points"), _BUILT_IN),
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
-"""What `ros2` has and graphflow has not yet, and what to use meanwhile."""
+"""What `ros2` has and graphflow does without, and why, or what to use."""
 _NOT_BUILT = "nothing has to be built or sourced: what you edit is what runs; graphflow ws shows the packages"
 HABITS = {
     **dict.fromkeys(("colcon", "build", "source", "catkin", "catkin_make"), _NOT_BUILT),
@@ -39,8 +39,8 @@ class Verbs(click.Group):
     def unknown(self, ctx: click.Context, word: str) -> str:
         """What to say of a word that is no verb."""
         path = word if ctx.parent is None else f"{ctx.info_name} {word}"
-        if path in NOT_YET:
-            return f"graphflow has no {path!r} yet; meanwhile: {NOT_YET[path]}".replace("`", "")
+        if path in NOT_NEEDED:
+            return f"graphflow has no {path!r}: {NOT_NEEDED[path]}".replace("`", "")
         if ctx.parent is None and word in HABITS:
             return f"no such command {word!r}: {HABITS[word]}"
         hint = did_you_mean(word, self.list_commands(ctx))

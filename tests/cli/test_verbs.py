@@ -6,16 +6,16 @@ import pytest
 from click.testing import CliRunner
 
 from graphflow.cli.main import cli
-from graphflow.cli.verbs import NOT_YET
+from graphflow.cli.verbs import NOT_NEEDED
 from tests.conftest import Machine
 
 
-@pytest.mark.parametrize("words", NOT_YET)
-def test_what_ros2_has_and_graphflow_not_yet(words: str) -> None:
-    """A line says so, and what to use meanwhile; the table has nothing that is there by now."""
+@pytest.mark.parametrize("words", NOT_NEEDED)
+def test_what_ros2_has_and_graphflow_does_without(words: str) -> None:
+    """A line says so, and why or what to use; the table has nothing that is there by now."""
     done = CliRunner().invoke(cli, [*words.split(), "/x"])
     assert done.exit_code == 2
-    assert f"graphflow has no '{words}' yet; meanwhile: " in " ".join(done.output.split())
+    assert f"graphflow has no '{words}': " in " ".join(done.output.split())
 
 
 @pytest.mark.parametrize(
