@@ -69,7 +69,7 @@ _VERBS = {
 
 _ALIASES = {"wtf": "doctor"}
 """Verbs of two names, as in ROS 2."""
-_OTHER_WORDS = {"kill": "down", "interfaces": "interface"}
+_OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
 """What people coming from other tools type."""
 
 

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from types import TracebackType
+from pkgutil import iter_modules
+from types import ModuleType, TracebackType
 from typing import NamedTuple
 
 from graphflow.errors import UsageFault
@@ -164,6 +165,12 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
         return f"{name} has no .{kind} file: {package.folder / kind}, where they would be, is not there or empty"
     if package is not None:
         return f"{name} has no module {module}; the package is {package.folder}"
+    there = sys.modules.get(name)
+    if there is not None:
+        return _no_module_in(there, module)
+    owner = next((p for p in workspace.packages.values() if _has_module(p, name)), None)
+    if owner is not None:
+        return f"{name}.py is in the package {owner.name}; write: from {owner.name}.{module} import ..."
     if name in _ON_PYPI:
         return f"there is no {name} here: pip install {_ON_PYPI[name]}"
     near = nearest(name, [*workspace.packages, *registry.packages()], cutoff=SLIP)
@@ -172,6 +179,25 @@ def _where_to_have(module: str, workspace: Workspace) -> str:
     if name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")):
         return f"there is no {name} here: {into}{meant}"
     return f"there is no {name} here{meant or f': {into} if it is of ROS, and pip install it if it is on PyPI'}"
+
+
+def _no_module_in(package: ModuleType, module: str) -> str:
+    """The next step where a package is there, and lacks the module that is imported from it."""
+    file = getattr(package, "__file__", None)
+    folders = getattr(package, "__path__", None)
+    if folders is None:
+        return f"{file or package.__name__} hides the package {package.__name__}; call your file by another name"
+    known = {found.name for found in iter_modules(folders)}
+    if package.__name__ in registry.packages():
+        known |= {kind for kind in KINDS if registry.names_in(package.__name__, kind)}
+    word = module.rpartition(".")[2]
+    near = nearest(word.lower(), known)
+    meant = f"; did you mean '{module.rpartition('.')[0]}.{near}'?" if near is not None else ""
+    return f"there is no module {module}{meant}"
+
+
+def _has_module(package: Package, name: str) -> bool:
+    return any((package.folder / part / f"{name}.py").is_file() for part in (package.name, f"src/{package.name}"))
 
 
 _ON_PYPI = {

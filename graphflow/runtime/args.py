@@ -115,10 +115,16 @@ def meant(word: str) -> str:
     if ":=" in word and not word.startswith(_DASHES):
         match, _, replacement = word.partition(":=")
         key = nearest(match, ("__ns", "__node")) if match.startswith("__") else None
-        return f"; write --ros-args -r {key or match}:={replacement}"
+        option = "-p" if key is None and _is_value(replacement) else "-r"
+        return f"; write --ros-args {option} {key or match}:={replacement}"
     if _is_slip(word):
         return f"; write --{_bare(word)}"
     return did_you_mean(word, _OPTIONS)
+
+
+def _is_value(text: str) -> bool:
+    """Whether a text is a number or a truth value, which no name can be."""
+    return text.lower() in ("true", "false") or text.lstrip("+-").replace(".", "", 1).isdecimal()
 
 
 def missed(words: Sequence[str]) -> str:
@@ -139,7 +145,8 @@ def missed(words: Sequence[str]) -> str:
             return f"{word!r} means nothing to ROS, nor does what follows{f' ({rest})' if rest else ''}; write {way}"
         elif not in_ros and ":=" in word:
             before = words[place - 1] if place else ""
-            way = f"; write --ros-args {before} {word}" if before in _VALUED else meant(word)
+            is_whole = before in _VALUED and not word.startswith("___")
+            way = f"; write --ros-args {before} {word}" if is_whole else meant(word)
             return f"{word!r} means nothing to ROS before --ros-args{way}"
     return ""
 

@@ -92,7 +92,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["topik"], "no such command 'topik'; did you mean 'topic'?"),
         (["launch", "x.xml"], "error: x.xml: there is no such file"),
         (["lanch"], "no such command 'lanch'; did you mean 'launch'?"),
-        (["kill"], "no such command 'kill'; did you mean 'down'?"),
+        (["kill"], "no such command 'kill'; did you mean 'stop'?"),
         (["zzz"], "no such command 'zzz'; graphflow --help lists them"),
         (["topic", "lst"], "no such command 'lst'; did you mean 'list'?"),
         (["topic", "list", "--type"], "--show-types"),

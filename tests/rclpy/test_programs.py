@@ -278,6 +278,13 @@ def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
         ),
         ("import lamp.no", ["Traceback", "lamp/late.py", "    import lamp.no"], "lamp has no module lamp.no"),
         ("from lamp.msg import A", ["Traceback", "lamp/late.py", "    from lamp.msg"], "lamp has no .msg file: "),
+        ("from rclpy.Node import Node", ["Traceback"], "there is no module rclpy.Node; did you mean 'rclpy.node'?"),
+        (
+            "from turtlesim.msgs import Pose",
+            ["Traceback"],
+            "there is no module turtlesim.msgs; did you mean 'turtlesim.msg'?",
+        ),
+        ("import later", ["Traceback"], "later.py is in the package lamp; write: from lamp.later import ..."),
         ("def main(:", ["  File", "lamp/late.py", "    def main("], ""),
         ("1 / 0", ["Traceback", "lamp/late.py", "    1 / 0"], ""),
     ],
@@ -287,6 +294,7 @@ def test_an_error_is_shown_from_the_programs_own_code_on(
 ) -> None:
     """With what may help, and none of what has started it."""
     (workspace / "src" / "lamp" / "lamp" / "late.py").write_text(f"import rclpy\n{line}\n")
+    (workspace / "src" / "lamp" / "lamp" / "later.py").touch()
     (workspace / "src" / "lamp" / "setup.py").write_text(SETUP.replace("lamp.no:main", "lamp.late:main"))
     run = start(workspace, "lamp", "none")
     said, _ = run.communicate(timeout=20)

@@ -149,6 +149,9 @@ def test_how_an_unknown_word_is_written() -> None:
     assert meant("-params-file") == "; write --params-file"
     assert meant("--remp") == "; did you mean '--remap'?"
     assert meant("what") == ""
+    assert meant("gain:=2.0") == "; write --ros-args -p gain:=2.0"
+    assert meant("a:=b") == "; write --ros-args -r a:=b"
+    assert missed(["-r", "___ns:=/a"]).endswith("; write --ros-args -r __ns:=/a")
 
 
 def test_logs() -> None:
