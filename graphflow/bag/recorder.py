@@ -16,6 +16,7 @@ from dataclasses import replace
 from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import asked
+from graphflow.bag.kept import Kept
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
 from graphflow.qos import BEST_AVAILABLE, Qos
@@ -93,6 +94,8 @@ class Recorder:
         self._new: list[Topic] = []
         """Topics that are not in the bag yet."""
         self._queue: deque[Record] = deque()
+        self._kept = Kept(writer.repeats)
+        """Messages that a snapshot begins with although the cache has them no more."""
         self._waiting = 0
         """Bytes in the queue."""
         self._work = threading.Condition()
@@ -279,7 +282,9 @@ class Recorder:
             size = len(record.data) + OVERHEAD
             if self._is_snapshot:
                 while self._queue and self._waiting + size > self._cache:
-                    self._waiting -= len(self._queue.popleft().data) + OVERHEAD
+                    oldest = self._queue.popleft()
+                    self._waiting -= len(oldest.data) + OVERHEAD
+                    self._kept.put(oldest)
             elif self._waiting + size > self._cache:
                 self.dropped += 1
                 return
@@ -320,6 +325,10 @@ class Recorder:
                 batch = list(self._queue)
                 self._queue.clear()
                 self._waiting = 0
+            if self._is_snapshot and batch:
+                batch, came = [*self._kept.before(batch[0].log_ns, batch), *batch], batch
+                for record in came:
+                    self._kept.put(record)
             self._split_after, self._is_writing_snapshot = None, False
         for topic in topics:
             self._writer.declare(topic)

@@ -19,6 +19,7 @@ from typing import Self
 from graphflow import __version__
 from graphflow.bag import metadata
 from graphflow.bag.contents import Contents, Record, Topic, together
+from graphflow.bag.kept import NO_REPEATS, Kept, Repeats
 from graphflow.bag.mcap_writer import McapWriter
 from graphflow.bag.metadata import FileContents
 from graphflow.errors import BagError
@@ -163,6 +164,7 @@ class BagWriter:
         max_size: Bytes after which a new file is begun; 0 for never.
         max_seconds: Seconds of recording after which a new file is begun; 0 for never.
         custom: What the user has to say about the bag, for its metadata.
+        repeats: Which topics' last messages every new file begins with.
         monotonic_ns: The clock by which files are flushed.
 
     Raises:
@@ -177,6 +179,7 @@ class BagWriter:
         max_size: int = 0,
         max_seconds: float = 0.0,
         custom: Mapping[str, str] | None = None,
+        repeats: Repeats = NO_REPEATS,
         monotonic_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         self.folder = folder
@@ -184,6 +187,8 @@ class BagWriter:
         self._compression = "" if compression == "none" else compression
         self._max_size, self._max_ns = max_size, round(max_seconds * 1e9)
         self._now_ns = monotonic_ns
+        self.repeats = repeats
+        self._kept, self._is_new = Kept(repeats), False
         self._done: list[FileContents] = []
         self._is_finished = False
         """Whether the last file is among those that are done."""
@@ -240,7 +245,13 @@ class BagWriter:
                 self._max_ns and part.written and record.log_ns - part.start_ns >= self._max_ns
             ):
                 self.split()
+            if self._is_new:
+                self._is_new = False
+                for kept in self._kept.before(record.log_ns):
+                    self._part.add(kept)
+                self._part.written = 0  # what is repeated is no reason for another file
             self._part.add(record)
+            self._kept.put(record)
             self._part.check()
 
     def split(self) -> None:
@@ -248,7 +259,7 @@ class BagWriter:
         with _told(self.folder):
             topics = list(self._part.topics.values())
             self._finish()
-            self._part, self._is_finished = self._next(), False
+            self._part, self._is_finished, self._is_new = self._next(), False, True
             self._write_metadata()
             for topic in topics:
                 self._part.declare(topic)

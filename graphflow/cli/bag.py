@@ -96,6 +96,17 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
 )
 @click.option("--include-unpublished-topics", is_flag=True, help="Topics that are only listened to, too.")
 @click.option("--ignore-leaf-topics", is_flag=True, help="No topics that nobody else listens to.")
+@click.option(
+    "--repeat-transient-local", multiple=True, metavar="TOPIC[=NUMBER]", help="Repeat its last messages in each file."
+)
+@click.option(
+    "--repeat-all-transient-local",
+    is_flag=False,
+    flag_value=1,
+    default=0,
+    type=click.IntRange(0, 1000),
+    help="Repeat so many of each transient-local topic. [1]",
+)
 @click.option("--use-sim-time", is_flag=True, help="Stamp messages by /clock.")
 @click.option("--custom-data", multiple=True, help="KEY=VALUE, for the bag's metadata.")
 @click.option("--disable-keyboard-controls", is_flag=True, help="Keys do nothing.")

@@ -13,6 +13,7 @@ from typing import Any
 
 from graphflow.bag.choice import Choice
 from graphflow.bag.info import size, topics_of
+from graphflow.bag.kept import Repeats
 from graphflow.bag.overrides import read as read_overrides
 from graphflow.bag.recorder import CACHE, Recorder
 from graphflow.bag.writer import BagWriter
@@ -21,12 +22,14 @@ from graphflow.cli.keys import pressed
 from graphflow.cli.visiting import visit
 from graphflow.errors import BagError, UsageFault
 from graphflow.msgs.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile
-from graphflow.names import check_node_name, did_you_mean
+from graphflow.names import check_node_name, did_you_mean, expand
 from graphflow.qos import Qos
 from graphflow.runtime.node import Node
 
 TOLD_EVERY = 1.0
 """Seconds between two looks at how it goes, at a terminal."""
+REPEATED = 1000
+"""Messages of a topic that are repeated at most."""
 SILENT = 2.0
 """Seconds after which it is told that topics have not appeared."""
 
@@ -48,6 +51,8 @@ class RecordOptions:
     custom_data: tuple[str, ...] = ()
     include_unpublished_topics: bool = False
     ignore_leaf_topics: bool = False
+    repeat_transient_local: tuple[str, ...] = ()
+    repeat_all_transient_local: int = 0
     use_sim_time: bool = False
     disable_keyboard_controls: bool = False
     node_name: str = "rosbag2_recorder"
@@ -60,7 +65,16 @@ def run(choice: Choice, options: RecordOptions) -> int:
     custom = dict(_pair(word) for word in options.custom_data)
     folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     split = {"max_size": options.max_bag_size, "max_seconds": options.max_bag_duration}
-    writer = BagWriter(folder, compression=options.compression, custom=custom, **split)  # type: ignore[arg-type]
+    repeats = Repeats(
+        _by_topic("--repeat-transient-local", options.repeat_transient_local), options.repeat_all_transient_local
+    )
+    writer = BagWriter(
+        folder,
+        compression=options.compression,
+        custom=custom,
+        repeats=repeats,
+        **split,  # type: ignore[arg-type]
+    )
 
     async def work(node: Node) -> int:
         return await _record(node, writer, choice, options, qos)
@@ -74,6 +88,17 @@ def _pair(word: str) -> tuple[str, str]:
     if not (key and sign):
         raise UsageFault(f"--custom-data {word!r}: write KEY=VALUE")
     return key, value
+
+
+def _by_topic(option: str, words: tuple[str, ...]) -> dict[str, int]:
+    """Numbers by full name, of TOPIC=NUMBER, or 1 for TOPIC."""
+    found = {}
+    for word in " ".join(words).split():
+        name, _, number = word.partition("=")
+        if not (number or "1").isdecimal() or not 0 < int(number or "1") <= REPEATED:
+            raise UsageFault(f"{option} {word!r}: write TOPIC, or TOPIC=NUMBER with 1 to {REPEATED:,} messages")
+        found[expand(name, "/", "cli")] = int(number or "1")
+    return found
 
 
 async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions, qos: Mapping[str, Qos]) -> int:

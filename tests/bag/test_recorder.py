@@ -18,6 +18,7 @@ from graphflow import Node
 from graphflow.bag import recorder as recorder_module
 from graphflow.bag import writer as writing
 from graphflow.bag.choice import Choice
+from graphflow.bag.kept import Repeats
 from graphflow.bag.reader import Bag
 from graphflow.bag.recorder import Recorder
 from graphflow.bag.writer import BagWriter
@@ -263,6 +264,38 @@ async def test_snapshots(graph: Graph, session: Session) -> None:
     bag = await session.end()
     assert [String.from_bytes(r.data).data[:3] for r in bag.records()] == [f"{n:03}" for n in range(9, 20)]
     assert recorder.dropped == 0
+
+
+async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> None:
+    """The last message of a latched topic, though the cache has it no more; once, if it has it."""
+    node = Node("recorder")
+    await graph.start(node)
+    latched = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
+    (await speaker(graph, "/map", latched)).publish(String(data="map"))
+    publisher = await speaker(graph, qos=1000)
+    writer = BagWriter(tmp_path / "bag", repeats=Repeats(latched=1))
+    recorder = Recorder(node, writer, ALL, snapshot=True, cache=4000, told=lambda _: None)
+    task = asyncio.create_task(recorder.run())
+    await graph.settle()
+    deadline = time.monotonic() + 20.0
+    for taken, count in ((21, 20), (41, 20)):
+        for _ in range(count):
+            publisher.publish(String(data="x" * 90))
+        while recorder.recorded < taken:
+            assert time.monotonic() < deadline
+            await graph.settle()
+            await asyncio.sleep(0.005)
+        recorder.take_snapshot()
+        while recorder._is_writing_snapshot:
+            assert time.monotonic() < deadline
+            await asyncio.sleep(0.005)
+    task.cancel()
+    with contextlib.suppress(asyncio.CancelledError):
+        await task
+    bag = Bag(tmp_path / "bag")
+    assert bag.contents.counts["/map"] == 2
+    first = next(bag.records())
+    assert first.topic.name == "/map"
 
 
 async def test_splitting(graph: Graph, session: Session) -> None:
