@@ -16,6 +16,7 @@ from dataclasses import replace
 from graphflow.bag.choice import EVENTS, Choice
 from graphflow.bag.contents import Record, Topic
 from graphflow.bag.definitions import asked
+from graphflow.bag.gate import Gate
 from graphflow.bag.kept import Kept
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
@@ -52,6 +53,7 @@ class Recorder:
         qos: Profiles by topic, to listen with in place of one that fits.
         unpublished: Whether topics are in the bag that are only listened to.
         leaves: Whether topics are recorded that nobody else listens to.
+        rates: Messages a second that are recorded at most, by topic.
         snapshot: Whether nothing is written before `take_snapshot`; the cache holds the last messages until then.
         told: Called with a line on each topic.
     """
@@ -67,12 +69,14 @@ class Recorder:
         qos: Mapping[str, Qos] | None = None,
         unpublished: bool = False,
         leaves: bool = True,
+        rates: Mapping[str, float] | None = None,
         snapshot: bool = False,
         told: Callable[[str], object] = logger.info,
     ) -> None:
         self._node, self._writer, self._choice = node, writer, choice
         self._cache, self._is_discovering, self._is_snapshot, self._tell = cache, discovery, snapshot, told
         self._qos = qos or {}
+        self._gates = {name: Gate(rate) for name, rate in (rates or {}).items()}
         self._kinds = (Kind.PUBLISHER, Kind.SUBSCRIPTION) if unpublished else (Kind.PUBLISHER,)
         self._records_leaves = leaves
         self.is_paused = False
@@ -243,6 +247,9 @@ class Recorder:
             self._say_that_it_waits()
             return
         self._follow(name, info)
+        gate = self._gates.get(name)
+        if gate is not None and not gate.passes(now_ns):
+            return
         held = self._held.get(name)
         if held is None:
             self._take(Record(self._topics[name], now_ns, _sent(info, now_ns), info.sequence, payload))

@@ -96,6 +96,7 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
 )
 @click.option("--include-unpublished-topics", is_flag=True, help="Topics that are only listened to, too.")
 @click.option("--ignore-leaf-topics", is_flag=True, help="No topics that nobody else listens to.")
+@click.option("--topic-throttle-frequency", multiple=True, metavar="TOPIC=HZ", help="Record it so often, not more.")
 @click.option(
     "--repeat-transient-local", multiple=True, metavar="TOPIC[=NUMBER]", help="Repeat its last messages in each file."
 )

@@ -30,6 +30,8 @@ TOLD_EVERY = 1.0
 """Seconds between two looks at how it goes, at a terminal."""
 REPEATED = 1000
 """Messages of a topic that are repeated at most."""
+SLOWEST, FASTEST = 1e-6, 1e6
+"""Messages a second that a topic can be recorded at."""
 SILENT = 2.0
 """Seconds after which it is told that topics have not appeared."""
 
@@ -51,6 +53,7 @@ class RecordOptions:
     custom_data: tuple[str, ...] = ()
     include_unpublished_topics: bool = False
     ignore_leaf_topics: bool = False
+    topic_throttle_frequency: tuple[str, ...] = ()
     repeat_transient_local: tuple[str, ...] = ()
     repeat_all_transient_local: int = 0
     use_sim_time: bool = False
@@ -65,6 +68,7 @@ def run(choice: Choice, options: RecordOptions) -> int:
     custom = dict(_pair(word) for word in options.custom_data)
     folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     split = {"max_size": options.max_bag_size, "max_seconds": options.max_bag_duration}
+    rates = _rates(options.topic_throttle_frequency)
     repeats = Repeats(
         _by_topic("--repeat-transient-local", options.repeat_transient_local), options.repeat_all_transient_local
     )
@@ -77,7 +81,7 @@ def run(choice: Choice, options: RecordOptions) -> int:
     )
 
     async def work(node: Node) -> int:
-        return await _record(node, writer, choice, options, qos)
+        return await _record(node, writer, choice, options, qos, rates)
 
     given = {"use_sim_time": True} if options.use_sim_time else {}
     return visit(work, options.node_name, has_services=True, parameters=given)
@@ -101,7 +105,29 @@ def _by_topic(option: str, words: tuple[str, ...]) -> dict[str, int]:
     return found
 
 
-async def _record(node: Node, writer: BagWriter, choice: Choice, options: RecordOptions, qos: Mapping[str, Qos]) -> int:
+def _rates(words: tuple[str, ...]) -> dict[str, float]:
+    """Messages a second by full name, of TOPIC=HZ."""
+    found = {}
+    for word in " ".join(words).split():
+        name, sign, number = word.partition("=")
+        try:
+            rate = float(number)
+        except ValueError:
+            rate = 0.0
+        if not (name and sign and SLOWEST <= rate <= FASTEST):
+            raise UsageFault(f"--topic-throttle-frequency {word!r}: write TOPIC=HZ, for example /camera/image_raw=2")
+        found[expand(name, "/", "cli")] = rate
+    return found
+
+
+async def _record(
+    node: Node,
+    writer: BagWriter,
+    choice: Choice,
+    options: RecordOptions,
+    qos: Mapping[str, Qos],
+    rates: Mapping[str, float],
+) -> int:
     recorder = Recorder(
         node,
         writer,
@@ -111,6 +137,7 @@ async def _record(node: Node, writer: BagWriter, choice: Choice, options: Record
         qos=qos,
         unpublished=options.include_unpublished_topics,
         leaves=not options.ignore_leaf_topics,
+        rates=rates,
         snapshot=options.snapshot_mode,
         told=lambda text: _tell(node, text),
     )

@@ -266,6 +266,20 @@ async def test_snapshots(graph: Graph, session: Session) -> None:
     assert recorder.dropped == 0
 
 
+async def test_a_rate(graph: Graph, session: Session) -> None:
+    """One topic is recorded so often, others as they come; nothing counts as lost."""
+    often, other = await speaker(graph), await speaker(graph, "/other")
+    recorder = await session.start(rates={"/chatter": 2.0})
+    for n in range(20):
+        often.publish(String(data=str(n)))
+        other.publish(String())
+        await graph.clock.advance(0.1)
+    await session.until(lambda: recorder.recorded == 24)
+    bag = await session.end()
+    assert bag.contents.counts == {"/chatter": 4, "/other": 20}
+    assert (recorder.lost, recorder.dropped) == (0, 0)
+
+
 async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> None:
     """The last message of a latched topic, though the cache has it no more; once, if it has it."""
     node = Node("recorder")
