@@ -39,8 +39,11 @@ class Db3File:
             raise BagError(f"{path}: {error.strerror}") from None
         except (sqlite3.Error, AttributeError, TypeError, ValueError) as error:
             raise BagError(f"{path}: {error}") from None
-        if path.with_name(f"{path.name}-wal").exists():
-            raise BagError(f"{path}: it was not closed; let sqlite3 take in its -wal file: sqlite3 {path} .tables")
+        for rest in ("-wal", "-journal"):  # of messages that came last, and of a transaction that was cut off
+            if path.with_name(path.name + rest).exists():
+                raise BagError(
+                    f"{path}: it was not closed; let sqlite3 take in its {rest} file: sqlite3 {path} .tables"
+                )
         counts = dict.fromkeys((topic.name for topic in self._topics.values()), 0)
         for number, count in counted:
             if number in self._topics:

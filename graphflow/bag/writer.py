@@ -1,4 +1,4 @@
-"""A bag, written: a folder with `metadata.yaml` and one or more MCAP files, as rosbag2 makes it.
+"""A bag, written: a folder with `metadata.yaml` and one or more files, MCAP or `.db3`, as rosbag2 makes it.
 
 What is on disk can be read at any time: chunks are closed every half second, and `metadata.yaml` follows, so that a
 recorder that is killed loses no more than that.
@@ -10,6 +10,7 @@ import contextlib
 import errno
 import logging
 import os
+import sqlite3
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -19,9 +20,11 @@ from typing import Self
 from graphflow import __version__
 from graphflow.bag import metadata
 from graphflow.bag.contents import Contents, Record, Topic, together
+from graphflow.bag.db3_part import Db3Part
 from graphflow.bag.kept import NO_REPEATS, Kept, Repeats
 from graphflow.bag.mcap_writer import McapWriter
 from graphflow.bag.metadata import FileContents
+from graphflow.bag.part import Part
 from graphflow.errors import BagError
 
 logger = logging.getLogger("graphflow")
@@ -36,6 +39,7 @@ RESERVE = 4 << 20
 """Bytes that are kept free on the disk to finish the bag when it is full."""
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 COMPRESSIONS = ("zstd", "lz4", "none")
+STORAGES = ("mcap", "sqlite3")
 
 
 class _Stream:
@@ -83,59 +87,23 @@ class _Stream:
         self._file.close()
 
 
-class _Part:
-    """One file as it is being written."""
+class _McapPart(Part):
+    """An MCAP file."""
 
     def __init__(self, path: Path, compression: str, make_room: Callable[[], bool]) -> None:
-        self.path = path
+        super().__init__(path)
         self._file = _Stream(path, make_room)
-        self._writer = McapWriter(
-            self._file, f"graphflow {__version__}", chunk_size=CHUNK_SIZE, compression=compression
-        )
+        library = f"graphflow {__version__}"
+        self._writer = McapWriter(self._file, library, chunk_size=CHUNK_SIZE, compression=compression)
         self._schemas: dict[tuple[str, str], int] = {}
-        self._channels: dict[str, int] = {}
-        self.topics: dict[str, Topic] = {}
-        self.counts: dict[str, int] = {}
-        self.start_ns = self.end_ns = 0
-        self.written = 0
-        """Bytes of messages."""
-
-    @property
-    def contents(self) -> Contents:
-        return Contents(dict(self.topics), dict(self.counts), self.start_ns, self.end_ns)
 
     @property
     def size(self) -> int:
-        """Bytes of the file so far."""
         return self._file.tell()
 
     def check(self) -> None:
-        """Raise the error of a disk that has become full, once what it concerned is written."""
         if self._file.trouble is not None:
             raise self._file.trouble
-
-    def declare(self, topic: Topic) -> int:
-        """The channel of a topic."""
-        channel = self._channels.get(topic.name)
-        if channel is None:
-            key = (topic.type, topic.definition)
-            if key not in self._schemas:
-                form = "ros2msg" if topic.definition else ""
-                self._schemas[key] = self._writer.register_schema(topic.type, form, topic.definition.encode())
-            about = {"offered_qos_profiles": metadata.as_text(topic.qos), "topic_type_hash": topic.hash}
-            channel = self._writer.register_channel(topic.name, topic.encoding, self._schemas[key], about)
-            self._channels[topic.name] = channel
-            self.topics[topic.name], self.counts[topic.name] = topic, 0
-        return channel
-
-    def add(self, record: Record) -> None:
-        name = record.topic.name
-        channel = self.declare(record.topic)
-        self._writer.add_message(channel, record.log_ns, record.data, record.publish_ns, record.sequence % (1 << 32))
-        self.start_ns = min(self.start_ns or record.log_ns, record.log_ns)
-        self.end_ns = max(self.end_ns, record.log_ns)
-        self.counts[name] += 1
-        self.written += len(record.data)
 
     def flush(self) -> None:
         self._writer.flush()
@@ -151,8 +119,18 @@ class _Part:
         self._file.close()
 
     def abandon(self) -> None:
-        """Close the file as it is."""
         self._file.close()
+
+    def _declare(self, topic: Topic) -> int:
+        key = (topic.type, topic.definition)
+        if key not in self._schemas:
+            form = "ros2msg" if topic.definition else ""
+            self._schemas[key] = self._writer.register_schema(topic.type, form, topic.definition.encode())
+        about = {"offered_qos_profiles": metadata.as_text(topic.qos), "topic_type_hash": topic.hash}
+        return self._writer.register_channel(topic.name, topic.encoding, self._schemas[key], about)
+
+    def _add(self, number: int, record: Record) -> None:
+        self._writer.add_message(number, record.log_ns, record.data, record.publish_ns, record.sequence % (1 << 32))
 
 
 class BagWriter:
@@ -160,7 +138,8 @@ class BagWriter:
 
     Args:
         folder: Made here; there must be none of that name.
-        compression: One of `COMPRESSIONS`, of the chunks in a file.
+        storage: One of `STORAGES`.
+        compression: One of `COMPRESSIONS`, of the chunks in an MCAP file.
         max_size: Bytes after which a new file is begun; 0 for never.
         max_seconds: Seconds of recording after which a new file is begun; 0 for never.
         custom: What the user has to say about the bag, for its metadata.
@@ -175,6 +154,7 @@ class BagWriter:
         self,
         folder: Path,
         *,
+        storage: str = "mcap",
         compression: str = "zstd",
         max_size: int = 0,
         max_seconds: float = 0.0,
@@ -187,6 +167,7 @@ class BagWriter:
         self._compression = "" if compression == "none" else compression
         self._max_size, self._max_ns = max_size, round(max_seconds * 1e9)
         self._now_ns = monotonic_ns
+        self._storage = storage
         self.repeats = repeats
         self._kept, self._is_new = Kept(repeats), False
         self._done: list[FileContents] = []
@@ -297,10 +278,12 @@ class BagWriter:
             logger.warning("%s", error)
             self._part.abandon()
 
-    def _next(self) -> _Part:
+    def _next(self) -> Part:
         with _told(self.folder):
-            path = self.folder / f"{self.folder.name}_{len(self._done)}.mcap"
-            return _Part(path, self._compression, self._make_room)
+            name = f"{self.folder.name}_{len(self._done)}"
+            if self._storage == "sqlite3":
+                return Db3Part(self.folder / f"{name}.db3", self._make_room)
+            return _McapPart(self.folder / f"{name}.mcap", self._compression, self._make_room)
 
     def _make_room(self) -> bool:
         """Give back what was kept free on the disk; False if that has been done."""
@@ -311,7 +294,7 @@ class BagWriter:
 
     def _finish(self) -> None:
         mine = FileContents(self._part.path.name, self._part.contents)
-        self._part.finish(metadata.written([mine], mine.contents, self._custom))
+        self._part.finish(metadata.written([mine], mine.contents, self._custom, self._storage))
         self._sizes += self._part.size
         self._done.append(mine)
         self._is_finished = True
@@ -322,7 +305,7 @@ class BagWriter:
 
     def _write_metadata(self) -> None:
         files = self._files()
-        text = metadata.written(files, together([file.contents for file in files]), self._custom)
+        text = metadata.written(files, together([file.contents for file in files]), self._custom, self._storage)
         fresh = self.folder / f".{metadata.FILE}"
         fresh.write_text(text, encoding="utf-8")
         fresh.replace(self.folder / metadata.FILE)
@@ -335,4 +318,7 @@ def _told(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         why = "the disk is full" if error.errno in _FULL else error.strerror or str(error)
+        raise BagError(f"{folder}: {why}; what has been recorded can be read") from None
+    except sqlite3.Error as error:
+        why = "the disk is full" if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_FULL else str(error)
         raise BagError(f"{folder}: {why}; what has been recorded can be read") from None

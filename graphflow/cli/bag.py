@@ -81,11 +81,13 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
 @click.option("--topic-types", multiple=True, help="Topics of these types.")
 @_chosen
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), help="The bag's folder. [rosbag2_DATE-TIME]")
-@click.option("-s", "--storage", type=click.Choice(["mcap"]), default="mcap", help="The format of files.")
+@click.option(
+    "-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), default="mcap", help="The format of files. [mcap]"
+)
 @click.option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes before a new file. [0: never]")
 @click.option("-d", "--max-bag-duration", type=click.FloatRange(0), default=0.0, help="Seconds before a new file.")
 @click.option("--max-cache-size", type=click.IntRange(1), help="Bytes that may wait to be written. [104857600]")
-@click.option("--compression", type=click.Choice(["zstd", "lz4", "none"]), default="zstd", help="Of chunks. [zstd]")
+@click.option("--compression", type=click.Choice(["zstd", "lz4", "none"]), help="Of MCAP's chunks. [zstd]")
 @click.option("--include-hidden-topics", is_flag=True, help="Hidden topics, too.")
 @click.option("--no-discovery", is_flag=True, help="Only topics that are there at the start.")
 @click.option("--start-paused", is_flag=True, help="Begin when SPACE is pressed.")
@@ -119,7 +121,7 @@ def _choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: Any) 
     "-p", "--polling-interval", type=int, hidden=True, help="For ROS 2's commands: the graph tells by itself."
 )
 def record(topics: tuple[str, ...], **options: Any) -> int:
-    """Record topics of the running graph into a folder, in MCAP files. Ctrl-C ends it, SPACE pauses it."""
+    """Record topics of the running graph into a folder, in MCAP or .db3 files. Ctrl-C ends it, SPACE pauses it."""
     from graphflow.cli import recording
 
     use_project()
@@ -129,7 +131,8 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     choice = _choice(options, topics, **more, hidden=options.pop("include_hidden_topics"))
     if not (everything or types or choice.all_services or choice.topics or choice.services or choice.regex):
         raise UsageFault("nothing to record was named; write topics, or -a for all: graphflow bag record -a")
-    ours = ("storage", "polling_interval", "serialization_format", "compression_queue_size", "compression_threads")
+    options["compression"] = _compression(options)
+    ours = ("polling_interval", "serialization_format", "compression_queue_size", "compression_threads")
     for unused in ours:
         options.pop(unused)
     return recording.run(choice, recording.RecordOptions(**options))
@@ -328,7 +331,8 @@ def _made(command: F) -> F:
     """Add what says where a bag that is made of others goes, and how it is packed."""
     option = click.option
     for add in (
-        option("--compression", type=click.Choice(["zstd", "lz4", "none"]), default="zstd", help="Of chunks. [zstd]"),
+        option("--compression", type=click.Choice(["zstd", "lz4", "none"]), help="Of MCAP's chunks. [zstd]"),
+        option("-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), default="mcap", help="The format. [mcap]"),
         option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes before a new file. [0: never]"),
         option("-o", "--output", "folder", type=click.Path(path_type=Path), help="The new bag's folder."),
     ):
@@ -378,6 +382,13 @@ def merge(paths: tuple[Path, ...], **options: Any) -> int:
     return _copied(paths, "merged", options)
 
 
+def _compression(options: dict[str, Any]) -> str:
+    """How the chunks of files are compressed."""
+    if options["storage"] == "sqlite3" and options["compression"] not in (None, "none"):
+        raise UsageFault(f"--compression {options['compression']} is for MCAP; leave it out, or write -s mcap")
+    return options["compression"] or "zstd"
+
+
 def _note(path: Path, absent: list[str]) -> None:
     """Tell of names that a bag does not have, where there is something else to do."""
     for remark in absent:
@@ -401,7 +412,8 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     wanted = {name for bag in bags for name, topic in bag.contents.topics.items() if every.wants(name, topic.type)}
     check_messages(bags, wanted, absent, start_ns, end_ns)
     _note(paths[0], absent)
-    with BagWriter(folder, compression=options["compression"], max_size=options["max_bag_size"]) as writer:
+    storage, compression = options["storage"], _compression(options)
+    with BagWriter(folder, storage=storage, compression=compression, max_size=options["max_bag_size"]) as writer:
         copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns)
     output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")
     return exits.OK

@@ -41,6 +41,7 @@ class RecordOptions:
     """The options of `bag record`, by the names click gives them."""
 
     folder: Path | None = None
+    storage: str = "mcap"
     max_bag_size: int = 0
     max_bag_duration: float = 0.0
     max_cache_size: int | None = None
@@ -74,6 +75,7 @@ def run(choice: Choice, options: RecordOptions) -> int:
     )
     writer = BagWriter(
         folder,
+        storage=options.storage,
         compression=options.compression,
         custom=custom,
         repeats=repeats,

@@ -113,9 +113,10 @@ def test_views_are_no_tables(tmp_path: Path) -> None:
         Db3File(path)
 
 
-def test_one_that_was_not_closed(tmp_path: Path) -> None:
+@pytest.mark.parametrize("rest", ["-wal", "-journal"])
+def test_one_that_was_not_closed(tmp_path: Path, rest: str) -> None:
     """Its last messages are in another file: they are not left out in silence."""
     path = old(tmp_path / "a.db3")
-    path.with_name("a.db3-wal").touch()
-    with pytest.raises(BagError, match=r"it was not closed; let sqlite3 take in its -wal file"):
+    path.with_name(f"a.db3{rest}").touch()
+    with pytest.raises(BagError, match=r"it was not closed; let sqlite3 take in its -\w+ file"):
         Db3File(path)

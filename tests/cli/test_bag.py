@@ -47,6 +47,8 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
     assert Bag(folder / "news").contents.counts == {"/map": 1, "/news": 20}
     machine.look("bag", "convert", "bag", "--compression", "lz4", "-b", "100", "-o", "small", cwd=folder)
     assert len(Bag(folder / "small").files) > 1
+    machine.look("bag", "convert", "bag", "-s", "sqlite3", "-o", "old", cwd=folder)
+    assert Bag(folder / "old").storage == "sqlite3"
     machine.look("bag", "merge", "news", "bag_filtered", "-o", "both", cwd=folder)
     assert Bag(folder / "both").contents.message_count == 31
 
