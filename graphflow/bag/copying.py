@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from graphflow.bag.choice import Choice
@@ -11,6 +11,9 @@ from graphflow.bag.contents import Contents, Topic
 from graphflow.bag.reader import Bag
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError
+
+TOLD_EVERY = 100
+"""Messages between two reports of how far it is."""
 
 
 def copy(
@@ -21,6 +24,7 @@ def copy(
     remaps: Mapping[str, str] | None = None,
     start_ns: int = 0,
     end_ns: int | None = None,
+    told: Callable[[int, int | None], object] = lambda *_: None,
 ) -> Contents:
     """Write the messages of bags into another, in the order of their times; returns what is in it then.
 
@@ -31,6 +35,7 @@ def copy(
         remaps: New names by those in the bags.
         start_ns: From this time on, nanoseconds since 1970.
         end_ns: Up to this time, which does not belong to it.
+        told: Called now and then with the number of messages so far, and of all; None where that is not known.
 
     Raises:
         BagError: One cannot be read, or the other not written.
@@ -48,7 +53,11 @@ def copy(
                 topics.setdefault(name, known)
                 writer.declare(known)
     parts = [bag.records(topics, start_ns, end_ns) for bag in bags]
-    for record in heapq.merge(*parts, key=lambda record: record.log_ns):
+    is_whole = not start_ns and end_ns is None
+    total = sum(bag.contents.counts[name] for bag in bags for name in topics.keys() & bag.contents.counts.keys())
+    for count, record in enumerate(heapq.merge(*parts, key=lambda record: record.log_ns)):
+        if count % TOLD_EVERY == 0:
+            told(count, total if is_whole else None)
         writer.add(record._replace(topic=topics[record.topic.name]))
     return writer.contents
 

@@ -20,6 +20,9 @@ from graphflow.names import expand
 DELAY = 0.5
 """Seconds before the first message, in which subscriptions find the publishers."""
 
+SHOWN_EVERY = 0.25
+"""Seconds between two lines of how far a new bag is, at a terminal."""
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -395,6 +398,22 @@ def _note(path: Path, absent: list[str]) -> None:
         output.talk(f"note: {path}: {remark}")
 
 
+def _progress(folder: Path) -> Callable[[int, int | None], None]:
+    """Show how far a bag is that is being made, a few times a second."""
+    from time import monotonic
+
+    shown = monotonic()
+
+    def told(count: int, total: int | None) -> None:
+        nonlocal shown
+        if monotonic() - shown >= SHOWN_EVERY:
+            shown = monotonic()
+            of_all = "" if total is None else f" of {total:,}"
+            output.progress(f"{folder}: {count:,}{of_all} messages")
+
+    return told
+
+
 def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Any = None) -> int:
     from graphflow.bag.choice import Choice
     from graphflow.bag.copying import beside, copy, times
@@ -403,7 +422,11 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     from graphflow.bag.reader import Bag
     from graphflow.bag.writer import BagWriter
 
-    bags = [Bag(path) for path in paths]
+    bags = []
+    for path in paths:
+        output.progress(f"reading {path}")  # one that was not closed, or is compressed, is read as a whole
+        bags.append(Bag(path))
+    output.progress("")
     start_ns, end_ns = times(bags, options.get("start"), options.get("end"))
     remaps = _remaps(options.get("remaps", ()))
     folder = options["folder"] or beside(paths[0], word)
@@ -414,6 +437,10 @@ def _copied(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice:
     _note(paths[0], absent)
     storage, compression = options["storage"], _compression(options)
     with BagWriter(folder, storage=storage, compression=compression, max_size=options["max_bag_size"]) as writer:
-        copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns)
+        try:
+            told = _progress(folder)
+            copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns, told=told)
+        finally:
+            output.progress("")
     output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")
     return exits.OK

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.bag import copying
 from graphflow.bag.choice import Choice
 from graphflow.bag.copying import beside, copy, times
 from graphflow.bag.reader import Bag
@@ -37,6 +38,16 @@ def test_some_of_it(tmp_path: Path) -> None:
     cut = made([bag], tmp_path / "b", wanted, remaps={"/count": "/n"}, start_ns=start_ns, end_ns=end_ns)
     assert cut.contents.counts == {"/n": 5}
     assert [r.log_ns - START for r in cut.records()] == [550_000_000 + n * 100_000_000 for n in range(5)]
+
+
+def test_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Told now and then, with the number of all messages that were asked for, if no time was."""
+    monkeypatch.setattr(copying, "TOLD_EVERY", 15)
+    bags = [Bag(write(tmp_path / "a")), Bag(write(tmp_path / "b"))]
+    told: list[tuple[int, int | None]] = []
+    made(bags, tmp_path / "c", Choice(topics=frozenset({"/count"})), told=lambda *said: told.append(said))
+    made(bags, tmp_path / "d", end_ns=START + 1, told=lambda *said: told.append(said))
+    assert told == [(0, 40), (15, 40), (30, 40), (0, None)]
 
 
 def test_several(tmp_path: Path) -> None:
