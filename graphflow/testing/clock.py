@@ -5,15 +5,19 @@ from __future__ import annotations
 import asyncio
 import heapq
 import itertools
+import time
 from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary
 
 from graphflow.executor.clock import Clock
+from graphflow.testing.outside import outside
 from graphflow.times import to_ns
 
 START_NS = 1_700_000_000_000_000_000
 """The time of day at which every manual clock begins."""
+OUTSIDE_LIMIT = 4.0
+"""Seconds of real time that `settle` waits for threads and child processes; less than a test may stand still."""
 _TURNS = 100_000
 _settling: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
 
@@ -61,12 +65,29 @@ class ManualClock(Clock):
 
 
 async def settle() -> None:
-    """Return when nothing is left to do but wait: for time, for a thread, for the outside world.
+    """Return when nothing is left to do but wait for time, or for the world outside this process.
+
+    Threads, pools and child processes that the loop has started are waited for.
 
     Raises:
-        RuntimeError: Something keeps itself busy for ever.
+        RuntimeError: Something keeps itself busy for ever, or a thread or child process does not end.
     """
     loop = asyncio.get_running_loop()
+    work = outside(loop)
+    until = time.monotonic() + OUTSIDE_LIMIT
+    await _idle(loop)
+    while work.is_awaited and (pending := sorted(set(work.pending()))):
+        if time.monotonic() > until:
+            raise RuntimeError(
+                f"the graph does not come to rest: after {OUTSIDE_LIMIT:g} s it still waits for {', '.join(pending)}; "
+                "put a fake in its place, or set graph.waits_outside = False"
+            )
+        await asyncio.sleep(0.001)
+        await _idle(loop)
+
+
+async def _idle(loop: asyncio.AbstractEventLoop) -> None:
+    """Return when the loop has nothing to do."""
     # asyncio has no public way to ask whether the loop is idle.
     ready: Any = getattr(loop, "_ready", ())
     _settling[loop] = _settling.get(loop, 0) + 1

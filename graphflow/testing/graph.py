@@ -16,6 +16,7 @@ from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.runtime.publishers import TopicPublisher
 from graphflow.testing.clock import ManualClock, settle
+from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
 
 M = TypeVar("M", bound=Message)
@@ -54,11 +55,23 @@ class Graph:
         self.nodes: list[Node] = []
         self.deadlock: DeadlockPolicy = "raise"
         """Used by nodes started from now on."""
+        self._waits_outside = True
         self._contexts: list[Context] = []
         self._names = itertools.count(1)
         self._tester: Node | None = None
         self.loop: asyncio.AbstractEventLoop | None = None
         """The event loop that its nodes run in, from the first on."""
+
+    @property
+    def waits_outside(self) -> bool:
+        """Whether `settle` and `clock.advance` wait for threads and child processes; False if some cannot end."""
+        return self._waits_outside
+
+    @waits_outside.setter
+    def waits_outside(self, value: bool) -> None:
+        self._waits_outside = value
+        if self.loop is not None:
+            outside(self.loop).is_awaited = value
 
     async def start(self, *nodes: Node) -> None:
         """Start nodes, each as if in a process of its own, and let them settle."""
@@ -128,6 +141,8 @@ class Graph:
     def _context(self, deadlock: DeadlockPolicy = "raise") -> Context:
         self.loop = asyncio.get_running_loop()
         self._contexts.append(Context(self.network.session(self.loop), clock=self.clock, deadlock=deadlock))
+        outside(self.loop).is_awaited = self.waits_outside
+        outside(self.loop).ledgers.append(self._contexts[-1].ledger)
         return self._contexts[-1]
 
 

@@ -229,7 +229,7 @@ async def test_a_program_that_cannot_go_on(
     graph: Graph, caplog: Caplog, program: type[Node], what: str, how: str
 ) -> None:
     """It is told what for, and who is kept out."""
-    graph.deadlock = "report"
+    graph.deadlock, graph.waits_outside = "report", False
     await graph.start(program())
     await say(graph, "/go", "/drive", "/arrive") if program is SendsToTheLoop else await say(graph, "/go", "/arrive")
     for _ in range(4):  # a thread needs time of its own

@@ -1386,7 +1386,7 @@ class SetByWhatAsyncioOffloads(Threaded):
 )
 async def test_a_program_that_waits_for_a_thread(graph: Graph, caplog: Caplog, program: type[Threaded]) -> None:
     """A thread may end any wait."""
-    graph.deadlock = "report"
+    graph.deadlock, graph.waits_outside = "report", False
     robot = program()
     await graph.start(robot)
     await say(graph, "/go", "/arrive")

@@ -1329,6 +1329,7 @@ async def test_a_thread_that_looks_late(graph: Graph) -> None:
             self.context.loop.call_soon_threadsafe(has_looked.set)
             return Fibonacci.Result()
 
+    graph.waits_outside = False
     await graph.start(Blocking(), asker := Asker())
     goal = await asker.do.send_goal(Fibonacci.Goal())
     await graph.settle()

@@ -146,6 +146,7 @@ async def test_work_in_a_thread(graph: Graph) -> None:
 async def test_work_in_threads_is_limited(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """Who waits for a thread is told so, and gets one when another has ended."""
     node, gate = Talker(), threading.Event()
+    graph.waits_outside = False
     await graph.start(node)
     async with asyncio.TaskGroup() as group:
         works = [group.create_task(node.offload(gate.wait)) for _ in range(OFFLOAD_LIMIT + 1)]

@@ -401,6 +401,7 @@ async def test_blocking_handlers_of_a_threaded_group_hold_the_slot_and_not_the_l
             assert gate.wait(10.0)
 
     node = Blocking()
+    graph.waits_outside = False
     await graph.start(node)
     await say(graph, "go")
     await entered.wait()

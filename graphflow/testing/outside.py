@@ -1,0 +1,81 @@
+"""Work outside the event loop that a test waits for: threads, pools and child processes.
+
+Time stands still for as long as such work takes. asyncio has no way to ask for it, so the methods of a loop that start
+it are followed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from graphflow.executor.ledger import Ledger
+
+_followed: WeakKeyDictionary[asyncio.AbstractEventLoop, Outside] = WeakKeyDictionary()
+
+
+class Outside:
+    """What one event loop has set going outside itself."""
+
+    def __init__(self) -> None:
+        self.is_awaited = True
+        """Whether tests wait for it."""
+        self.ledgers: list[Ledger] = []
+        """Those of the processes that run in the loop: they know the threads of handlers and of `offload`."""
+        self._futures: dict[asyncio.Future[Any], str] = {}
+        self._processes: list[tuple[asyncio.SubprocessTransport, str]] = []
+
+    def __bool__(self) -> bool:
+        return next(self.pending(), None) is not None
+
+    def pending(self) -> Iterator[str]:
+        """What has not ended, in words; threads that themselves wait for the loop are left out."""
+        for ledger in self.ledgers:
+            for thread in ledger.threads.values():
+                if thread.ident not in ledger.asking:
+                    yield f"{thread.name.removeprefix('graphflow-')} in a thread"
+        yield from self._futures.values()
+        for transport, program in self._processes:
+            outputs = [transport.get_pipe_transport(fd) for fd in (1, 2)]
+            if transport.get_returncode() is None or any(pipe and not pipe.is_closing() for pipe in outputs):
+                yield f"the process {program}"
+
+    def follow(self, loop: Any) -> None:
+        """Know of what a loop starts from now on; a loop that is not written in Python tells nothing."""
+        run_in_executor = loop.run_in_executor
+
+        def follow_future(executor: Any, fn: Any, *args: Any) -> asyncio.Future[Any]:
+            future: asyncio.Future[Any] = run_in_executor(executor, fn, *args)
+            called = fn
+            while isinstance(called, functools.partial):  # `asyncio.to_thread` passes its function to Context.run
+                called = called.args[0] if called.args and callable(called.args[0]) else called.func
+            kind = "a thread" if executor is None else type(executor).__name__
+            self._futures[future] = f"{getattr(called, '__name__', called)} in {kind}"
+            future.add_done_callback(self._futures.pop)
+            return future
+
+        def follow_processes(start: Any) -> Any:
+            @functools.wraps(start)
+            async def started(factory: Any, program: Any, *args: Any, **options: Any) -> Any:
+                transport, protocol = await start(factory, program, *args, **options)
+                self._processes.append((transport, str(program)))
+                return transport, protocol
+
+            return started
+
+        with suppress(AttributeError):
+            loop.run_in_executor = follow_future
+            loop.subprocess_exec = follow_processes(loop.subprocess_exec)
+            loop.subprocess_shell = follow_processes(loop.subprocess_shell)
+
+
+def outside(loop: asyncio.AbstractEventLoop) -> Outside:
+    """What a loop has set going outside itself, from the first call on."""
+    if loop not in _followed:
+        _followed[loop] = Outside()
+        _followed[loop].follow(loop)
+    return _followed[loop]
