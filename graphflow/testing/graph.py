@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import asyncio
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
 from graphflow.interface import DeadlockPolicy
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
+from graphflow.names import Remap
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.action_client import GoalClient
 from graphflow.runtime.context import Context
 from graphflow.runtime.core import core_of
 from graphflow.runtime.node import Node
 from graphflow.runtime.publishers import TopicPublisher
+from graphflow.runtime.surroundings import Surroundings, make_within
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.testing.outside import outside
 from graphflow.transport.memory import Network
 
 M = TypeVar("M", bound=Message)
+N = TypeVar("N", bound=Node)
 
 
 class Tap(Generic[M]):
@@ -79,6 +82,28 @@ class Graph:
             await core_of(node).start(self._context(deadlock=self.deadlock))
             self.nodes.append(node)
         await settle()
+
+    def make(
+        self,
+        cls: type[N],
+        name: str | None = None,
+        *,
+        namespace: str | None = None,
+        remap: Sequence[Remap | str] = (),
+        **parameters: Any,
+    ) -> N:
+        """A node as a graph file makes it, also of a class whose `__init__(self)` takes no parameters; `start` it.
+
+        Args:
+            parameters: Values of its parameters, those that it declares when it is made included.
+
+        Raises:
+            DeclarationError: Its `__init__` needs more than a name.
+            ParameterError: It has no such parameter, or refuses the value.
+        """
+        rules = [rule if isinstance(rule, Remap) else Remap.parse(rule) for rule in remap]
+        given = Surroundings(name, namespace, rules, {key: (value, "graph.make") for key, value in parameters.items()})
+        return make_within(cls, given, cls.interface().node_name)
 
     async def stop(self, node: Node) -> None:
         """Stop one node."""

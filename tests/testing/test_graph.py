@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from graphflow import Node, Publisher, ServiceUnavailable, service, task
+from graphflow import Node, ParameterError, Publisher, ServiceUnavailable, service, task
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph, ManualClock, Tap
@@ -167,3 +167,32 @@ def test_a_failed_node_fails_its_test(graphflow_runner: asyncio.Runner, taken: b
         with pytest.raises(ValueError, match="broken"):
             graphflow_runner.run(test())
     assert not other.is_running
+
+
+class Taught(Node):
+    """As ROS 2 teaches it: nothing is passed to its `__init__`."""
+
+    def __init__(self) -> None:
+        super().__init__("taught")
+        self.size = self.declare_parameter("size", 1)
+        self.out = self.create_publisher(String, "out")
+
+
+async def test_a_node_whose_init_takes_nothing_has_parameters(graph: Graph) -> None:
+    """And a name, a namespace and remaps, as in a graph file."""
+    node = graph.make(Taught, "other", namespace="/left", remap=["out:=said"], size=3)
+    await graph.start(node)
+    assert (node.full_name, node.size) == ("/left/other", 3)
+    heard = graph.tap(String, "/left/said")
+    node.out.publish(String(data="hi"))
+    await graph.settle()
+    assert [message.data for message in heard] == ["hi"]
+    assert graph.make(Taught).full_name == "/taught"
+
+
+async def test_a_parameter_that_a_made_node_does_not_have(graph: Graph) -> None:
+    """Is told, and what it was given for."""
+    with pytest.raises(ParameterError, match="sizes"):
+        await graph.start(graph.make(Taught, sizes=3))
+    with pytest.raises(ParameterError, match="size"):
+        graph.make(Taught, size="x")
