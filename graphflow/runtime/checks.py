@@ -6,6 +6,7 @@ Every check raises DeclarationError.
 from __future__ import annotations
 
 import inspect
+from collections.abc import Mapping
 from typing import Any, get_args
 
 from graphflow.errors import DeclarationError, InvalidName, Place
@@ -96,6 +97,35 @@ def check_callback(callback: Any, arguments: range, what: str, place: Place, hin
             f"{place}: {what}: {called} is called with {wanted}, but takes ({', '.join(needed)}){hint}"
         )
     return fitting[0]
+
+
+def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: Place) -> None:
+    """Check that a function is not written for messages of other types than those that it will be given.
+
+    Args:
+        expected: The classes of its arguments, after `self`, by what they are called.
+
+    An annotation that is no message class is the user's affair.
+    """
+    parameters = list(inspect.signature(fn).parameters.values())[1:]
+    for parameter, (called, wanted) in zip(parameters, expected.items(), strict=False):
+        found = _annotated(fn, parameter.annotation)
+        if isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found):
+            raise DeclarationError(
+                f"{place}: {what}: {fn.__name__} is given {called}, and its argument "
+                f"{parameter.name!r} is annotated {found.__name__.replace('_', '.')}; write the same in both"
+            )
+
+
+def _annotated(fn: Any, annotation: Any) -> Any:
+    """What an annotation stands for; None for text that is no name known to the function's module."""
+    if not isinstance(annotation, str):
+        return annotation
+    first, *others = annotation.strip("'\"").split(".")
+    found = fn.__globals__.get(first)
+    for name in others:
+        found = getattr(found, name, None)
+    return found
 
 
 def check_on_event(on_event: Any, what: str, place: Place) -> None:

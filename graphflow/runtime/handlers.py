@@ -15,7 +15,15 @@ from graphflow.executor.clock import period_ns
 from graphflow.interface import GoalPolicy, HandlerKind, OnClientLoss, OnError
 from graphflow.msgs.base import Action, Feedback, Goal, Message, Request, Response, Result, Service
 from graphflow.qos import Qos
-from graphflow.runtime.checks import check_group, check_name, check_on_error, check_on_event, check_qos, check_type
+from graphflow.runtime.checks import (
+    check_annotations,
+    check_group,
+    check_name,
+    check_on_error,
+    check_on_event,
+    check_qos,
+    check_type,
+)
 from graphflow.runtime.declare import Group, Param
 from graphflow.runtime.dictionary import in_our_words
 from graphflow.runtime.place import here
@@ -107,11 +115,20 @@ def _mark(fn: F, handler: Handler, arguments: range) -> F:
         wanted = " or ".join(["self", "self and one argument", "self and two arguments"][n - 1] for n in arguments)
         has = f"({', '.join(p.name for p in positional)})"
         raise DeclarationError(f"{handler.place}: {name} must take {wanted}, not {has}")
+    check_annotations(fn, _given(handler), f"@{handler.kind}", handler.place)
     place = Place(fn.__code__.co_filename, fn.__code__.co_firstlineno)
     takes_info = (handler.kind, len(positional)) in (("timer", 2), ("subscription", 3))
     # A separate record: `every = timer(1.0)` may decorate several methods.
     setattr(fn, MARK, replace(handler, place=place, takes_info=takes_info))
     return fn
+
+
+def _given(handler: Handler) -> dict[str, type]:
+    """The classes of the messages that a handler is given, by their names."""
+    parts = {"service": ("Request", "Response"), "action": ("Handle",)}.get(handler.kind, ())
+    if handler.kind == "subscription":
+        return {handler.type.__name__: handler.type}
+    return {f"{handler.type.__name__}.{part}": getattr(handler.type, part) for part in parts}
 
 
 @in_our_words

@@ -9,10 +9,12 @@ from typing import Any
 
 import pytest
 
-from graphflow import Group, Node, Param, Qos, TimerInfo, action, service, subscription, task, timer
+from graphflow import DeclarationError, Group, Node, Param, Qos, TimerInfo, action, service, subscription, task, timer
+from graphflow.msgs.base import Message
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
-from graphflow.msgs.std_msgs.msg import String
+from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.handlers import Rate
 from graphflow.testing import Graph
 from tests.runtime.cast import anything, names_of, refusal_of
@@ -178,3 +180,37 @@ def test_a_rate_reads_its_parameter() -> None:
     assert (Rate(None, hz).period_ns(), Rate(None, hz).period_ns({"hz": 10})) == (250_000_000, 100_000_000)
     with pytest.raises(ValueError, match="hz must be a positive number, not 0"):
         Rate(None, hz).period_ns({"hz": 0})
+
+
+def annotated(decorator: Any, annotation: Any, second: Any = None) -> None:
+    """Decorate a handler whose arguments are annotated so."""
+
+    async def handle(self: Any, given: Any) -> None: ...
+
+    async def fill(self: Any, given: Any, response: Any) -> None: ...
+
+    fn = handle if second is None else fill
+    fn.__annotations__ |= {"given": annotation, "response": second}
+    decorator(fn)
+
+
+@pytest.mark.parametrize(
+    ("decorator", "annotations", "told"),
+    [
+        (subscription(Int32, "i"), (String,), "handle is given Int32, and its argument 'given' is annotated String"),
+        (subscription(Int32, "i"), ("String",), "handle is given Int32, and its argument 'given' is annotated String"),
+        (service(Trigger, "s"), (Trigger.Response,), "given Trigger.Request, .* is annotated Trigger.Response"),
+        (service(Trigger, "s"), (Trigger.Request, Int32), "given Trigger.Response, .*'response' is annotated Int32"),
+        (action(Fibonacci, "a"), (Fibonacci.Goal,), "given Fibonacci.Handle, .* is annotated Fibonacci.Goal"),
+    ],
+)
+def test_a_handler_that_is_annotated_for_another_type(decorator: Any, annotations: Any, told: str) -> None:
+    """Is written for other messages than those that will come."""
+    with pytest.raises(DeclarationError, match=told):
+        annotated(decorator, *annotations)
+
+
+@pytest.mark.parametrize("annotation", [Int32, "Int32", Message, Any, "Unknown", "Int32 | None", object, int])
+def test_other_annotations_are_the_users_affair(annotation: Any) -> None:
+    """Only a message class of another type is certain to be wrong."""
+    annotated(subscription(Int32, "i"), annotation)
