@@ -34,6 +34,7 @@ def top(delay: float, by_memory: bool, once: bool, as_json: bool) -> None:
     """Show what the processes of the running graph cost, the dearest first. Ctrl-C ends it.
 
     \b
+    PID      8123+2 has started two others, whose costs are among its own
     LAG      milliseconds that the event loop needed to come round
     OUT, IN  messages a second that nodes publish, and that reach their subscriptions
     DROPPED  messages that subscriptions were too slow for, since their start
@@ -89,6 +90,7 @@ def _table(found: list[Cost], numbers: Numbers) -> list[str]:
     for cost in found:
         flows = _flows(cost, numbers)
         lag = "-" if flows["lag"] is None else f"{flows['lag'] * 1000:.1f}"
-        used = (str(cost.pid), f"{cost.cpu:.0f}%", f"{cost.memory / 1e6:.0f}M", str(cost.threads), lag)
+        pid = f"{cost.pid}+{cost.children}" if cost.children else str(cost.pid)
+        used = (pid, f"{cost.cpu:.0f}%", f"{cost.memory / 1e6:.0f}M", str(cost.threads), lag)
         rows.append((*used, f"{flows['out']:.1f}", f"{flows['in']:.1f}", f"{flows['dropped']}", ", ".join(cost.nodes)))
     return output.columns(rows)

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+
+import pytest
 
 from graphflow.introspect.costs import Costs
 
@@ -17,6 +21,24 @@ def test_looks() -> None:
     assert own.seconds > 0
     assert costs.look({}) == []
     assert not costs._known
+
+
+@pytest.mark.real
+def test_child_processes_count() -> None:
+    """Those of a process are among its costs, unless they are asked for themselves."""
+    code = "import sys; held = bytearray(50_000_000); print(len(held), flush=True); sys.stdin.read()"
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        try:
+            [together] = Costs().look({os.getpid(): ["/a"]})
+            assert together.children >= 1
+            both = {cost.pid: cost for cost in Costs().look({os.getpid(): ["/a"], child.pid: ["/b"]})}
+            assert both[os.getpid()].children == together.children - 1
+            assert both[child.pid].memory > 50_000_000
+            assert together.memory > both[os.getpid()].memory + 40_000_000
+        finally:
+            child.communicate()
 
 
 def test_order() -> None:

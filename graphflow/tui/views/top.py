@@ -38,7 +38,7 @@ class Top(TableView):
         self._by_pid = self._owners()
         return {
             str(cost.pid): (
-                Text(str(cost.pid), justify="right"),
+                Text(f"{cost.pid}+{cost.children}" if cost.children else str(cost.pid), justify="right"),
                 Text(f"{cost.cpu:.0f}%", style=self.ink.warn if cost.cpu > 80 else "", justify="right"),
                 Text(f"{cost.memory / 1e6:.0f}M", justify="right"),
                 Text(str(cost.threads), justify="right"),
