@@ -68,6 +68,8 @@ class Parameter:
     read_only: bool = False
     step: float = 0.0
     """Distance between allowed values, counted from `ge`, or from 0; 0 allows all. The limits are always allowed."""
+    choices: tuple[Any, ...] = ()
+    """The values that it, or each of a list, may have; empty if any."""
     dynamic: bool = False
     """Whether the parameter takes values of any type and may be deleted (ROS 2's dynamic typing)."""
 
@@ -108,7 +110,13 @@ class Parameter:
             raise ParameterError(f"parameter {self.name!r} is of type {word}, {value!r} is not")
         if type_ in ("int", "float"):
             self._check_range(value)
+        if self.choices and value not in self.choices:
+            raise ParameterError(f"parameter {self.name!r} = {value!r} is not {self.choices_text()}")
         return value
+
+    def choices_text(self) -> str:
+        """The choices in words, empty when there are none: `one of 'fast', 'slow'`."""
+        return f"one of {', '.join(map(repr, self.choices))}" if self.choices else ""
 
     def _check_range(self, number: float) -> None:
         inside = (
@@ -261,6 +269,7 @@ class Interface:
         for param in data["params"]:
             if isinstance(param["default"], bytes):
                 param["default"] = param["default"].decode("latin-1")
+                param["choices"] = [choice.decode("latin-1") for choice in param["choices"]]
         return data
 
     @classmethod
@@ -279,8 +288,10 @@ class Interface:
 
 
 def _parameter(data: dict[str, Any]) -> Parameter:
-    default = data["default"].encode("latin-1") if data["type"] == "bytes" else data["default"]
-    return Parameter(**{**data, "default": default, "place": Place(*data["place"])})
+    default, choices = data["default"], data["choices"]
+    if data["type"] == "bytes":
+        default, choices = default.encode("latin-1"), [choice.encode("latin-1") for choice in choices]
+    return Parameter(**{**data, "default": default, "choices": tuple(choices), "place": Place(*data["place"])})
 
 
 def type_of(value: Any) -> ParamType:

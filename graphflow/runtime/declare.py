@@ -7,7 +7,7 @@ node is made, each declaration becomes a call of the `create_*` method that the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, Literal, Protocol, Self, TypeVar, get_args, overload
 
@@ -239,6 +239,7 @@ class Param(Held, Generic[V]):
         ge, le, gt, lt: Limits: at least, at most, more than, less than.
         read_only: Whether it can be set only from outside and at the start.
         step: Distance between allowed values, counted from `ge`, or from 0.
+        choices: The values that are allowed; for a list, those of its elements.
         name: Its name, if not that of the attribute.
     """
 
@@ -255,6 +256,7 @@ class Param(Held, Generic[V]):
         lt: float | None = None,
         read_only: bool = False,
         step: float = 0.0,
+        choices: Sequence[Any] = (),
         name: str = "",
     ) -> None:
         self.place = here()
@@ -264,6 +266,8 @@ class Param(Held, Generic[V]):
             self.parameter = Parameter(
                 name or "unnamed", type_of(default), default, self.place, unit, doc, read_only=read_only, **limits
             )
+            if choices:
+                self.parameter = replace(self.parameter, choices=self._choices(choices))
             self.parameter.fit(default)
             if (self.parameter.range_text() or step) and self.parameter.type not in _NUMBERS:
                 raise ParameterError(f"limits are for numbers, and {default!r} is not a number")
@@ -272,6 +276,13 @@ class Param(Held, Generic[V]):
         except GraphflowError as error:
             text = str(error).replace("parameter 'unnamed'", "the default")
             raise DeclarationError(f"{self.place}: {text}") from None
+
+    def _choices(self, choices: Sequence[Any]) -> tuple[Any, ...]:
+        """The choices, as the declared type. Raises ParameterError: One is of another type, or they are no list."""
+        if not isinstance(choices, (list, tuple)):
+            raise ParameterError(f"choices= takes a list of values, not {choices!r}")
+        is_list = self.parameter.type.startswith("list[")
+        return tuple(self.parameter.fit([value])[0] if is_list else self.parameter.fit(value) for value in choices)
 
     def __set_name__(self, owner: type, name: str) -> None:
         super().__set_name__(owner, name)

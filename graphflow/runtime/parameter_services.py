@@ -40,7 +40,9 @@ def to_descriptor(parameter: Parameter) -> rcl.ParameterDescriptor:
         read_only=parameter.read_only,
         dynamic_typing=parameter.dynamic,
     )
-    if parameter.gt is not None or parameter.lt is not None:
+    if parameter.choices:
+        descriptor.additional_constraints = parameter.choices_text()
+    elif parameter.gt is not None or parameter.lt is not None:
         descriptor.additional_constraints = parameter.range_text()
     if parameter.ge is None and parameter.le is None and not parameter.step:
         return descriptor

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-from graphflow import ActionClient, Client, Group, Param, Publisher, Subscription
+from graphflow import ActionClient, Client, DeclarationError, Group, Param, ParameterError, Publisher, Subscription
+from graphflow.interface import Interface
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import Durability, Qos
@@ -88,3 +90,34 @@ def test_reprs() -> None:
     """A group says its name and limit."""
     assert repr(Everything.io) == "Group(io, limit=None)"
     assert repr(Group(2)) == "Group(unnamed, limit=2)"
+
+
+def test_choices_of_a_parameter() -> None:
+    """Each value is one of them, of a list each element; so they go through JSON."""
+    for default, choices, wrong in (
+        ("fast", ["fast", "slow"], "fats"),
+        (1, (1, 2, 4), 3),
+        (0.5, [0.5, 1], 0.7),
+        (b"a", [b"a", b"b"], b"c"),
+        (["x"], ["x", "y"], ["x", "z"]),
+    ):
+        parameter = Param(default, choices=choices, name="mode").parameter  # type: ignore[type-var]
+        assert parameter.fit(default) == default
+        with pytest.raises(ParameterError, match=r"parameter 'mode' = .* is not one of "):
+            parameter.fit(wrong)
+        interface = Interface("m:C", "c", parameter.place, params=(parameter,))
+        assert Interface.from_json(json.loads(json.dumps(interface.to_json()))).params == (parameter,)
+
+
+@pytest.mark.parametrize(
+    ("default", "choices", "told"),
+    [
+        ("other", ["fast", "slow"], "the default = 'other' is not one of 'fast', 'slow'"),
+        ("a", ["a", 3], "the default is of type string, 3 is not"),
+        ("ab", "ab", "choices= takes a list of values, not 'ab'"),
+    ],
+)
+def test_choices_that_cannot_be(default: str, choices: Any, told: str) -> None:
+    """Are told where they are written."""
+    with pytest.raises(DeclarationError, match=rf"test_declare.py:\d+: {told}"):
+        Param(default, choices=choices)
