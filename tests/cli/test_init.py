@@ -71,6 +71,16 @@ def test_its_nodes_have_names(machine: Machine, tmp_path: Path) -> None:
     assert node.end() == 0
 
 
+def test_its_graph_can_be_included_under_namespaces(machine: Machine, tmp_path: Path) -> None:
+    """Its names are relative: two of it are two robots."""
+    machine.look("init", "mylab", cwd=tmp_path)
+    twice = tmp_path / "mylab" / "graphs" / "twice.yaml"
+    twice.write_text("include: [{file: mylab.yaml, namespace: left}, {file: mylab.yaml, namespace: right}]")
+    plan = machine.look("plan", str(twice), cwd=tmp_path)
+    assert "/left/greeter" in plan
+    assert "/right/greeter" in plan
+
+
 @pytest.mark.parametrize("name", ["My-Lab", "1lab", "lab__a"])
 def test_a_name_must_be_a_packages(machine: Machine, tmp_path: Path, name: str) -> None:
     """Since the interface package is called after it."""
