@@ -199,11 +199,13 @@ def test_a_prefix_that_is_none(machine: Machine) -> None:
 @slow
 def test_where_logs_go(machine: Machine) -> None:
     """Neither to the terminal nor to /rosout, if that is so wanted."""
+    listener = machine.start("run", "listener")
     node = machine.start("run", "talker", "--ros-args", "-p", "rate:=20.0", "--disable-stdout-logs")
-    machine.run("topic", "echo", "/chatter", "std_msgs/msg/String", "--once")
+    listener.wait_for("Hello World")
     assert "/rosout" in machine.look("node", "info", "/talker")
     assert node.end() == 0
     assert "Hello World" not in node.text
+    assert listener.end() == 0
     node = machine.start("run", "talker", "--ros-args", "-p", "rate:=20.0", "--disable-rosout-logs")
     node.wait_for("Hello World: 2")
     assert "/rosout" not in machine.look("node", "info", "/talker")
