@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from pathlib import Path
 
 from graphflow.bag.contents import Contents, Record, Topic
 
 
-class Part:
+class Part(ABC):
     """Counts what is written; a format says how."""
 
     def __init__(self, path: Path) -> None:
@@ -25,9 +26,9 @@ class Part:
         return Contents(dict(self.topics), dict(self.counts), self.start_ns, self.end_ns)
 
     @property
+    @abstractmethod
     def size(self) -> int:
         """Bytes of the file so far."""
-        raise NotImplementedError
 
     def declare(self, topic: Topic) -> int:
         """The number of a topic in the file."""
@@ -46,32 +47,34 @@ class Part:
         self.counts[name] += 1
         self.written += len(record.data)
 
+    @abstractmethod
     def check(self) -> None:
         """Raise the error of a disk that has become full, once what it concerned is written."""
-        raise NotImplementedError
 
+    @abstractmethod
     def flush(self) -> None:
         """Put what has been written into the file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def sync(self) -> None:
         """Put what is in the file on the disk."""
-        raise NotImplementedError
 
+    @abstractmethod
     def finish(self, said: str) -> None:
         """Close the file properly.
 
         Args:
             said: The bag's metadata as far as it concerns this file.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def abandon(self) -> None:
         """Close the file as it is."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _declare(self, topic: Topic) -> int:
-        raise NotImplementedError
+        """Write a topic that is new to the file; returns its number there."""
 
+    @abstractmethod
     def _add(self, number: int, record: Record) -> None:
-        raise NotImplementedError
+        """Write a message of a topic by its number."""

@@ -53,7 +53,7 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
 
 
 def _executables_of(package: str) -> list[str]:
-    """Those of a package that come with graphflow or are installed."""
+    """The executables of a package that come with graphflow or are installed."""
     own = package_of(package)
     names = [name for known, name in with_graphflow() if known == package]
     return names + (own.executables if own is not None else [])

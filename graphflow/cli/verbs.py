@@ -16,7 +16,7 @@ NOT_NEEDED = {
     **dict.fromkeys(("extensions", "extension_points"), _BUILT_IN),
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
-"""What `ros2` has and graphflow does without, and why, or what to use."""
+"""Verbs of `ros2` that graphflow does without: the reason, or what to use."""
 _NOT_BUILT = "nothing has to be built or sourced: what you edit is what runs; graphflow ws shows the packages"
 HABITS = {
     **dict.fromkeys(("colcon", "build", "source", "catkin", "catkin_make"), _NOT_BUILT),

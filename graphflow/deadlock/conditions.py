@@ -238,7 +238,7 @@ class Conditions:
         self._found.add(name)
 
     def _of_held(self, node: ast.Attribute) -> tuple[Conditions, ast.expr] | None:
-        """What decides of an object that this one holds, and an expression as that object's methods would have it."""
+        """The conditions of an object that this one holds, and the expression as its methods would have it."""
         return None
 
     def _returned(self, name: str, seen: frozenset[str]) -> None:
@@ -310,7 +310,7 @@ class LoopConditions(Conditions):
         self._scope = _Scope(locals_, frozenset(constants), frame.f_globals, source.rebound, tasks)
 
     def attributes(self) -> set[str]:
-        """Those attributes. Raises `Unknown` when something else decides it."""
+        """The attributes that decide it. Raises `Unknown` when something else does."""
         if isinstance(self._loop, ast.While):
             self._read(self._loop.test, self._scope)
         nodes = list(walk(self._loop))

@@ -62,7 +62,7 @@ def _question(frames: list[Frame], node: Subject) -> Question:
 
 
 class NodeQuestion(Question):
-    """What ends a wait in a method of the node, which may poll objects that it holds."""
+    """Asks what ends a wait in a method of the node, which may poll objects that it holds."""
 
     def _changing_held(self, owner: str, names: set[str], loop: Loop, below: set[str]) -> set[str]:
         held = HeldQuestion([], self._node, owner, getattr(self._instance, owner))

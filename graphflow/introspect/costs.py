@@ -1,4 +1,4 @@
-"""What processes of this machine cost, together with those that they have started."""
+"""The cost of processes of this machine, each together with those that it has started."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import psutil
 
 
 class Cost(NamedTuple):
-    """What one process costs, and all below it that nobody else is asked for."""
+    """The cost of one process and of those below it, but for the ones that have costs of their own."""
 
     pid: int
     cpu: float
@@ -20,7 +20,7 @@ class Cost(NamedTuple):
     seconds: float
     """Time on the processor since its start."""
     nodes: list[str]
-    """Who lives in it."""
+    """Full names of the nodes in it."""
     children: int
     """Processes below it, whose costs are among these."""
 
@@ -35,7 +35,8 @@ class Costs:
         """The processes that live, the dearest first.
 
         Args:
-            owners: Who lives in each process, by its id.
+            owners: Nodes in each process, by its id.
+            by_memory: Whether the dearest are those with the most memory; else with the most processor time.
         """
         children: dict[int, list[int]] = {}
         if owners:
@@ -54,7 +55,7 @@ class Costs:
         return sorted(found, key=lambda cost: (-(cost.memory if by_memory else cost.cpu), cost.pid))
 
     def _cost(self, pid: int) -> Cost | None:
-        """What one process costs; None for one that is gone."""
+        """The cost of one process alone; None for one that is gone."""
         try:
             process = self._known.setdefault(pid, psutil.Process(pid))
             with process.oneshot():

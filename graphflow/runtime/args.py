@@ -128,7 +128,7 @@ def _is_value(text: str) -> bool:
 
 
 def missed(words: Sequence[str]) -> str:
-    """What is wrong with words outside of `--ros-args` that seem to be meant for ROS; empty if there are none.
+    """A sentence about words outside of `--ros-args` that seem to be meant for ROS; empty if there are none.
 
     ROS 2 leaves them to the program, without a word. Programs may have options of their own, so only what is hardly one
     is taken for a mistake.

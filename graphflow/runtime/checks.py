@@ -118,7 +118,7 @@ def check_annotations(fn: Any, expected: Mapping[str, type], what: str, place: P
 
 
 def _annotated(fn: Any, annotation: Any) -> Any:
-    """What an annotation stands for; None for text that is no name known to the function's module."""
+    """The class that an annotation names; None for text that is no name known to the function's module."""
     if not isinstance(annotation, str):
         return annotation
     first, *others = annotation.strip("'\"").split(".")

@@ -19,13 +19,13 @@ _followed: WeakKeyDictionary[asyncio.AbstractEventLoop, Outside] = WeakKeyDictio
 
 
 class Outside:
-    """What one event loop has set going outside itself."""
+    """Work outside of one event loop that the loop has started."""
 
     def __init__(self) -> None:
         self.is_awaited = True
         """Whether tests wait for it."""
         self.ledgers: list[Ledger] = []
-        """Those of the processes that run in the loop: they know the threads of handlers and of `offload`."""
+        """Ledgers of the node processes in the loop: they know the threads of handlers and of `offload`."""
         self._futures: dict[asyncio.Future[Any], str] = {}
         self._processes: list[tuple[asyncio.SubprocessTransport, str]] = []
 
@@ -33,7 +33,7 @@ class Outside:
         return next(self.pending(), None) is not None
 
     def pending(self) -> Iterator[str]:
-        """What has not ended, in words; threads that themselves wait for the loop are left out."""
+        """Work that has not ended, in words; threads that themselves wait for the loop are left out."""
         for ledger in self.ledgers:
             for thread in ledger.threads.values():
                 if thread.ident not in ledger.asking:
@@ -74,7 +74,7 @@ class Outside:
 
 
 def outside(loop: asyncio.AbstractEventLoop) -> Outside:
-    """What a loop has set going outside itself, from the first call on."""
+    """The work outside of a loop that it has started, from the first call on."""
     if loop not in _followed:
         _followed[loop] = Outside()
         _followed[loop].follow(loop)

@@ -17,6 +17,25 @@ class Listed(Part):
         self.declared: list[str] = []
         self.added: list[tuple[int, Record]] = []
 
+    @property
+    def size(self) -> int:
+        return 0
+
+    def check(self) -> None:
+        """Its disk has room."""
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+    def sync(self) -> None:
+        """There is no disk."""
+
+    def finish(self, said: str) -> None:
+        """There is no file."""
+
+    def abandon(self) -> None:
+        """There is no file."""
+
     def _declare(self, topic: Topic) -> int:
         self.declared.append(topic.name)
         return len(self.declared)
