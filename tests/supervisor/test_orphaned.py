@@ -82,7 +82,7 @@ def test_a_worker_that_ends_leaves_nothing(machine: Machine, project: Path) -> N
     machine.until(lambda: not any(map(alive, started)), "the worker and what it has started are gone")
     for process in (supervisor, preload):
         process.resume()
-    machine.look("down")
+    machine.until(lambda: not alive(supervisor.pid), "the graph has ended with its only node")
 
 
 def test_what_a_worker_has_left(tmp_path: Path) -> None:
