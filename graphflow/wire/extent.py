@@ -1,4 +1,4 @@
-"""How large a message type is together with the types in it: those without an end are refused.
+"""The size of a message type together with the types in it: those without an end are refused.
 
 Twenty definitions of two fields each, every one in the one before, are a million fields: sizes multiply, and the texts
 do not show it.
