@@ -117,7 +117,8 @@ def unpacked(form: str, data: bytes | memoryview, bound: int) -> bytes:
     try:
         if form == "zstd":
             found = zstandard.ZstdDecompressor().stream_reader(bytes(data)).read(bound + 1)
-            if len(found) < min(zstandard.frame_content_size(data), bound):
+            size = zstandard.frame_content_size(data)  # less than 0 where the frame does not name it
+            if len(found) <= bound and (len(found) < size if size >= 0 else not _is_whole(data)):
                 raise Damaged("it ends early")
             return found
         if form == "lz4":
@@ -131,6 +132,15 @@ def unpacked(form: str, data: bytes | memoryview, bound: int) -> bytes:
     except (RuntimeError, MemoryError, zstandard.ZstdError) as error:
         raise Damaged(str(error)) from None
     raise Damaged(f"compressed by {form[:20]!r}, which is not known")
+
+
+def _is_whole(data: bytes | memoryview) -> bool:
+    """Whether a Zstandard frame has its end, decompressed once more: its size is known to be bounded."""
+    import zstandard
+
+    decompressor = zstandard.ZstdDecompressor().decompressobj()
+    decompressor.decompress(bytes(data))
+    return bool(decompressor.eof)
 
 
 def loosened(records: Iterator[Record], path: Path, bound: int, *, is_packed: bool) -> Iterator[Record]:

@@ -155,3 +155,13 @@ def test_bombs(tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("graphflow.bag.packing._SHARE", 0.0)
     with pytest.raises(BagError, match=r"a\.mcap\.\w+: .* too little room to decompress it; set TMPDIR"):
         Bag(path)
+
+
+def test_a_message_cut_short() -> None:
+    """It is noticed, also where the frame does not name its size."""
+    for names_size in (True, False):
+        packer = zstandard.ZstdCompressor(write_content_size=names_size).compressobj(10_000 if names_size else -1)
+        data = packer.compress(bytes(range(250)) * 40) + packer.flush()
+        assert packing.unpacked("zstd", data, 10_000) == bytes(range(250)) * 40
+        with pytest.raises(packing.Damaged, match="it ends early"):
+            packing.unpacked("zstd", data[:-10], 10_000)
